@@ -1,0 +1,36 @@
+"""What a periodic orbit is: collocation, continuation, stability. Knows only the `System` protocol."""
+
+from periodic.branch import Branch, BranchFileError
+from periodic.continuation import Run
+from periodic.measure import extrema, outputs
+from periodic.orbit import Orbit
+from periodic.plotting import plot
+from periodic.point import Label, Point
+from periodic.scheme import Family, Scheme
+from periodic.settings import Accuracy, MeshSettings, NewtonSettings, Settings, StepSettings
+from periodic.stop import Reason, Stop
+from periodic.system import System
+from periodic.tracing import trace
+
+__all__ = [
+    "Accuracy",
+    "Branch",
+    "BranchFileError",
+    "Family",
+    "Label",
+    "MeshSettings",
+    "NewtonSettings",
+    "Orbit",
+    "Point",
+    "Reason",
+    "Run",
+    "Scheme",
+    "Settings",
+    "StepSettings",
+    "Stop",
+    "System",
+    "extrema",
+    "outputs",
+    "plot",
+    "trace",
+]

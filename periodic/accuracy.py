@@ -1,0 +1,55 @@
+"""The error estimate of an orbit: one Newton step on the mesh with every interval halved.
+
+The step solves the linearised equations on a discretisation that is 2^(ncol+1) times more accurate between
+mesh points, so its increment is the error of the orbit to first order (deferred correction).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.closure import Plane
+from periodic.newton import Outcome, at_fixed_phase, linear_step
+from periodic.orbit import Orbit, bisect
+from periodic.scheme import Array
+from periodic.system import System
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """orbit: largest error of the states over their largest peak to peak; multiplier: absolute."""
+
+    orbit: float
+    multiplier: float
+
+
+def largest(monodromy: Array) -> float:
+    """Return the largest modulus of the Floquet multipliers."""
+    return float(np.abs(np.linalg.eigvals(monodromy)).max())
+
+
+def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None) -> ErrorEstimate:
+    """Estimate the errors of a converged orbit (of a fixed parameter, or on a continuation plane)."""
+    fine = bisect(orbit)
+    closures = [] if plane is None else [_moved(plane, fine)]
+    free = () if plane is None else (plane.index,)
+    step = linear_step(system, fine, free, closures)
+    if isinstance(step, Outcome):
+        return ErrorEstimate(np.inf, np.inf)
+    change = at_fixed_phase(fine, step.nodes, step.outer[: len(fine.phases)])
+    span = max(orbit.span(), np.finfo(float).tiny)
+    multiplier = abs(largest(step.monodromy) - largest(monodromy))
+    return ErrorEstimate(float(np.abs(change).max()) / span, multiplier)
+
+
+def _moved(plane: Plane, fine: Orbit) -> Plane:
+    """The same plane through an orbit on the halved mesh."""
+    coarse = plane.direction.profile
+    profile = np.empty_like(fine.nodes)
+    profile[::2] = coarse
+    profile[1::2] = (coarse[1:] + coarse[:-1]) / 2
+    return Plane(fine, plane.direction.with_profile(profile), 0.0, plane.metric, plane.index)
+
+

@@ -1,0 +1,77 @@
+"""Mesh selection: intervals are laid so that each carries the same share of the interpolation error.
+
+The (ncol+1)-th derivative is estimated from the jumps of the ncol-th between neighbours of one segment
+(de Boor; Russell & Christiansen 1978), never across an anchor.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.mesh import Anchor, Mesh
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+
+FLOOR = 0.2
+"""Part of the mean density that every interval keeps, so that none grows without bound."""
+
+MIN_INTERVALS = 4
+"""Least number of intervals in a segment."""
+
+
+def density(orbit: Orbit) -> Array:
+    """Return the mesh density wanted in each interval, shape (N,), in intervals per unit of tau."""
+    knots, width = orbit.mesh.scheme.knots, orbit.grid.width
+    ncol = orbit.mesh.scheme.ncol
+    gaps = knots[:, None] - knots[None, :] + np.eye(ncol + 1)
+    top = np.einsum("l,jln->jn", 1 / gaps.prod(axis=1), orbit.knots) / width[:, None] ** ncol
+    order = 1 / (ncol + 1)
+    wanted = np.empty(len(width))
+    first = 0
+    for breaks in orbit.mesh.breaks:
+        part = slice(first, first + len(breaks) - 1)
+        wanted[part] = _jumps(top[part], width[part], closed=not orbit.mesh.anchors) ** order
+        first = part.stop
+    mean = float(wanted @ width) / orbit.mesh.period
+    return np.maximum(wanted, FLOOR * mean) if mean > 0 else np.ones(len(width))
+
+
+def _jumps(top: Array, width: Array, closed: bool) -> Array:
+    """Size of the next derivative in each interval of a segment, from the jumps at its two ends."""
+    if len(width) == 1:
+        return np.linalg.norm(top, axis=1) / width
+    jump = np.linalg.norm(np.diff(top, axis=0), axis=1) * 2 / (width[1:] + width[:-1])
+    left, right = np.append(jump[0], jump), np.append(jump, jump[-1])
+    if closed:
+        left[0] = right[-1] = np.linalg.norm(top[0] - top[-1]) * 2 / (width[0] + width[-1])
+    return np.maximum(left, right)
+
+
+def redistribute(orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: Array) -> Mesh:
+    """Return a mesh of about `ntst` intervals for an orbit, with the given anchors at `phases`."""
+    wanted = density(orbit)
+    period = orbit.mesh.period
+    edges = np.append(orbit.grid.left, orbit.grid.left[0] + period)
+    total = np.append(0.0, np.cumsum(wanted * orbit.grid.width))
+    begins = phases if anchors else np.zeros(1)
+    ends = np.append(begins[1:], begins[0] + period)
+    breaks = []
+    for begin, end in zip(begins, ends, strict=True):
+        levels = _cumulative(np.array([begin, end]), edges, total)
+        count = max(MIN_INTERVALS, round(ntst * (levels[1] - levels[0]) / total[-1]))
+        tau = _inverse(np.linspace(levels[0], levels[1], count + 1), edges, total)
+        sigma = (tau - begin) / (end - begin)
+        sigma[0], sigma[-1] = 0.0, 1.0
+        breaks.append(sigma)
+    return Mesh(orbit.mesh.scheme, tuple(breaks), anchors, period)
+
+
+def _cumulative(tau: Array, edges: Array, total: Array) -> Array:
+    """Integral of the density from edges[0] to tau, continued periodically."""
+    turns, rest = np.divmod(tau - edges[0], edges[-1] - edges[0])
+    return turns * total[-1] + np.interp(rest + edges[0], edges, total)
+
+
+def _inverse(level: Array, edges: Array, total: Array) -> Array:
+    turns, rest = np.divmod(level, total[-1])
+    return turns * (edges[-1] - edges[0]) + np.interp(rest, total, edges)

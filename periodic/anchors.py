@@ -1,0 +1,171 @@
+"""Which kinks of an orbit the mesh should be tied to.
+
+A switch passes a level in pairs: it is below it during an excursion. The deepest level whose excursion lasts
+long enough marks the kink. Excursions (and returns) shorter than a threshold are left to the ordinary mesh,
+where they are too weak to matter: an anchor tied to a passage that is about to vanish would turn the
+continuation back on itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import optimize
+
+from periodic.mesh import Anchor
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A passage of a switch through a level along an orbit."""
+
+    anchor: Anchor
+    phase: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnchorSettings:
+    """When the mesh is tied to a passage.
+
+    appear, vanish: shortest excursion (rad) that gets new anchors, and below which present ones are dropped.
+    deepest: levels of a switch between 0 and this are not used; below the accuracy of the states themselves
+    a level has no meaning.
+    """
+
+    appear: float = 0.10
+    vanish: float = 0.05
+    deepest: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.vanish <= self.appear:
+            raise ValueError(f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}")
+
+
+def crossings(system: System, orbit: Orbit) -> list[Crossing]:
+    """Return all passages of all switches through their levels, in order of phase for each level.
+
+    Signs are read at the collocation points alone: only there do the states fulfil the equations exactly,
+    and a switch may stay far closer to its level than the interpolation error between them. Phases are
+    interpolated linearly.
+    """
+    if not system.switches:
+        return []
+    tau = orbit.stage_phases.ravel()
+    values = system.switch(orbit.stages.reshape(len(tau), -1), tau, orbit.parameter)
+    tau, values = np.append(tau, tau[0] + orbit.mesh.period), np.concatenate([values, values[:1]])
+    found = []
+    for k, switch in enumerate(system.switches):
+        above = values[:, k, None] > np.array(switch.levels)
+        for i, j in np.argwhere(above[1:] != above[:-1]):
+            level = switch.levels[j]
+            begin, end = values[i, k] - level, values[i + 1, k] - level
+            phase = tau[i] + (tau[i + 1] - tau[i]) * begin / (begin - end)
+            found.append(Crossing(Anchor(k, 1 if end > begin else -1, level), float(phase)))
+    return found
+
+
+def wanted(system: System, orbit: Orbit, settings: AnchorSettings) -> list[Crossing]:
+    """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
+    found = crossings(system, orbit)
+    chosen: list[Crossing] = []
+    for k, switch in enumerate(system.switches):
+        sharper: list[Crossing] = []
+        for level in sorted(v for v in switch.levels if not 0 < v < settings.deepest):
+            here = _merged([c for c in found if c.anchor.switch == k and c.anchor.level == level], orbit, settings)
+            for excursion in _excursions(here):
+                if not any(_inside(c, excursion, orbit.mesh.period) for c in sharper):
+                    sharper += excursion
+        chosen += [c for c in sharper if switch.direction in (0, c.anchor.direction)]
+    return sorted(chosen, key=lambda crossing: crossing.phase)
+
+
+def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
+    """Pair the crossings of one level: each falling one with the rising one that follows."""
+    falling = [i for i, c in enumerate(kept) if c.anchor.direction < 0]
+    return [(kept[i], kept[(i + 1) % len(kept)]) for i in falling]
+
+
+def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
+    begin, end = excursion[0].phase, excursion[1].phase
+    return bool(np.mod(crossing.phase - begin, period) <= np.mod(end - begin, period))
+
+
+def _merged(found: list[Crossing], orbit: Orbit, settings: AnchorSettings) -> list[Crossing]:
+    """Leave out pairs of neighbouring crossings that lie closer than the threshold."""
+    kept = list(found)
+    while len(kept) >= 2:
+        phases = np.array([c.phase for c in kept])
+        gaps = np.diff(np.append(phases, phases[0] + orbit.mesh.period))
+        limits = np.array([_limit(kept[i], kept[(i + 1) % len(kept)], orbit, settings) for i in range(len(kept))])
+        short = int(np.argmin(gaps / limits))
+        if gaps[short] >= limits[short]:
+            break
+        drop = {short, (short + 1) % len(kept)}
+        kept = [c for i, c in enumerate(kept) if i not in drop]
+    return kept
+
+
+def _limit(a: Crossing, b: Crossing, orbit: Orbit, settings: AnchorSettings) -> float:
+    return settings.vanish if _is_anchored(a, orbit) or _is_anchored(b, orbit) else settings.appear
+
+
+def _is_anchored(crossing: Crossing, orbit: Orbit) -> bool:
+    return match(crossing, orbit) is not None
+
+
+def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | None:
+    """Return the index of the orbit's anchor that is this crossing, if one is."""
+    for i, (anchor, phase) in enumerate(zip(orbit.mesh.anchors, orbit.phases, strict=True)):
+        distance = np.mod(crossing.phase - phase + np.pi, 2 * np.pi) - np.pi
+        if anchor == crossing.anchor and abs(distance) < tolerance:
+            return i
+    return None
+
+
+def fits(chosen: list[Crossing], orbit: Orbit) -> bool:
+    """Whether the orbit's mesh is tied to exactly these crossings."""
+    matched = [match(c, orbit) for c in chosen]
+    return None not in matched and len(chosen) == len(orbit.phases)
+
+
+def genuine(system: System, orbit: Orbit) -> bool:
+    """Whether every anchor is a crossing in its own direction (not past the point where a pair vanished)."""
+    if not orbit.mesh.anchors:
+        return True
+    at = orbit.nodes[orbit.mesh.starts]
+    d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
+    rates = orbit.node_rates[orbit.mesh.starts]
+    for i, anchor in enumerate(orbit.mesh.anchors):
+        slope = d_phase[i, anchor.switch] + d_state[i, anchor.switch] @ rates[i]
+        if slope * anchor.direction <= 0:
+            return False
+    return True
+
+
+def placed(system: System, orbit: Orbit, chosen: list[Crossing]) -> tuple[tuple[Anchor, ...], Array]:
+    """Return anchors and exact phases of crossings for a new mesh, the first phase in [0, 2 pi)."""
+    phases = np.array([_exact(system, orbit, c) for c in chosen])
+    return tuple(c.anchor for c in chosen), phases - 2 * np.pi * np.floor(phases[:1] / (2 * np.pi))
+
+
+def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:
+    """The phase of a crossing: the anchor's own where the mesh is tied to it, else on the polynomial."""
+    index = match(crossing, orbit)
+    if index is not None:
+        turns = np.round((crossing.phase - orbit.phases[index]) / orbit.mesh.period)
+        return float(orbit.phases[index] + turns * orbit.mesh.period)
+
+    def value(tau: float) -> float:
+        at = np.array([tau])
+        switch = system.switch(orbit.state(at), at, orbit.parameter)[0, crossing.anchor.switch]
+        return float(switch) - crossing.anchor.level
+
+    reach = orbit.grid.width[orbit.locate(np.array([crossing.phase]))[0][0]]
+    begin, end = crossing.phase - reach, crossing.phase + reach
+    if value(begin) * value(end) >= 0:
+        return crossing.phase
+    return float(optimize.brentq(value, begin, end, xtol=1e-13))

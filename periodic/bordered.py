@@ -1,0 +1,77 @@
+"""The bordered system that is left after condensation: chain of intervals, periodicity, closures.
+
+Intervals are chained to affine maps of (1, dx_0, dy); periodicity dx_N = dx_0 and the closures then give a
+dense system of size n + q for (dx_0, dy). The chain's linear part is the monodromy matrix.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.closure import Row
+from periodic.collocation import Condensed
+from periodic.scheme import Array
+
+
+@dataclass(frozen=True)
+class BorderedSolution:
+    """Newton increments of mesh-point states (N+1, n) and y (q,), the kernel direction, the monodromy matrix.
+
+    The kernel direction solves the homogeneous equations with right-hand side 1 in the last closure; it is
+    None where there is no closure beyond the events.
+    """
+
+    nodes: Array
+    outer: Array
+    kernel_nodes: Array | None
+    kernel_outer: Array | None
+    monodromy: Array
+
+
+def chain(condensed: Condensed) -> Array:
+    """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
+    count, n, width = condensed.step.shape
+    maps = np.zeros((count + 1, n, width))
+    maps[0, :, 1 : 1 + n] = np.eye(n)
+    linear = np.ascontiguousarray(condensed.step[:, :, 1 : 1 + n])
+    rest = condensed.step.copy()
+    rest[:, :, 1 : 1 + n] = 0.0
+    for j in range(count):
+        np.matmul(linear[j], maps[j], out=maps[j + 1])
+        maps[j + 1] += rest[j]
+    return maps
+
+
+def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bool) -> BorderedSolution:
+    """Solve for the increments; `gap` (n,) is x_N - x_0 of the present orbit, which shall become zero.
+
+    Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
+    """
+    maps = chain(condensed)
+    n = maps.shape[1]
+    top = maps[-1].copy()
+    top[:, 1 : 1 + n] -= np.eye(n)
+    top[:, 0] += gap
+    border = np.array([_reduced(row, maps) for row in rows]).reshape(len(rows), maps.shape[2])
+    system = np.concatenate([top, border])
+    right = np.zeros((len(system), 2))
+    right[:, 0] = -system[:, 0]
+    right[-1, 1] = 1.0
+    both = np.linalg.solve(system[:, 1:], right)
+    if not np.isfinite(both).all():
+        raise np.linalg.LinAlgError("the bordered matrix is singular")
+    outer = both[n:]
+    nodes = maps[:, :, 0] + maps[:, :, 1:] @ both[:, 0]
+    kernel = maps[:, :, 1:] @ both[:, 1] if with_kernel else None
+    return BorderedSolution(nodes, outer[:, 0], kernel, outer[:, 1] if with_kernel else None, maps[-1, :, 1 : 1 + n])
+
+
+def _reduced(row: Row, maps: Array) -> Array:
+    """A closure as a row in (1, dx_0, dy)."""
+    reduced = np.einsum("jn,jnw->w", row.nodes, maps)
+    reduced[0] += row.value
+    reduced[len(reduced) - len(row.outer) :] += row.outer
+    return reduced

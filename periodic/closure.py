@@ -1,0 +1,123 @@
+"""Equations that close the collocation system: events at anchors, and the plane of a continuation step.
+
+Each closure is one scalar equation in the mesh-point states, the anchor phases and the free parameters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System
+
+
+@dataclass(frozen=True)
+class Row:
+    """A closure linearised: value, gradient in the mesh-point states (N+1, n) and in y (q,)."""
+
+    value: float
+    nodes: Array
+    outer: Array
+
+
+class Closure(Protocol):
+    """One scalar equation c(orbit) = 0."""
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return value and gradient at an orbit; y holds the anchor phases, then the free parameters."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """The switch of anchor `index` is at its level where the segment begins: s(x, phi, p) = level."""
+
+    index: int
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return value and gradient of the switch function at the anchor."""
+        node = orbit.mesh.starts[self.index]
+        anchor = orbit.mesh.anchors[self.index]
+        switch = anchor.switch
+        where = (orbit.nodes[node : node + 1], orbit.phases[self.index : self.index + 1], orbit.parameter)
+        d_state, d_phase, d_parameter = system.switch_gradient(*where)
+        nodes = np.zeros_like(orbit.nodes)
+        nodes[node] = d_state[0, switch]
+        outer = np.zeros(len(orbit.phases) + len(free))
+        outer[self.index] = d_phase[0, switch]
+        outer[len(orbit.phases) :] = d_parameter[0, switch, list(free)]
+        return Row(float(system.switch(*where)[0, switch]) - anchor.level, nodes, outer)
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction along the solution set, of unit length in the metric of `Metric`.
+
+    nodes, stages, algebraic, phases are rates at fixed sigma (they move with the mesh); profile (N+1, n)
+    is the rate of the mesh-point states at fixed tau; parameter the rate of the free parameter.
+    """
+
+    nodes: Array
+    stages: Array
+    algebraic: Array
+    phases: Array
+    profile: Array
+    parameter: float
+
+    def scaled(self, factor: float) -> Direction:
+        """Return the direction times a factor."""
+        arrays = (self.nodes, self.stages, self.algebraic, self.phases, self.profile)
+        return Direction(*[factor * a for a in arrays], factor * self.parameter)
+
+    def with_profile(self, profile: Array) -> Direction:
+        """Return the direction with another profile: all that a plane needs on another mesh."""
+        return replace(self, profile=profile)
+
+
+@dataclass(frozen=True)
+class Metric:
+    """|u|^2 = mean over the period of |x|^2 + (parameter / scale)^2, with x at fixed tau."""
+
+    scale: float
+
+    @staticmethod
+    def weights(orbit: Orbit) -> Array:
+        """Trapezoidal weights of the mesh points over one period, shape (N+1,); their sum is 1."""
+        half = orbit.grid.width / (2 * orbit.mesh.period)
+        return np.append(half, 0.0) + np.append(0.0, half)
+
+    def dot(self, orbit: Orbit, a: Direction, b: Direction) -> float:
+        """Scalar product of two directions on the mesh of `orbit`."""
+        states = np.einsum("j,jn,jn->", self.weights(orbit), a.profile, b.profile)
+        return float(states) + a.parameter * b.parameter / self.scale**2
+
+
+def node_phase_gradient(orbit: Orbit) -> Array:
+    """How the mesh points' phases follow the anchor phases, shape (N+1, k)."""
+    gradient = orbit.grid.left_gradient
+    return np.concatenate([gradient, gradient[:1]])
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The plane through `origin`, moved by `distance` along `direction`: <u - origin, direction> = distance."""
+
+    origin: Orbit
+    direction: Direction
+    distance: float
+    metric: Metric
+    index: int
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return value and gradient; mesh points that move carry the origin's slope with them."""
+        slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
+        weighted = self.metric.weights(self.origin)[:, None] * self.direction.profile
+        outer = np.append(
+            -np.einsum("jn,jn,jk->k", weighted, slope, moving), self.direction.parameter / self.metric.scale**2
+        )
+        moved = np.append(orbit.phases - self.origin.phases, orbit.parameter[self.index] - self.origin.parameter[self.index])
+        value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
+        return Row(float(value) - self.distance, weighted, outer)

@@ -1,0 +1,151 @@
+"""Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
+
+Each step solves on the plane across the tangent; special points inside it are located on planes between.
+A step is rejected where Newton fails, where the corrector moves too far, where the tangent turns too much
+(a jump to another branch), where an anchor is past the end of its excursion, or where the error estimate
+exceeds the tolerance on a mesh made for the new orbit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from periodic.closure import Plane
+from periodic.locate import special_points
+from periodic.dense import consistent
+from periodic.newton import Outcome, at_fixed_phase
+from periodic.orbit import Orbit, transfer
+from periodic.adapt import redistribute
+from periodic.point import Label, Point, describe
+from periodic.solve import (
+    Solved,
+    Task,
+    at_parameter,
+    is_settled,
+    on_mesh,
+    on_plane,
+    parameter_direction,
+    predict,
+    remesh,
+    settle,
+    wanted_ntst,
+)
+from periodic.stop import Stop
+
+WINDOW = 1 / 60
+"""The mesh is made anew where the error estimate falls below this part of the tolerance."""
+
+ADAPT_EVERY = 4
+"""... and every so many steps."""
+
+FAR = 0.5
+"""Largest correction of a prediction, as a part of the step."""
+
+
+@dataclass
+class Run:
+    """A continuation under way: where it stands and why it stopped."""
+
+    task: Task
+    bounds: tuple[float, float]
+    user: Sequence[float] = ()
+    stop: Stop | None = None
+    iterations: int = 0
+    _since_remesh: int = field(default=0, repr=False)
+
+    def points(self, start: Orbit, sign: int) -> Iterator[Point]:
+        """Yield points from a start orbit, first towards `sign` times the parameter, until `stop` is set."""
+        task, step = self.task, self.task.settings.step
+        base = settle(task, at_parameter(task, start, float(sign)), fixed=True)
+        if isinstance(base, Outcome):
+            self.stop = Stop.no_start(base)
+            return
+        if base.error.orbit > task.settings.mesh.tolerance:
+            self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
+            return
+        yield describe(task, base, Label.END)
+        ds, count = step.ds, 1
+        while count < step.max_points:
+            found = self._step(base, ds)
+            if isinstance(found, str):
+                ds /= 2
+                if ds < step.ds_min:
+                    self.stop = Stop.small_step(found)
+                    yield describe(task, base, Label.FAILED)
+                    return
+                continue
+            base, new = found
+            specials = special_points(task, base, new, ds, self.bounds, self.user)
+            for special in specials:
+                yield describe(task, special.solved, special.label)
+            if any(s.label is Label.END for s in specials):
+                self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
+                return
+            yield describe(task, new, Label.NONE)
+            count += 1
+            ds = self._next_size(ds, new)
+            base = self._prepared(new)
+        self.stop = Stop.max_points(step.max_points)
+
+    def _next_size(self, ds: float, new: Solved) -> float:
+        iterations, step = new.correction.iterations, self.task.settings.step
+        factor = 1.5 if iterations <= 3 else 1.2 if iterations <= 4 else 1.0 if iterations <= 6 else 0.7
+        return float(np.clip(ds * factor, step.ds_min, step.ds_max))
+
+    def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved] | str:
+        """Take one step; return base and new solution on one mesh, or why the step is rejected."""
+        tolerance = self.task.settings.mesh.tolerance
+        for _ in range(3):
+            new = self._attempt(base, ds)
+            if isinstance(new, str) or new.error.orbit <= tolerance:
+                return new if isinstance(new, str) else (base, new)
+            moved = self._base_on_mesh_for(base, new)
+            if isinstance(moved, Outcome):
+                return "the mesh could not be adapted"
+            base = moved
+        return "the error estimate exceeds the tolerance"
+
+    def _attempt(self, base: Solved, ds: float) -> Solved | str:
+        task = self.task
+        guess = predict(task, base.orbit, base.tangent, ds)
+        new = on_plane(task, guess, Plane(base.orbit, base.tangent, ds, task.metric, task.index))
+        if isinstance(new, Outcome):
+            return new.value
+        self.iterations += new.correction.iterations
+        if task.metric.dot(new.orbit, base.tangent, new.tangent) < task.settings.step.turn:
+            return "the branch turns too sharply for the step"
+        if self._distance(guess, new.orbit) > FAR * ds:
+            return "the corrector moved too far from the prediction"
+        return new
+
+    def _distance(self, a: Orbit, b: Orbit) -> float:
+        profile = at_fixed_phase(a, b.nodes - a.nodes, b.phases - a.phases)
+        jump = float(b.parameter[self.task.index] - a.parameter[self.task.index])
+        difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
+        return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
+
+    def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved | Outcome:
+        """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
+        task, old = self.task, base.orbit
+        mesh = redistribute(new.orbit, wanted_ntst(task, new), new.orbit.mesh.anchors, new.orbit.phases)
+        orbit = consistent(task.system, transfer(old, mesh, old.phases))
+        return on_plane(task, orbit, Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index))
+
+    def _prepared(self, new: Solved) -> Solved:
+        """Give the next step its mesh: right anchors, an error estimate inside its window."""
+        task = self.task
+        tolerance = task.settings.mesh.tolerance
+        self._since_remesh += 1
+        due = self._since_remesh >= ADAPT_EVERY or not WINDOW * tolerance < new.error.orbit < 0.7 * tolerance
+        if new.anchored and not due:
+            return new
+        better = remesh(task, new)
+        if isinstance(better, Solved) and not is_settled(task, better):
+            better = settle(task, better)
+        if isinstance(better, Outcome) or better.error.orbit > tolerance:
+            return new
+        self._since_remesh = 0
+        return better

@@ -1,0 +1,116 @@
+"""Special points inside one continuation step, located on planes between its two ends.
+
+A fold (LP) is where the tangent's parameter component vanishes; user points (UZ) and bounds (EP) where the
+parameter takes a given value, looked for on each side of the folds, where the parameter is monotone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import optimize
+
+from periodic.closure import Plane
+from periodic.newton import Outcome
+from periodic.point import Label
+from periodic.solve import Solved, Task, at_parameter, on_plane, predict, settle
+
+FOLD_PRECISION = 1e-6
+"""Precision of a fold's place along the branch, as a part of the step; its parameter is second order in it."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A special point at `distance` from the step's base."""
+
+    label: Label
+    distance: float
+    solved: Solved
+
+
+class NotLocated(Exception):
+    """A plane between the ends of the step could not be solved on."""
+
+
+def special_points(
+    task: Task, base: Solved, new: Solved, ds: float, bounds: tuple[float, float], user: Sequence[float]
+) -> list[Found]:
+    """Return the special points of a step in order along the branch; a bound (EP) ends the list."""
+    folds = _folds(task, base, new, ds)
+    pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
+    found = list(folds)
+    targets = [(value, Label.USER) for value in user] + [(value, Label.END) for value in bounds]
+    for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
+        for value, label in targets:
+            if _crosses(task, begin, end, value):
+                found.append(_at_value(task, base, begin, end, value, label))
+    found.sort(key=lambda item: item.distance)
+    labels = [item.label for item in found]
+    return found[: labels.index(Label.END) + 1] if Label.END in labels else found
+
+
+def _value(task: Task, solved: Solved) -> float:
+    return float(solved.orbit.parameter[task.index])
+
+
+def _crosses(task: Task, begin: Found, end: Found, value: float) -> bool:
+    """Whether a value lies in the piece, its begin left out (it belongs to the piece before)."""
+    a, b = _value(task, begin.solved), _value(task, end.solved)
+    return bool((a < value <= b) or (b <= value < a))
+
+
+def _folds(task: Task, base: Solved, new: Solved, ds: float) -> list[Found]:
+    """Locate the fold of a step, if it has one; on a mesh made for it where the step's is not accurate there."""
+    if base.tangent.parameter * new.tangent.parameter >= 0:
+        return []
+    distance, solved = _root(task, base, (0.0, ds), _slope, FOLD_PRECISION * ds)
+    refined = settle(task, solved)
+    if refined is solved or isinstance(refined, Outcome):
+        return [Found(Label.FOLD, distance, solved)]
+    for reach in (0.05 * ds, 0.5 * ds):
+        ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
+        if _slope(ends[0]) * _slope(ends[1]) < 0:
+            solved = _root(task, refined, (-reach, reach), _slope, FOLD_PRECISION * ds)[1]
+            break
+    return [Found(Label.FOLD, distance, solved)]
+
+
+def _slope(solved: Solved) -> float:
+    return solved.tangent.parameter
+
+
+def _at_value(
+    task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label
+) -> Found:
+    """Locate a parameter value in a monotone piece, then solve at exactly that value."""
+    ends = (begin.distance, end.distance)
+    distance, near = _root(task, base, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))
+    parameter = near.orbit.parameter.copy()
+    parameter[task.index] = value
+    guess = replace(near.orbit, parameter=parameter)
+    exact = settle(task, at_parameter(task, guess, float(np.sign(_slope(near))) or 1.0), fixed=True)
+    return Found(label, distance, near if isinstance(exact, Outcome) else exact)
+
+
+def _root(
+    task: Task, base: Solved, ends: tuple[float, float], test: Callable[[Solved], float], precision: float
+) -> tuple[float, Solved]:
+    """Return distance and solution where `test` changes sign between two distances from the base."""
+    solutions: dict[float, Solved] = {}
+
+    def value(distance: float) -> float:
+        solutions[distance] = _at_distance(task, base, distance)
+        return test(solutions[distance])
+
+    root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+    return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+
+
+def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
+    guess = predict(task, base.orbit, base.tangent, distance)
+    solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
+    if isinstance(solved, Outcome):
+        raise NotLocated(solved.value)
+    return solved

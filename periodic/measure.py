@@ -1,0 +1,75 @@
+"""Outputs along an orbit and their extremes, those of the continuous solution and not of the mesh points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.dense import algebraic_at
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System
+
+ZOOMS = 2
+SAMPLES = 9
+
+
+def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
+    """Return the outputs (SI) at phases tau, shape (len(tau), outputs).
+
+    The unknowns are solved for at each phase from the algebraic rows; they are never interpolated.
+    """
+    algebraic = algebraic_at(system, orbit, tau)
+    return system.output(orbit.rate(tau), orbit.state(tau), algebraic, tau, orbit.parameter)
+
+
+def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
+    """Return minimum and maximum (SI) of each output over one period, two arrays of shape (outputs,)."""
+    tau = orbit.stage_phases.ravel()
+    flat = (len(tau), -1)
+    values = system.output(
+        orbit.knot_rates[:, 1:].reshape(flat),
+        orbit.stages.reshape(flat),
+        orbit.algebraic.reshape(len(tau), orbit.algebraic.shape[2]),
+        tau,
+        orbit.parameter,
+    )
+    signs = np.repeat([-1.0, 1.0], values.shape[1])
+    both = np.concatenate([-values, values], axis=1)
+    index = both.argmax(axis=0)
+    best = both[index, np.arange(len(index))]
+    half = np.maximum(np.diff(tau, append=tau[0] + orbit.mesh.period), np.diff(tau, prepend=tau[-1] - orbit.mesh.period))
+    centre, radius = tau[index], half[index]
+    for _ in range(ZOOMS):
+        best, centre, radius = _zoom(system, orbit, signs, best, centre, radius)
+    count = values.shape[1]
+    return -best[:count], best[count:]
+
+
+def _zoom(
+    system: System, orbit: Orbit, signs: Array, best: Array, centre: Array, radius: Array
+) -> tuple[Array, Array, Array]:
+    """Look for the maximum of signs * output on a finer window around each centre, then at the vertex of
+    the parabola through the largest sample and its neighbours."""
+    grid = centre[:, None] + radius[:, None] * np.linspace(-1, 1, SAMPLES)
+    chosen = _signed(system, orbit, signs, grid)
+    each, peak = np.arange(len(signs)), chosen.argmax(axis=1)
+    vertex = grid[each, peak] + radius * 2 / (SAMPLES - 1) * _offset(chosen, peak)
+    grid = np.column_stack([grid[each, peak], vertex, centre])
+    chosen = np.column_stack([chosen[each, peak], _signed(system, orbit, signs, vertex[:, None])[:, 0], best])
+    peak = chosen.argmax(axis=1)
+    return chosen[each, peak], grid[each, peak], radius * 2 / (SAMPLES - 1)
+
+
+def _signed(system: System, orbit: Orbit, signs: Array, grid: Array) -> Array:
+    """signs * output at the phases of each row's own output, shape of `grid`."""
+    values = outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
+    return signs[:, None] * values[np.arange(len(signs)), :, np.arange(len(signs)) % values.shape[2]]
+
+
+def _offset(values: Array, peak: Array) -> Array:
+    """Place of the parabola's vertex relative to the largest sample, in samples; 0 where it has none."""
+    each, middle = np.arange(len(peak)), np.clip(peak, 1, SAMPLES - 2)
+    low, top, high = (values[each, middle + k] for k in (-1, 0, 1))
+    bend = low - 2 * top + high
+    interior = (peak == middle) & (bend < 0)
+    return np.where(interior, (low - high) / (2 * np.where(interior, bend, -1.0)), 0.0)

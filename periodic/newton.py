@@ -1,0 +1,191 @@
+"""Damped Newton on the collocation equations and their closures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from periodic import bordered, collocation
+from periodic.closure import Closure, Direction, Event, node_phase_gradient
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System
+
+
+MAX_CHANGE = 2.0
+"""Largest relative change in one iteration; longer Newton steps are cut to it."""
+
+
+class Outcome(Enum):
+    """How a Newton iteration ended; the value says it in words."""
+
+    CONVERGED = "converged"
+    TOO_MANY = "Newton did not converge within its iterations"
+    NOT_FINITE = "the equations were not finite near the iterate"
+    SINGULAR = "the linear system was singular"
+    ANCHORS_CROSSED = "two anchors of the mesh met"
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonSettings:
+    """tolerance: largest last increment, relative (states: to 1 + their size). The last step is still taken."""
+
+    tolerance: float = 1e-8
+    max_iterations: int = 12
+    max_halvings: int = 6
+
+    def __post_init__(self) -> None:
+        if not 0 < self.tolerance < 1:
+            raise ValueError(f"Newton tolerance is {self.tolerance}; it must lie between 0 and 1")
+        if self.max_iterations < 1:
+            raise ValueError(f"max_iterations is {self.max_iterations}; it must be at least 1")
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave."""
+
+    orbit: Orbit
+    outcome: Outcome
+    iterations: int
+    increment: float
+    residual: float
+    monodromy: Array
+    kernel: Direction | None
+
+
+@dataclass(frozen=True)
+class Step:
+    """One Newton increment, with the kernel direction of the same linearisation."""
+
+    nodes: Array
+    stages: Array
+    algebraic: Array
+    outer: Array
+    size: float
+    length: float
+    residual: float
+    monodromy: Array
+    kernel: Direction | None
+
+
+def correct(
+    system: System,
+    guess: Orbit,
+    free: tuple[int, ...] = (),
+    closures: Sequence[Closure] = (),
+    settings: NewtonSettings | None = None,
+) -> Correction:
+    """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
+
+    The outcome is on the result; nothing is raised for a numerical failure.
+    """
+    settings = settings or NewtonSettings()
+    orbit, outcome, step, iteration = guess, Outcome.TOO_MANY, None, 0
+    base: tuple[Orbit, Step] | None = None
+    factor = 1.0
+    for iteration in range(1, settings.max_iterations + 1):
+        trial = linear_step(system, orbit, free, closures)
+        worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
+        if worse and base is not None and factor > 0.5**settings.max_halvings:
+            factor /= 4
+            orbit = _advance(system, *base, free, factor)
+            continue
+        if isinstance(trial, Outcome):
+            outcome = trial
+            break
+        step, base = trial, (orbit, trial)
+        factor = min(1.0, MAX_CHANGE / max(step.length, np.finfo(float).tiny))
+        orbit = _advance(system, orbit, step, free, factor)
+        if step.size < settings.tolerance:
+            outcome = Outcome.CONVERGED
+            break
+    if outcome is Outcome.CONVERGED and (orbit.mesh.segment_lengths(orbit.phases) <= 0).any():
+        outcome = Outcome.ANCHORS_CROSSED
+    if step is None:
+        empty = np.full((orbit.nodes.shape[1],) * 2, np.nan)
+        return Correction(orbit, outcome, iteration, np.inf, np.inf, empty, None)
+    return Correction(orbit, outcome, iteration, step.size, step.residual, step.monodromy, step.kernel)
+
+
+def linear_step(
+    system: System, orbit: Orbit, free: tuple[int, ...], closures: Sequence[Closure]
+) -> Step | Outcome:
+    """Return one Newton increment, or why there is none."""
+    if (orbit.mesh.segment_lengths(orbit.phases) <= 0).any():
+        return Outcome.ANCHORS_CROSSED
+    events = [Event(i) for i in range(len(orbit.phases))]
+    try:
+        condensed = collocation.condense(system, orbit, free)
+        rows = [c.linearise(system, orbit, free) for c in (*events, *closures)]
+        gap = orbit.nodes[-1] - orbit.nodes[0]
+        solution = bordered.solve(condensed, gap, rows, with_kernel=bool(closures))
+    except FloatingPointError:
+        return Outcome.NOT_FINITE
+    except np.linalg.LinAlgError:
+        return Outcome.SINGULAR
+    stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
+    change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
+    size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
+    kernel = _direction(orbit, condensed, solution) if closures else None
+    return Step(
+        solution.nodes, stages, algebraic, solution.outer, size, length, condensed.residual, solution.monodromy, kernel
+    )
+
+
+def _sizes(
+    orbit: Orbit, nodes: Array, stages: Array, algebraic: Array, outer: Array, free: tuple[int, ...]
+) -> tuple[float, float]:
+    """Largest relative increment, for the convergence test and for damping.
+
+    In the first the unknowns count with their square: that is what the last step leaves of theirs, and
+    rounding in the rates of very short intervals keeps their own increments from falling further.
+    """
+    k = len(orbit.phases)
+    sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
+    sizes += [abs(d) / max(abs(orbit.parameter[i]), 1e-300) for d, i in zip(outer[k:], free, strict=True)]
+    unknowns = float((np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(initial=0.0))
+    regular = float(max(sizes))
+    if not np.isfinite(regular + unknowns):
+        return np.inf, np.inf
+    return max(regular, unknowns**2), max(regular, unknowns)
+
+
+def moved(system: System, algebraic: Array, increment: Array) -> Array:
+    """Return unknowns of shape (N, ncol, m) after an increment."""
+    flat = (algebraic.shape[0] * algebraic.shape[1], algebraic.shape[2])
+    if algebraic.shape[2] == 0:
+        return algebraic
+    return system.move(algebraic.reshape(flat), increment.reshape(flat)).reshape(algebraic.shape)
+
+
+def _advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+    k = len(orbit.phases)
+    parameter = orbit.parameter.copy()
+    parameter[list(free)] += factor * step.outer[k:]
+    return replace(
+        orbit,
+        nodes=orbit.nodes + factor * step.nodes,
+        stages=orbit.stages + factor * step.stages,
+        algebraic=moved(system, orbit.algebraic, factor * step.algebraic),
+        phases=orbit.phases + factor * step.outer[:k],
+        parameter=parameter,
+    )
+
+
+def _direction(orbit: Orbit, condensed: collocation.Condensed, solution: bordered.BorderedSolution) -> Direction:
+    """The kernel direction with stages and unknowns recovered; not yet of unit length."""
+    assert solution.kernel_nodes is not None and solution.kernel_outer is not None
+    k = len(orbit.phases)
+    nodes, outer = solution.kernel_nodes, solution.kernel_outer
+    stages, algebraic = collocation.recover(orbit, condensed, nodes, outer, 0.0)
+    profile = at_fixed_phase(orbit, nodes, outer[:k])
+    return Direction(nodes, stages, algebraic, outer[:k], profile, float(outer[k]))
+
+
+def at_fixed_phase(orbit: Orbit, nodes: Array, phases: Array) -> Array:
+    """Turn increments of mesh-point states that move with the mesh into increments at fixed tau."""
+    return nodes - orbit.node_rates * (node_phase_gradient(orbit) @ phases)[:, None]

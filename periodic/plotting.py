@@ -1,0 +1,55 @@
+"""Plots of branches: stable parts solid, unstable dashed, special points labelled as the field does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from periodic.branch import Branch
+from periodic.point import Label, Point
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def plot(
+    branch: Branch, output: str | None = None, axes: Axes | None = None, measure: Callable[[Point], float] | None = None
+) -> Axes:
+    """Plot the peak to peak of an output (default: the first) against the parameter; return the axes.
+
+    `measure` replaces the peak to peak by any function of a point.
+    """
+    import matplotlib.pyplot as plt
+
+    name = output or branch.layout.outputs[0].name
+    units = {q.name: q.unit for q in (*branch.layout.outputs, *branch.layout.parameters)}
+    measured = measure or (lambda point: point.peak_to_peak(name))
+    axes = axes or plt.subplots(figsize=(7.0, 4.5), layout="constrained")[1]
+    values, heights = branch.values, np.array([measured(p) for p in branch.points])
+    for piece, stable in runs(branch):
+        axes.plot(values[piece], heights[piece], "-" if stable else "--", color="C0", linewidth=1.5)
+    for point in branch.special_points:
+        if point.label in (Label.FOLD, Label.FAILED):
+            at = (point.parameter, measured(point))
+            axes.plot(*at, "o", color="C3", markersize=5)
+            axes.annotate(point.label.value, at, xytext=(6, 6), textcoords="offset points")
+    axes.set_xlabel(_with_unit(branch.parameter, units))
+    axes.set_ylabel(_with_unit(f"{name} peak to peak", {f"{name} peak to peak": units[name]}))
+    return axes
+
+
+def runs(branch: Branch) -> list[tuple[slice, bool]]:
+    """Cut a branch into stretches of one stability; neighbours share their end point."""
+    stable = branch.stable
+    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
+    return [
+        (slice(begin, min(end + 1, len(stable))), bool(stable[begin]))
+        for begin, end in zip(cuts[:-1], cuts[1:], strict=True)
+        if end > begin
+    ]
+
+
+def _with_unit(name: str, units: dict[str, str]) -> str:
+    return f"{name} ({units[name]})" if units.get(name) else name

@@ -1,0 +1,73 @@
+"""A point of a branch: an orbit with everything that is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from periodic import measure
+from periodic.accuracy import ErrorEstimate
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.solve import Solved, Task
+
+
+class Label(Enum):
+    """Special points, as the field names them."""
+
+    NONE = ""
+    END = "EP"
+    FOLD = "LP"
+    USER = "UZ"
+    FAILED = "MX"
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
+
+    minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
+    arclength. A point is stable when all multipliers lie inside the unit circle; a fold, where one is at 1,
+    is not.
+    """
+
+    orbit: Orbit
+    parameter: float
+    label: Label
+    multipliers: Array
+    minimum: dict[str, float]
+    maximum: dict[str, float]
+    error: ErrorEstimate
+    residual: float
+    iterations: int
+    slope: float
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return self.label is not Label.FOLD and bool(np.abs(self.multipliers).max() < 1)
+
+    def peak_to_peak(self, output: str) -> float:
+        """Return maximum minus minimum of an output."""
+        return self.maximum[output] - self.minimum[output]
+
+
+def describe(task: Task, solved: Solved, label: Label) -> Point:
+    """Measure a solved orbit."""
+    low, high = measure.extrema(task.system, solved.orbit)
+    names = [output.name for output in task.system.outputs]
+    multipliers = np.linalg.eigvals(solved.correction.monodromy)
+    return Point(
+        orbit=solved.orbit,
+        parameter=float(solved.orbit.parameter[task.index]),
+        label=label,
+        multipliers=multipliers[np.argsort(-np.abs(multipliers))],
+        minimum=dict(zip(names, map(float, low), strict=True)),
+        maximum=dict(zip(names, map(float, high), strict=True)),
+        error=solved.error,
+        residual=solved.correction.residual,
+        iterations=solved.correction.iterations,
+        slope=solved.tangent.parameter,
+    )

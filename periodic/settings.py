@@ -1,0 +1,82 @@
+"""Settings of a trace: accuracy, steps, and the dial draft / standard / fine that chooses both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from periodic.anchors import AnchorSettings
+from periodic.newton import NewtonSettings
+from periodic.scheme import Family, Scheme
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshSettings:
+    """Accuracy of each orbit. tolerance bounds its error estimate; ntst runs from ntst_min to ntst_max."""
+
+    tolerance: float = 1e-7
+    scheme: Scheme = field(default_factory=Scheme)
+    ntst: int = 24
+    ntst_min: int = 8
+    ntst_max: int = 1000
+    anchors: AnchorSettings = field(default_factory=AnchorSettings)
+
+    def __post_init__(self) -> None:
+        if not 1e-13 <= self.tolerance <= 1e-1:
+            raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.1")
+        for name in ("ntst", "ntst_min", "ntst_max"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be a whole number of at least 1")
+        if not self.ntst_min <= self.ntst <= self.ntst_max:
+            raise ValueError(f"ntst is {self.ntst}; it must lie from ntst_min to ntst_max")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepSettings:
+    """Arclength steps, as parts of the parameter's range; `turn` is the least cosine between tangents."""
+
+    ds: float = 0.02
+    ds_min: float = 1e-7
+    ds_max: float = 0.10
+    turn: float = 0.8
+    max_points: int = 5000
+
+    def __post_init__(self) -> None:
+        if not 0 < self.ds_min <= self.ds <= self.ds_max:
+            raise ValueError(f"ds is {self.ds}; it must lie from ds_min = {self.ds_min} to ds_max = {self.ds_max}")
+        if self.max_points < 1:
+            raise ValueError(f"max_points is {self.max_points}; it must be at least 1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """All settings of a trace."""
+
+    mesh: MeshSettings = field(default_factory=MeshSettings)
+    newton: NewtonSettings = field(default_factory=NewtonSettings)
+    step: StepSettings = field(default_factory=StepSettings)
+
+
+DEEPEST = 0.1
+"""Shallowest switch level worth an anchor, in tolerances."""
+
+
+class Accuracy(Enum):
+    """The dial: tolerance of the orbits' error estimates and number of collocation points."""
+
+    DRAFT = (1e-4, 4)
+    STANDARD = (1e-7, 5)
+    FINE = (1e-9, 6)
+
+    def settings(self, step: StepSettings | None = None) -> Settings:
+        """Return the settings of this accuracy."""
+        tolerance, ncol = self.value
+        return Settings(
+            mesh=MeshSettings(
+                tolerance=tolerance,
+                scheme=Scheme(Family.RADAU, ncol),
+                anchors=AnchorSettings(deepest=DEEPEST * tolerance),
+            ),
+            newton=NewtonSettings(tolerance=max(1e-2 * tolerance, 1e-10) ** 0.75, max_iterations=10),
+            step=step or StepSettings(),
+        )

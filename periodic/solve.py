@@ -1,0 +1,151 @@
+"""One orbit to a tolerance: Newton, error estimate, new mesh and anchors, until all are right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic import anchors
+from periodic.accuracy import ErrorEstimate, estimate
+from periodic.adapt import redistribute
+from periodic.anchors import Crossing
+from periodic.closure import Direction, Metric, Plane
+from periodic.dense import consistent
+from periodic.newton import Correction, Outcome, correct, moved
+from periodic.orbit import Orbit, transfer
+from periodic.settings import Settings
+from periodic.system import System
+
+AIM = 0.15
+"""The part of the tolerance that a new mesh aims at."""
+
+ROUNDS = 8
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is solved: a system, the continuation parameter's index, the metric and the settings."""
+
+    system: System
+    index: int
+    metric: Metric
+    settings: Settings
+
+
+@dataclass(frozen=True)
+class Solved:
+    """An orbit of a task with its tangent, its error estimate and the crossings its mesh should be tied to."""
+
+    correction: Correction
+    tangent: Direction
+    error: ErrorEstimate
+    wanted: list[Crossing]
+
+    @property
+    def orbit(self) -> Orbit:
+        """The orbit itself."""
+        return self.correction.orbit
+
+    @property
+    def anchored(self) -> bool:
+        """Whether the mesh is tied to just the crossings it should be."""
+        return anchors.fits(self.wanted, self.orbit)
+
+
+def parameter_direction(orbit: Orbit, metric: Metric) -> Direction:
+    """The direction in which only the parameter changes; a plane across it fixes the parameter."""
+    zero = np.zeros_like(orbit.nodes)
+    return Direction(
+        zero, np.zeros_like(orbit.stages), np.zeros_like(orbit.algebraic), np.zeros_like(orbit.phases), zero, metric.scale
+    )
+
+
+def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
+    """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
+    result = correct(task.system, guess, (task.index,), [plane], task.settings.newton)
+    if result.outcome is not Outcome.CONVERGED:
+        return result.outcome
+    assert result.kernel is not None
+    if not anchors.genuine(task.system, result.orbit):
+        return Outcome.ANCHORS_CROSSED
+    tangent = result.kernel
+    length = np.sqrt(task.metric.dot(result.orbit, tangent, tangent))
+    sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
+    tangent = tangent.scaled(sign / length)
+    origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
+    error = estimate(task.system, result.orbit, result.monodromy, origin)
+    return Solved(result, tangent, error, anchors.wanted(task.system, result.orbit, task.settings.mesh.anchors))
+
+
+def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
+    """Solve with the parameter fixed at the guess's value; the tangent points to `sign` times it."""
+    across = parameter_direction(guess, task.metric).scaled(sign)
+    return on_plane(task, guess, Plane(guess, across, 0.0, task.metric, task.index))
+
+
+def settle(task: Task, solved: Solved | Outcome, *, fixed: bool = False) -> Solved | Outcome:
+    """Change mesh and anchors until both are right for a solution and solve again on each new mesh.
+
+    `fixed` keeps the parameter; else the solution stays on the plane across its tangent. Returns the
+    solution on the last mesh; its error estimate may still exceed the tolerance.
+    """
+    for _ in range(ROUNDS):
+        if isinstance(solved, Outcome) or is_settled(task, solved):
+            return solved
+        new = remesh(task, solved, fixed=fixed)
+        if isinstance(new, Outcome):
+            return solved if solved.error.orbit <= task.settings.mesh.tolerance else new
+        solved = new
+    return solved
+
+
+def is_settled(task: Task, solved: Solved) -> bool:
+    """Whether error estimate and anchors are as they should be, or cannot be bettered."""
+    mesh = task.settings.mesh
+    exhausted = solved.orbit.mesh.ntst >= mesh.ntst_max
+    return solved.anchored and (solved.error.orbit <= mesh.tolerance or exhausted)
+
+
+def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
+    """Solve again on a mesh made for this orbit: right anchors, right number of intervals."""
+    old = solved.orbit
+    tied, phases = anchors.placed(task.system, old, solved.wanted)
+    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases)
+    orbit = consistent(task.system, transfer(old, mesh, phases))
+    if fixed:
+        return at_parameter(task, orbit, float(np.sign(solved.tangent.parameter)) or 1.0)
+    direction = on_mesh(solved.tangent, old, orbit)
+    return on_plane(task, orbit, Plane(orbit, direction, 0.0, task.metric, task.index))
+
+
+def wanted_ntst(task: Task, solved: Solved) -> int:
+    """The number of intervals that brings the error estimate to its aim."""
+    mesh = task.settings.mesh
+    order = mesh.scheme.ncol + 1
+    ratio = solved.error.orbit / (AIM * mesh.tolerance) if np.isfinite(solved.error.orbit) else 4.0**order
+    factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
+    return int(np.clip(np.ceil(factor * solved.orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))
+
+
+def on_mesh(direction: Direction, old: Orbit, new: Orbit) -> Direction:
+    """The direction's profile at the mesh points of another mesh: all that a plane needs."""
+    at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases)
+    wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
+    profile = np.stack([np.interp(wrapped, at, column) for column in direction.profile.T], axis=1)
+    base = parameter_direction(new, Metric(1.0))
+    return Direction(base.nodes, base.stages, base.algebraic, base.phases, profile, direction.parameter)
+
+
+def predict(task: Task, orbit: Orbit, direction: Direction, ds: float) -> Orbit:
+    """Return the orbit moved by ds along a direction."""
+    parameter = orbit.parameter.copy()
+    parameter[task.index] += ds * direction.parameter
+    return replace(
+        orbit,
+        nodes=orbit.nodes + ds * direction.nodes,
+        stages=orbit.stages + ds * direction.stages,
+        algebraic=moved(task.system, orbit.algebraic, ds * direction.algebraic),
+        phases=orbit.phases + ds * direction.phases,
+        parameter=parameter,
+    )

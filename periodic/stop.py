@@ -1,0 +1,61 @@
+"""Why a branch ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from periodic.newton import Outcome
+
+
+class Reason(Enum):
+    """Named reasons; `numerical` tells those that cut a branch short of what was asked."""
+
+    BOUND = "bound reached"
+    MAX_POINTS = "largest number of points reached"
+    SMALL_STEP = "step size below its minimum"
+    NO_START = "no orbit found at the start"
+    INACCURATE = "tolerance not reached"
+    INTERRUPTED = "interrupted"
+
+    @property
+    def numerical(self) -> bool:
+        """Whether the branch ended for a numerical reason."""
+        return self in (Reason.MAX_POINTS, Reason.SMALL_STEP, Reason.NO_START, Reason.INACCURATE)
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A named reason and the detail that goes with it."""
+
+    reason: Reason
+    detail: str
+
+    def __str__(self) -> str:
+        return f"{self.reason.value}: {self.detail}"
+
+    @classmethod
+    def bound(cls, bounds: tuple[float, float], value: float) -> Stop:
+        """The parameter reached an end of its range."""
+        side = "lower" if abs(value - bounds[0]) < abs(value - bounds[1]) else "upper"
+        return cls(Reason.BOUND, f"{side} end of the range")
+
+    @classmethod
+    def max_points(cls, count: int) -> Stop:
+        """The allowed number of points was used up."""
+        return cls(Reason.MAX_POINTS, f"{count} points")
+
+    @classmethod
+    def small_step(cls, why: str) -> Stop:
+        """Even the smallest step was rejected."""
+        return cls(Reason.SMALL_STEP, why)
+
+    @classmethod
+    def no_start(cls, outcome: Outcome) -> Stop:
+        """No first orbit."""
+        return cls(Reason.NO_START, outcome.value)
+
+    @classmethod
+    def inaccurate(cls, error: float, ntst: int) -> Stop:
+        """The first orbit misses the tolerance."""
+        return cls(Reason.INACCURATE, f"error estimate {error:.1e} with {ntst} intervals")

@@ -1,0 +1,206 @@
+"""Branches on disk: one NetCDF file per branch, orbits as ragged arrays, names and units as attributes.
+
+Dimensions: point, parameter, output, state; and the ragged ones segment, break, node, stage, anchor, whose
+shares per point are in the variables `*_count`. Loading reads numbers and strings only.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from periodic.accuracy import ErrorEstimate
+from periodic.branch import Branch, BranchFileError, Layout, Quantity
+from periodic.mesh import Anchor, Mesh
+from periodic.orbit import Orbit
+from periodic.point import Label, Point
+from periodic.scheme import Family, Scheme
+from periodic.stop import Reason, Stop
+
+FORMAT = "orbitrace branch 1"
+
+
+def save(branch: Branch, path: Path) -> None:
+    """Write a branch; an existing file is replaced only when the new one is complete."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+    os.close(handle)
+    try:
+        dataset(branch).to_netcdf(name, engine="h5netcdf")
+        os.replace(name, path)
+    finally:
+        Path(name).unlink(missing_ok=True)
+
+
+def load(path: Path) -> Branch:
+    """Read a branch. Raises BranchFileError if the file is missing, damaged or no branch."""
+    if not path.is_file():
+        raise BranchFileError(f"branch file is {str(path)!r}; there is no such file")
+    try:
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
+            if data.attrs.get("format") != FORMAT:
+                raise BranchFileError(f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}")
+            return _branch(data.load())
+    except BranchFileError:
+        raise
+    except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
+        raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch ({type(error).__name__})") from error
+
+
+def dataset(branch: Branch) -> xr.Dataset:
+    """Return the branch as an xarray Dataset."""
+    points = branch.points
+    per_point = {
+        "value": [p.parameter for p in points],
+        "label": [p.label.value for p in points],
+        "stable": [p.stable for p in points],
+        "error_estimate": [p.error.orbit for p in points],
+        "multiplier_error": [p.error.multiplier for p in points],
+        "residual": [p.residual for p in points],
+        "newton_iterations": [p.iterations for p in points],
+        "slope": [p.slope for p in points],
+    }
+    data = xr.Dataset({name: ("point", np.array(column)) for name, column in per_point.items()})
+    outputs = [q.name for q in branch.layout.outputs]
+    for name, extreme in (("minimum", [p.minimum for p in points]), ("maximum", [p.maximum for p in points])):
+        data[name] = (("point", "output"), _table([[e[o] for o in outputs] for e in extreme], len(outputs)))
+    states = len(branch.layout.states)
+    for part, take in (("real", np.real), ("imag", np.imag)):
+        data[f"multiplier_{part}"] = (("point", "state"), _table([take(p.multipliers) for p in points], states))
+    data["parameters"] = (
+        ("point", "parameter"),
+        _table([p.orbit.parameter for p in points], len(branch.layout.parameters)),
+    )
+    _add_orbits(data, branch)
+    data.attrs = _attributes(branch)
+    return data
+
+
+def _table(rows: list[Any], width: int) -> np.ndarray:
+    return np.array(rows, dtype=float).reshape(len(rows), width)
+
+
+def _joined(arrays: list[np.ndarray], tail: tuple[int, ...] = ()) -> np.ndarray:
+    return np.concatenate([np.zeros((0, *tail)), *[a.reshape(-1, *tail) for a in arrays]])
+
+
+def _add_orbits(data: xr.Dataset, branch: Branch) -> None:
+    orbits = [p.orbit for p in branch.points]
+    n, m = len(branch.layout.states), len(branch.layout.algebraics)
+    data["segment_count"] = ("point", np.array([len(o.mesh.breaks) for o in orbits], dtype=int))
+    data["anchor_count"] = ("point", np.array([len(o.mesh.anchors) for o in orbits], dtype=int))
+    data["period"] = ("point", np.array([o.mesh.period for o in orbits]))
+    data["break_count"] = ("segment", np.array([len(b) for o in orbits for b in o.mesh.breaks], dtype=int))
+    data["sigma"] = ("break", _joined([b for o in orbits for b in o.mesh.breaks]))
+    anchors = [a for o in orbits for a in o.mesh.anchors]
+    data["anchor_switch"] = ("anchor", np.array([a.switch for a in anchors], dtype=int))
+    data["anchor_direction"] = ("anchor", np.array([a.direction for a in anchors], dtype=int))
+    data["anchor_level"] = ("anchor", np.array([a.level for a in anchors], dtype=float))
+    data["anchor_phase"] = ("anchor", _joined([o.phases for o in orbits]))
+    data["node_state"] = (("node", "state"), _joined([o.nodes for o in orbits], (n,)))
+    data["stage_state"] = (("stage", "state"), _joined([o.stages for o in orbits], (n,)))
+    if m:
+        data["stage_algebraic"] = (("stage", "algebraic"), _joined([o.algebraic for o in orbits], (m,)))
+
+
+def _attributes(branch: Branch) -> dict[str, Any]:
+    schemes = {p.orbit.mesh.scheme for p in branch.points}
+    scheme = schemes.pop() if schemes else Scheme()
+    quantities = {
+        group: [[q.name, q.unit, q.scale] for q in getattr(branch.layout, group)]
+        for group in ("states", "algebraics", "outputs", "parameters")
+    }
+    backwards = branch.stop_backwards
+    return {
+        "format": FORMAT,
+        "parameter": branch.parameter,
+        "layout": json.dumps(quantities),
+        "scheme": scheme.family.value,
+        "ncol": scheme.ncol,
+        "stop": json.dumps([branch.stop.reason.name, branch.stop.detail]),
+        "stop_backwards": json.dumps([backwards.reason.name, backwards.detail] if backwards else None),
+        "newton_iterations": branch.newton_iterations,
+        "elapsed_s": branch.elapsed,
+        "versions": json.dumps(branch.versions),
+    }
+
+
+def _branch(data: xr.Dataset) -> Branch:
+    groups = json.loads(data.attrs["layout"])
+    layout = Layout(**{name: tuple(Quantity(*q) for q in items) for name, items in groups.items()})
+    orbits = _orbits(data, layout)
+    return Branch(
+        parameter=data.attrs["parameter"],
+        layout=layout,
+        points=tuple(_point(data, layout, i, orbit) for i, orbit in enumerate(orbits)),
+        stop=_stop(json.loads(data.attrs["stop"])),
+        stop_backwards=_stop(back) if (back := json.loads(data.attrs["stop_backwards"])) else None,
+        newton_iterations=int(data.attrs["newton_iterations"]),
+        elapsed=float(data.attrs["elapsed_s"]),
+        versions=json.loads(data.attrs["versions"]),
+    )
+
+
+def _stop(pair: list[str]) -> Stop:
+    return Stop(Reason[pair[0]], pair[1])
+
+
+def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
+    names = [q.name for q in layout.outputs]
+
+    def number(name: str) -> float:
+        return float(data[name].values[i])
+
+    return Point(
+        orbit=orbit,
+        parameter=number("value"),
+        label=Label(str(data["label"].values[i])),
+        multipliers=data["multiplier_real"].values[i] + 1j * data["multiplier_imag"].values[i],
+        minimum=dict(zip(names, map(float, data["minimum"].values[i]), strict=True)),
+        maximum=dict(zip(names, map(float, data["maximum"].values[i]), strict=True)),
+        error=ErrorEstimate(number("error_estimate"), number("multiplier_error")),
+        residual=number("residual"),
+        iterations=int(number("newton_iterations")),
+        slope=number("slope"),
+    )
+
+
+def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
+    """Cut the ragged arrays into orbits."""
+    scheme = Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
+    n, m, ncol = len(layout.states), len(layout.algebraics), scheme.ncol
+    breaks = np.split(data["sigma"].values, np.cumsum(data["break_count"].values)[:-1])
+    algebraic = data["stage_algebraic"].values if m else np.zeros((data.sizes.get("stage", 0), 0))
+    segment = anchor = node = stage = 0
+    orbits = []
+    for i in range(data.sizes["point"]):
+        segments, anchors = int(data["segment_count"].values[i]), int(data["anchor_count"].values[i])
+        mine = tuple(breaks[segment : segment + segments])
+        span = slice(anchor, anchor + anchors)
+        tied = tuple(
+            Anchor(int(s), int(d), float(v))
+            for s, d, v in zip(
+                *(data[f"anchor_{name}"].values[span] for name in ("switch", "direction", "level")), strict=True
+            )
+        )
+        mesh = Mesh(scheme, mine, tied, float(data["period"].values[i]))
+        count = mesh.ntst
+        rows = slice(stage, stage + count * ncol)
+        orbits.append(
+            Orbit(
+                mesh,
+                data["node_state"].values[node : node + count + 1],
+                data["stage_state"].values[rows].reshape(count, ncol, n),
+                algebraic[rows].reshape(count, ncol, m),
+                data["anchor_phase"].values[span],
+                data["parameters"].values[i],
+            )
+        )
+        segment, anchor = segment + segments, anchor + anchors
+        node, stage = node + count + 1, stage + count * ncol
+    return orbits

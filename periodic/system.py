@@ -1,0 +1,108 @@
+"""The whole boundary between the engine and a model: what `periodic` asks of a system.
+
+    R(x', x, z, tau, p) = 0,   ' = d/dtau
+
+n differential rows and m algebraic rows, n states x and m unknowns z, N points at a time; x and z are
+scaled to order one. A forced system has period 2 pi in tau. Any object with these members will do; a
+hand-written NumPy class is as good as a compiled model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class VariableLike(Protocol):
+    """Name, unit, SI value of one internal unit, and (parameters) the nominal value."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def value(self) -> float: ...
+
+
+class SwitchLike(Protocol):
+    """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
+
+    direction -1: only a falling passage is a kink, +1 a rising one, 0 both. Levels fall; each marks the
+    same kink more sharply than the one before, as long as s goes that far below it.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def direction(self) -> int: ...
+    @property
+    def levels(self) -> tuple[float, ...]: ...
+
+
+class LinearisationLike(Protocol):
+    """Residual (N, n+m) and its derivatives; the m algebraic rows come last."""
+
+    @property
+    def residual(self) -> Array: ...
+    @property
+    def d_rate(self) -> Array: ...
+    @property
+    def d_state(self) -> Array: ...
+    @property
+    def d_algebraic(self) -> Array: ...
+    @property
+    def d_phase(self) -> Array: ...
+    @property
+    def d_parameter(self) -> Array: ...
+
+
+class System(Protocol):
+    """See the module's docstring. Shapes: rate, state (N, n); algebraic (N, m); phase (N,); parameter (p,)."""
+
+    @property
+    def states(self) -> Sequence[VariableLike]: ...
+    @property
+    def algebraics(self) -> Sequence[VariableLike]: ...
+    @property
+    def parameters(self) -> Sequence[VariableLike]: ...
+    @property
+    def outputs(self) -> Sequence[VariableLike]: ...
+    @property
+    def switches(self) -> Sequence[SwitchLike]: ...
+
+    @property
+    def nominal(self) -> Array:
+        """Nominal parameter values, shape (p,)."""
+
+    def linearise(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        free: tuple[int, ...] = (),
+    ) -> LinearisationLike:
+        """Residual and derivatives; d_parameter has one column for each index in `free`."""
+
+    def move(self, algebraic: Array, increment: Array) -> Array:
+        """Where Newton increments take the unknowns, (N, m): their sum, or a better-behaved way to it."""
+
+    def output(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
+        """Outputs in SI units, shape (N, outputs)."""
+
+    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
+        """Switch functions, shape (N, switches)."""
+
+    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+        """Their derivatives in state (N, switches, n), phase (N, switches), parameter (N, switches, p)."""
+
+    def rest(self, parameter: Array) -> tuple[Array, Array]:
+        """States (n,) and unknowns (m,) from which the search for a first orbit starts."""

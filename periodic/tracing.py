@@ -1,0 +1,131 @@
+"""The usual way in: trace a branch between two values of a parameter."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from importlib import metadata
+
+import numpy as np
+
+from periodic.branch import Branch, Layout, Quantity
+from periodic.closure import Metric
+from periodic.continuation import Run
+from periodic.orbit import Orbit, at_rest
+from periodic.mesh import uniform
+from periodic.point import Point
+from periodic.settings import Accuracy, Settings
+from periodic.solve import Task
+from periodic.stop import Reason, Stop
+from periodic.system import System, VariableLike
+
+Progress = Callable[[Point], None]
+
+
+def trace(
+    system: System,
+    parameter: str,
+    bounds: tuple[float, float],
+    *,
+    start: float | None = None,
+    at: Sequence[float] = (),
+    accuracy: Accuracy = Accuracy.STANDARD,
+    settings: Settings | None = None,
+    guess: Orbit | None = None,
+    progress: Progress | None = None,
+) -> Branch:
+    """Trace the branch of forced periodic orbits through `start` (default bounds[0]) within `bounds`.
+
+    From a start at a bound the branch is followed towards the other, from one inside both ways. `at`
+    are values that get a point of their own (UZ) on every sheet. `guess` is an orbit to start from (default:
+    rest). An interrupt (Ctrl-C) returns the branch so far. A numerical failure is the branch's `stop`.
+    Raises ValueError, in one sentence, for a parameter, bound or value that is not allowed.
+    """
+    index = _index(system, parameter)
+    low, high = _range(parameter, bounds)
+    begin = bounds[0] if start is None else start
+    if not low <= begin <= high:
+        raise ValueError(f"start is {begin}; it must lie within the bounds {low} to {high}")
+    for value in at:
+        if not low <= value <= high:
+            raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
+    task = Task(system, index, Metric(high - low), settings or accuracy.settings())
+    clock = time.perf_counter()
+    orbit = guess if guess is not None else _rest(task, index, begin)
+    signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
+    runs = [Run(task, (low, high), tuple(at)) for _ in signs]
+    halves: list[list[Point]] = []
+    for run, sign in zip(runs, signs, strict=True):
+        halves.append(_collect(run, run.points(orbit, sign), progress))
+        if run.stop is not None and run.stop.reason is Reason.INTERRUPTED:
+            break
+    return _joined(system, parameter, runs, halves, time.perf_counter() - clock)
+
+
+def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> list[Point]:
+    collected: list[Point] = []
+    try:
+        for point in points:
+            collected.append(point)
+            if progress is not None:
+                progress(point)
+    except KeyboardInterrupt:
+        run.stop = Stop(Reason.INTERRUPTED, f"after {len(collected)} points")
+    return collected
+
+
+def _joined(
+    system: System, parameter: str, runs: list[Run], halves: list[list[Point]], elapsed: float
+) -> Branch:
+    """One branch out of one or two runs from the same start."""
+    two = len(halves) == 2
+    points = [*halves[0][:0:-1], *halves[1]] if two else halves[0]
+    stop, backwards = (runs[1].stop, runs[0].stop) if two else (runs[0].stop, None)
+    assert stop is not None
+    return Branch(
+        parameter=parameter,
+        layout=layout_of(system),
+        points=tuple(points),
+        stop=stop,
+        stop_backwards=backwards,
+        newton_iterations=sum(run.iterations for run in runs),
+        elapsed=elapsed,
+        versions={name: metadata.version(name) for name in ("orbitrace", "numpy", "scipy")},
+    )
+
+
+def layout_of(system: System) -> Layout:
+    """Return names, units and scales of a system's quantities."""
+
+    def quantities(variables: Sequence[VariableLike]) -> tuple[Quantity, ...]:
+        return tuple(Quantity(v.name, v.unit, float(v.scale)) for v in variables)
+
+    return Layout(
+        quantities(system.states),
+        quantities(system.algebraics),
+        quantities(system.outputs),
+        quantities(system.parameters),
+    )
+
+
+def _index(system: System, parameter: str) -> int:
+    names = [p.name for p in system.parameters]
+    if parameter not in names:
+        raise ValueError(f"parameter is {parameter!r}; it must be one of {', '.join(names)}")
+    return names.index(parameter)
+
+
+def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
+    low, high = sorted(float(b) for b in bounds)
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise ValueError(f"bounds of {parameter} are {bounds}; they must be two different finite numbers")
+    return low, high
+
+
+def _rest(task: Task, index: int, begin: float) -> Orbit:
+    parameter = np.array(task.system.nominal, dtype=float)
+    parameter[index] = begin
+    mesh = task.settings.mesh
+    return at_rest(task.system, uniform(mesh.scheme, mesh.ntst), parameter)
+

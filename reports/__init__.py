@@ -1,0 +1,1 @@
+"""What people read: scenes, the command line, pictures and reports."""

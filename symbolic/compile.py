@@ -1,0 +1,254 @@
+"""A model becomes a System: scaled residual, exact derivatives and outputs, evaluated in batch.
+
+Residual rows, with x the scaled states, z the algebraic unknowns and ' = d/dtau:
+
+    q_i' - v_i = 0,    m omega^2 v_i' - sum of forces = 0,    rows of the parts' own states,    0 = g
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from symbolic.assembly import Assembly
+from symbolic.kernel import batch, build, points, vector
+from symbolic.model import Model, Part
+from symbolic.parts.contact import Junction
+from symbolic.variables import SwitchInfo, Variable
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """Residual and derivatives at N points (n states, m unknowns, q free parameters).
+
+    residual (N, n+m); d_rate, d_state (N, n+m, n); d_algebraic (N, n+m, m); d_phase (N, n+m);
+    d_parameter (N, n+m, q). Rows n.. are the algebraic rows.
+    """
+
+    residual: Array
+    d_rate: Array
+    d_state: Array
+    d_algebraic: Array
+    d_phase: Array
+    d_parameter: Array
+
+
+@dataclass(frozen=True)
+class Expressions:
+    """The scaled symbolic system: what the kernels are generated from."""
+
+    rate: ca.SX
+    state: ca.SX
+    algebraic: ca.SX
+    phase: ca.SX
+    parameter: ca.SX
+    residual: ca.SX
+    outputs: ca.SX
+    switches: ca.SX
+    rest_state: ca.SX
+    rest_algebraic: ca.SX
+    increment: ca.SX
+    moved: ca.SX
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSystem:
+    """A model ready for `periodic`: see `periodic.system.System` for the protocol it fulfils."""
+
+    states: tuple[Variable, ...]
+    algebraics: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    switches: tuple[SwitchInfo, ...]
+    expressions: Expressions = field(repr=False)
+    _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
+
+    @property
+    def nominal(self) -> Array:
+        """The parameters' nominal values, shape (parameters,)."""
+        return np.array([p.value for p in self.parameters])
+
+    def residual(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
+        """Return the scaled residual, shape (N, n+m)."""
+        result = np.empty((len(phase), len(self.states) + len(self.algebraics)))
+        self._residual_kernel(rate, state, algebraic, phase, parameter, result)
+        return result
+
+    def linearise(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        free: tuple[int, ...] = (),
+    ) -> Linearisation:
+        """Return residual and derivatives; `free` are the indices of the parameters to differentiate in."""
+        points_, n, m = len(phase), len(self.states), len(self.algebraics)
+        shapes = [(n + m,), (n + m, n), (n + m, n), (n + m, m), (n + m,), (n + m, len(free))]
+        arrays = [np.zeros((points_, *shape)) for shape in shapes]
+        targets = [a if a.ndim == 2 or a.shape[2] != 1 else a[:, :, 0] for a in arrays]
+        with np.errstate(all="ignore"):
+            self._jacobian_kernel(free)(rate, state, algebraic, phase, parameter, *targets)
+        return Linearisation(*arrays)
+
+    def move(self, algebraic: Array, increment: Array) -> Array:
+        """Return where Newton increments take the unknowns, both of shape (N, m)."""
+        result = np.empty_like(algebraic)
+        with np.errstate(all="ignore"):
+            self._move_kernel(algebraic, increment, result)
+        return result
+
+    def output(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
+        """Return the outputs in SI units, shape (N, outputs)."""
+        result = np.zeros((len(phase), len(self.outputs)))
+        with np.errstate(all="ignore"):
+            self._output_kernel(rate, state, algebraic, phase, parameter, result)
+        return result
+
+    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
+        """Return the switch functions, shape (N, switches)."""
+        result = np.zeros((len(phase), len(self.switches)))
+        self._switch_kernel(state, phase, parameter, result)
+        return result
+
+    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+        """Return derivatives in state (N, switches, n), phase (N, switches), parameters (N, switches, p)."""
+        count, k = len(phase), len(self.switches)
+        d_state = np.zeros((count, k, len(self.states)))
+        d_phase = np.zeros((count, k))
+        d_parameter = np.zeros((count, k, len(self.parameters)))
+        self._switch_gradient_kernel(state, phase, parameter, d_state, d_phase, d_parameter)
+        return d_state, d_phase, d_parameter
+
+    def rest(self, parameter: Array) -> tuple[Array, Array]:
+        """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""
+        e = self.expressions
+        state, algebraic = ca.Function("rest", [e.parameter], [e.rest_state, e.rest_algebraic])(parameter)
+        return np.array(state).ravel(), np.array(algebraic).ravel()
+
+    @cached_property
+    def _arguments(self) -> list:
+        e = self.expressions
+        return [
+            batch(e.rate, "rate"),
+            batch(e.state, "state"),
+            batch(e.algebraic, "algebraic"),
+            points(e.phase, "phase"),
+            vector(e.parameter, "parameter"),
+        ]
+
+    @cached_property
+    def _residual_kernel(self) -> Callable[..., None]:
+        return build(self._arguments, [self.expressions.residual])
+
+    @cached_property
+    def _move_kernel(self) -> Callable[..., None]:
+        e = self.expressions
+        return build([batch(e.algebraic, "algebraic"), batch(e.increment, "increment")], [e.moved])
+
+    @cached_property
+    def _output_kernel(self) -> Callable[..., None]:
+        return build(self._arguments, [self.expressions.outputs])
+
+    @cached_property
+    def _switch_kernel(self) -> Callable[..., None]:
+        _, state, _, phase, parameter = self._arguments
+        return build([state, phase, parameter], [self.expressions.switches])
+
+    @cached_property
+    def _switch_gradient_kernel(self) -> Callable[..., None]:
+        _, state, _, phase, parameter = self._arguments
+        e = self.expressions
+        gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
+        return build([state, phase, parameter], gradients)
+
+    def _jacobian_kernel(self, free: tuple[int, ...]) -> Callable[..., None]:
+        if free not in self._jacobians:
+            e = self.expressions
+            chosen = e.parameter[list(free)] if free else ca.SX(0, 1)
+            variables = (e.rate, e.state, e.algebraic, e.phase)
+            results = [e.residual, *(ca.jacobian(e.residual, v) for v in variables)]
+            results.append(ca.jacobian(e.residual, e.parameter)[:, list(free)] if free else ca.SX(e.residual.size1(), 0))
+            self._jacobians[free] = build(self._arguments, results)
+        return self._jacobians[free]
+
+
+def compile(model: Model | Part) -> CompiledSystem:  # noqa: A001 - the field's word for it
+    """Return the System of a model.
+
+    Raises ValueError, in one sentence, for a model that lacks a part, defines a parameter twice or leaves
+    a coordinate without mass.
+    """
+    assembly = Assembly()
+    for part in model.parts if isinstance(model, Model) else (model,):
+        part.contribute(assembly)
+    for junction in assembly.junctions.values():
+        assert isinstance(junction, Junction)
+        junction.close(assembly)
+    return _system(assembly)
+
+
+def _motion_rows(assembly: Assembly) -> list[ca.SX]:
+    rows: list[ca.SX] = []
+    for coordinate, motion in assembly.motions.items():
+        inertia = motion.mass * assembly.omega**2
+        if motion.mass.is_zero():
+            raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
+        scale = assembly.nominal(inertia) * motion.position.scale
+        rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
+        rows.append((inertia * motion.velocity.derivative - motion.force) / scale)
+    return rows
+
+
+def _system(assembly: Assembly) -> CompiledSystem:
+    for motion in assembly.motions.values():
+        assembly.outputs.insert(0, (Variable(motion.position.name, motion.position.unit), motion.position.symbol))
+    rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
+    states = assembly.states
+    rate, state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
+    scales = ca.vertcat(*[s.scale for s in states])
+    parameters = tuple(assembly.parameters.values())
+    packed = ca.SX.sym("parameter", len(parameters))
+    unknown = ca.SX.sym("algebraic", len(assembly.unknowns))
+    increment = ca.SX.sym("increment", len(assembly.unknowns))
+
+    def scaled(expressions: list[ca.SX]) -> ca.SX:
+        stacked = assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
+        old = [s.derivative for s in states] + [s.symbol for s in states]
+        old += [u.symbol for u in assembly.unknowns] + [p.symbol for p in parameters]
+        return ca.substitute(stacked, ca.vertcat(*old), ca.vertcat(rate * scales, state * scales, unknown, packed))
+
+    expressions = Expressions(
+        rate=rate,
+        state=state,
+        algebraic=unknown,
+        phase=assembly.phase,
+        parameter=packed,
+        residual=scaled(rows),
+        outputs=scaled([expression for _, expression in assembly.outputs]),
+        switches=scaled([expression for _, expression in assembly.switches]),
+        rest_state=scaled([s.rest / s.scale for s in states]),
+        rest_algebraic=scaled([u.rest for u in assembly.unknowns]),
+        increment=increment,
+        moved=ca.substitute(
+            scaled([u.moved for u in assembly.unknowns]),
+            ca.vertcat(*[u.increment for u in assembly.unknowns]),
+            increment,
+        ),
+    )
+    return CompiledSystem(
+        states=tuple(Variable(s.name, s.unit, s.scale) for s in states),
+        algebraics=tuple(Variable(u.name) for u in assembly.unknowns),
+        parameters=tuple(Variable(p.name, p.unit, 1.0, p.value) for p in parameters),
+        outputs=tuple(variable for variable, _ in assembly.outputs),
+        switches=tuple(info for info, _ in assembly.switches),
+        expressions=expressions,
+    )

@@ -1,0 +1,40 @@
+"""Parts add up to a model with `+`; a model is nothing but its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from symbolic.assembly import Assembly
+
+
+class Part:
+    """One term of the equations of motion. A part says what it adds in `contribute`."""
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add this part's forces, states, unknowns, outputs and switches to the assembly."""
+        raise NotImplementedError
+
+    def __add__(self, other: Part | Model) -> Model:
+        return Model((self,)) + other
+
+
+@dataclass(frozen=True)
+class Model:
+    """An ordered collection of parts; the order does not change the equations."""
+
+    parts: tuple[Part, ...]
+
+    def __add__(self, other: Part | Model) -> Model:
+        if isinstance(other, Model):
+            return Model(self.parts + other.parts)
+        if isinstance(other, Part):
+            return Model((*self.parts, other))
+        return NotImplemented
+
+
+def combine(parts: Iterable[Part]) -> Model:
+    """Return the model of any number of parts (what `+` does, for a list)."""
+    return Model(tuple(parts))
