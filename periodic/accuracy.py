@@ -17,12 +17,24 @@ from periodic.scheme import Array
 from periodic.system import System
 
 
+SLACK = 30.0
+"""How much less accurate than the orbit its largest multiplier may be."""
+
+
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """orbit: largest error of the states over their largest peak to peak; multiplier: absolute."""
+    """orbit: largest error of the states over their largest peak to peak.
+
+    multiplier: error of the largest Floquet multiplier, relative to it where it exceeds 1.
+    """
 
     orbit: float
     multiplier: float
+
+    @property
+    def worst(self) -> float:
+        """What is held against the tolerance; multipliers may be `SLACK` times less accurate."""
+        return max(self.orbit, self.multiplier / SLACK)
 
 
 def largest(monodromy: Array) -> float:
@@ -40,7 +52,8 @@ def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None
         return ErrorEstimate(np.inf, np.inf)
     change = at_fixed_phase(fine, step.nodes, step.outer[: len(fine.phases)])
     span = max(orbit.span(), np.finfo(float).tiny)
-    multiplier = abs(largest(step.monodromy) - largest(monodromy))
+    fine_multiplier = largest(step.monodromy)
+    multiplier = abs(fine_multiplier - largest(monodromy)) / max(1.0, fine_multiplier)
     return ErrorEstimate(float(np.abs(change).max()) / span, multiplier)
 
 

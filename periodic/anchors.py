@@ -1,9 +1,9 @@
 """Which kinks of an orbit the mesh should be tied to.
 
-A switch passes a level in pairs: it is below it during an excursion. The deepest level whose excursion lasts
-long enough marks the kink. Excursions (and returns) shorter than a threshold are left to the ordinary mesh,
-where they are too weak to matter: an anchor tied to a passage that is about to vanish would turn the
-continuation back on itself.
+A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the one that is
+passed most abruptly marks the kink. Excursions (and returns) shorter than a threshold are left to the
+ordinary mesh, where they are too weak to matter: an anchor tied to a passage that is about to vanish would
+turn the continuation back on itself.
 """
 
 from __future__ import annotations
@@ -19,12 +19,17 @@ from periodic.scheme import Array
 from periodic.system import System
 
 
+SAME = 1e-9
+"""Phases closer than this are the same."""
+
+
 @dataclass(frozen=True)
 class Crossing:
-    """A passage of a switch through a level along an orbit."""
+    """A passage of a switch through a level along an orbit; sharpness is the rate |ds/dtau| over the level."""
 
     anchor: Anchor
     phase: float
+    sharpness: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,11 +39,13 @@ class AnchorSettings:
     appear, vanish: shortest excursion (rad) that gets new anchors, and below which present ones are dropped.
     deepest: levels of a switch between 0 and this are not used; below the accuracy of the states themselves
     a level has no meaning.
+    exchange: how many times sharper another level must be to replace the one in use.
     """
 
     appear: float = 0.10
     vanish: float = 0.05
     deepest: float = 0.0
+    exchange: float = 5.0
 
     def __post_init__(self) -> None:
         if not 0 < self.vanish <= self.appear:
@@ -61,10 +68,11 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     for k, switch in enumerate(system.switches):
         above = values[:, k, None] > np.array(switch.levels)
         for i, j in np.argwhere(above[1:] != above[:-1]):
-            level = switch.levels[j]
+            level, step = switch.levels[j], tau[i + 1] - tau[i]
             begin, end = values[i, k] - level, values[i + 1, k] - level
-            phase = tau[i] + (tau[i + 1] - tau[i]) * begin / (begin - end)
-            found.append(Crossing(Anchor(k, 1 if end > begin else -1, level), float(phase)))
+            anchor = Anchor(k, 1 if end > begin else -1, level)
+            phase, rate = tau[i] + step * begin / (begin - end), abs(end - begin) / step
+            found.append(Crossing(anchor, float(phase), float(rate / level if level else rate)))
     return found
 
 
@@ -73,14 +81,33 @@ def wanted(system: System, orbit: Orbit, settings: AnchorSettings) -> list[Cross
     found = crossings(system, orbit)
     chosen: list[Crossing] = []
     for k, switch in enumerate(system.switches):
-        sharper: list[Crossing] = []
-        for level in sorted(v for v in switch.levels if not 0 < v < settings.deepest):
-            here = _merged([c for c in found if c.anchor.switch == k and c.anchor.level == level], orbit, settings)
-            for excursion in _excursions(here):
-                if not any(_inside(c, excursion, orbit.mesh.period) for c in sharper):
-                    sharper += excursion
-        chosen += [c for c in sharper if switch.direction in (0, c.anchor.direction)]
+        levels = [v for v in switch.levels if not 0 < v < settings.deepest]
+        kept = [
+            _merged([c for c in found if c.anchor.switch == k and c.anchor.level == level], orbit, settings)
+            for level in levels
+        ]
+        directions = (switch.direction,) if switch.direction else (-1, 1)
+        for excursion in _excursions(kept[0]) if kept else []:
+            chosen += [_sharpest(kept, excursion, d, orbit, settings) for d in directions]
     return sorted(chosen, key=lambda crossing: crossing.phase)
+
+
+def _sharpest(
+    kept: list[list[Crossing]], excursion: tuple[Crossing, Crossing], direction: int, orbit: Orbit, settings: AnchorSettings
+) -> Crossing:
+    """The passage within an excursion that marks the kink at its begin (-1) or end (+1)."""
+    edge = excursion[0] if direction < 0 else excursion[1]
+    candidates = []
+    for level in kept:
+        inside = [c for c in level if c.anchor.direction == direction and _inside(c, excursion, orbit.mesh.period)]
+        candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
+    best = max(candidates, key=lambda c: c.sharpness)
+    used = [c for c in candidates if _is_anchored(c, orbit) and settings.exchange * c.sharpness > best.sharpness]
+    return used[0] if used else best
+
+
+def _wrapped(phase: float, orbit: Orbit) -> float:
+    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)
 
 
 def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
@@ -91,7 +118,7 @@ def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
 
 def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
     begin, end = excursion[0].phase, excursion[1].phase
-    return bool(np.mod(crossing.phase - begin, period) <= np.mod(end - begin, period))
+    return bool(np.mod(crossing.phase - begin + SAME, period) <= np.mod(end - begin, period) + 2 * SAME)
 
 
 def _merged(found: list[Crossing], orbit: Orbit, settings: AnchorSettings) -> list[Crossing]:
@@ -120,8 +147,7 @@ def _is_anchored(crossing: Crossing, orbit: Orbit) -> bool:
 def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | None:
     """Return the index of the orbit's anchor that is this crossing, if one is."""
     for i, (anchor, phase) in enumerate(zip(orbit.mesh.anchors, orbit.phases, strict=True)):
-        distance = np.mod(crossing.phase - phase + np.pi, 2 * np.pi) - np.pi
-        if anchor == crossing.anchor and abs(distance) < tolerance:
+        if anchor == crossing.anchor and abs(_wrapped(crossing.phase - phase, orbit)) < tolerance:
             return i
     return None
 

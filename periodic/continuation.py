@@ -63,8 +63,8 @@ class Run:
         if isinstance(base, Outcome):
             self.stop = Stop.no_start(base)
             return
-        if base.error.orbit > task.settings.mesh.tolerance:
-            self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
+        if base.error.worst > task.settings.mesh.tolerance:
+            self.stop = Stop.inaccurate(base.error.worst, base.orbit.mesh.ntst)
             return
         yield describe(task, base, Label.END)
         ds, count = step.ds, 1
@@ -100,7 +100,7 @@ class Run:
         tolerance = self.task.settings.mesh.tolerance
         for _ in range(3):
             new = self._attempt(base, ds)
-            if isinstance(new, str) or new.error.orbit <= tolerance:
+            if isinstance(new, str) or new.error.worst <= tolerance:
                 return new if isinstance(new, str) else (base, new)
             moved = self._base_on_mesh_for(base, new)
             if isinstance(moved, Outcome):
@@ -139,13 +139,13 @@ class Run:
         task = self.task
         tolerance = task.settings.mesh.tolerance
         self._since_remesh += 1
-        due = self._since_remesh >= ADAPT_EVERY or not WINDOW * tolerance < new.error.orbit < 0.7 * tolerance
+        due = self._since_remesh >= ADAPT_EVERY or not WINDOW * tolerance < new.error.worst < 0.7 * tolerance
         if new.anchored and not due:
             return new
         better = remesh(task, new)
         if isinstance(better, Solved) and not is_settled(task, better):
             better = settle(task, better)
-        if isinstance(better, Outcome) or better.error.orbit > tolerance:
+        if isinstance(better, Outcome) or better.error.worst > tolerance:
             return new
         self._since_remesh = 0
         return better

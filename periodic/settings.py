@@ -37,7 +37,7 @@ class StepSettings:
 
     ds: float = 0.02
     ds_min: float = 1e-7
-    ds_max: float = 0.10
+    ds_max: float = 0.2
     turn: float = 0.8
     max_points: int = 5000
 

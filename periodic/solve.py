@@ -95,7 +95,7 @@ def settle(task: Task, solved: Solved | Outcome, *, fixed: bool = False) -> Solv
             return solved
         new = remesh(task, solved, fixed=fixed)
         if isinstance(new, Outcome):
-            return solved if solved.error.orbit <= task.settings.mesh.tolerance else new
+            return solved if solved.error.worst <= task.settings.mesh.tolerance else new
         solved = new
     return solved
 
@@ -104,7 +104,7 @@ def is_settled(task: Task, solved: Solved) -> bool:
     """Whether error estimate and anchors are as they should be, or cannot be bettered."""
     mesh = task.settings.mesh
     exhausted = solved.orbit.mesh.ntst >= mesh.ntst_max
-    return solved.anchored and (solved.error.orbit <= mesh.tolerance or exhausted)
+    return solved.anchored and (solved.error.worst <= mesh.tolerance or exhausted)
 
 
 def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
@@ -123,7 +123,7 @@ def wanted_ntst(task: Task, solved: Solved) -> int:
     """The number of intervals that brings the error estimate to its aim."""
     mesh = task.settings.mesh
     order = mesh.scheme.ncol + 1
-    ratio = solved.error.orbit / (AIM * mesh.tolerance) if np.isfinite(solved.error.orbit) else 4.0**order
+    ratio = solved.error.worst / (AIM * mesh.tolerance) if np.isfinite(solved.error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * solved.orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))
 

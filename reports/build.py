@@ -6,9 +6,7 @@ import math
 
 import symbolic as sym
 from reports.schema import DiscScene, Film, Oscillator, OscillatorScene, Scene
-
-RPM = 2 * math.pi / 60
-"""One rev/min in rad/s."""
+from reports.view import RPM
 
 
 def build(scene: Scene) -> sym.CompiledSystem:

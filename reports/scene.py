@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Iterator, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import tomllib
 from pydantic import BaseModel, ValidationError
 
 from reports.errors import InputError, listed, refused, shown
@@ -18,15 +19,20 @@ Override = tuple[str, str]
 
 
 def scene_names() -> list[str]:
-    """Return the names of the built-in scenes, the first one to try first."""
+    """Return the names of the built-in scenes, smaller numbers first."""
     folder = resources.files("reports").joinpath("scenes")
-    names = sorted(file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml"))
-    return sorted(names, key=lambda name: not name.startswith("vitrea79"))
+    names = [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
+    return sorted(names, key=lambda name: re.sub(r"\d+", lambda digits: digits[0].zfill(8), name))
 
 
 def short_name(source: str) -> str:
     """Return what to call a scene: its name, or that of its file without folder and ending."""
     return source if source in scene_names() else Path(source).stem
+
+
+def ends(scene: Scene) -> list[str]:
+    """Return the keys of the two ends of a scene's range."""
+    return [f"trace.{key}" for key in type(scene.trace).model_fields]
 
 
 def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
@@ -38,7 +44,9 @@ def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
     kind = tables.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         allowed = listed([shown(name) for name in KINDS])
-        raise InputError("kind", "is missing", f"it must be {allowed}") if kind is None else refused("kind", kind, allowed)
+        if kind is None:
+            raise InputError("kind", "is missing", f"it must be {allowed}")
+        raise refused("kind", kind, allowed)
     schema = KINDS[kind]
     for key, text in overrides:
         _override(tables, _path(schema, key), text)
@@ -51,13 +59,14 @@ def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
 def _text(source: str) -> str:
     if source in scene_names():
         return resources.files("reports").joinpath("scenes", f"{source}.toml").read_text("utf-8")
-    names = f"{', '.join(scene_names())} or the path of a TOML file"
+    names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
     try:
         return path.read_text("utf-8")
     except (FileNotFoundError, ValueError) as error:
         if path.is_file():
-            raise InputError("scene", f'file "{source}" is not text in UTF-8', "it must be a TOML file") from error
+            found = f'file "{source}" is not text in UTF-8'
+            raise InputError("scene", found, "it must be a TOML file") from error
         raise refused("scene", source, names) from None
     except OSError as error:
         found = f'file "{source}" cannot be read ({error.strerror})'
@@ -67,7 +76,7 @@ def _text(source: str) -> str:
 def _parsed(source: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         found = f'file "{source}" is not TOML: {error}'
         raise InputError("scene", found, "it must hold lines like preload = 810") from error
 
@@ -134,7 +143,8 @@ def _complaint(schema: type[BaseModel], error: ValidationError) -> InputError:
         known = listed(list(table.model_fields), "and")
         return InputError(key, "is not a key of the scene", f"{place} may have {known}")
     field = table.model_fields[path[-1]]
-    allowed = field.description or f"a table with {listed(list((_table(field.annotation) or table).model_fields), 'and')}"
+    inner = _table(field.annotation)
+    allowed = f"a table with {listed(list(inner.model_fields), 'and')}" if inner else str(field.description)
     if first["type"] == "missing":
         return InputError(key, "is missing", f"it must be {allowed}")
     return refused(key, first["input"], allowed)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import tomllib
 from functools import cache
 from importlib import resources
 from typing import Annotated, Any, Literal
 
-import tomllib
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from reports.errors import InputError, listed, refused
@@ -63,7 +63,7 @@ class Film(Table):
     piezoviscosity: float = number(1e-10, 1e-6, "m^2/N")
     beta: float = number(0.5, 200)
     squeeze: float | None = Field(
-        None, ge=1e-3, le=1e7, description='a number from 0.001 to 1e+07 (law = "quasistatic" is the film without)'
+        None, ge=1e-3, le=1e7, description='a number from 0.001 to 1e+07 (law = "quasistatic" has none)'
     )
 
     @model_validator(mode="before")
@@ -82,7 +82,7 @@ class Film(Table):
         if self.law == "squeeze" and self.squeeze is None:
             raise InputError("film.squeeze", "is missing", f"it must be {allowed}")
         if self.law == "quasistatic" and self.squeeze is not None:
-            raise InputError("film.squeeze", f"is {self.squeeze:g}", 'a film of law = "quasistatic" must have none')
+            raise InputError("film.squeeze", f"is {self.squeeze:g}", 'law = "quasistatic" must have none')
         return self
 
 
@@ -97,6 +97,11 @@ class SpeedRange(Table):
 
     from_rpm: Speed
     to_rpm: Speed
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Where the trace starts and ends."""
+        return self.from_rpm, self.to_rpm
 
     @model_validator(mode="after")
     def _two_ends(self) -> SpeedRange:
@@ -140,6 +145,11 @@ class FrequencyRange(Table):
     from_frequency: Frequency
     to_frequency: Frequency
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Where the trace starts and ends."""
+        return self.from_frequency, self.to_frequency
+
     @model_validator(mode="after")
     def _two_ends(self) -> FrequencyRange:
         if self.from_frequency == self.to_frequency:
@@ -162,7 +172,7 @@ KINDS: dict[str, type[DiscScene] | type[OscillatorScene]] = {"disc": DiscScene, 
 
 
 def _one_point(field: str, value: float, other: str) -> InputError:
-    return InputError(field, f"is {value:g}", f"it must differ from {other}, so that there is a range to trace")
+    return InputError(field, f"is {value:g}", f"it must differ from {other} so that there is a range")
 
 
 @cache

@@ -8,8 +8,8 @@ With A = a/delta0, H = h/delta0, H0 = h0/delta0, g = gamma omega delta0 and c = 
     x'   = v,   v' = c (exp(1.5 lam) - 1)              the discs
     lam' = r(lam) (H' + A cos(tau) - v)                derivative of the geometry, r = exp(-lam)
 
-Where contact is lost lam falls, within some exp(lam) of a radian, to the root of H' + A cos(tau) - v and then
-follows it.  That layer gets thinner than the spacing of doubles in tau: hence r = min(exp(-lam), 1e8). Caps of
+Where contact is lost lam falls, within ~exp(lam) of a radian, to the root of H' + A cos(tau) - v and then
+follows it.  That layer gets thinner than the spacing of doubles in tau, so r = min(exp(-lam), 1e8). Caps of
 1e6 to 1e10 give the same x p-p (to 1e-11 um) and multipliers (to 2e-9; from 1e8 on to 3e-12).
 
 Perturbations are carried as (dx, dv, dD), D = delta/delta0 = exp(lam): they stay of order 1 where contact is
@@ -209,7 +209,7 @@ def one_period(scene: Scene, state0: npt.ArrayLike, rtol: float = 1e-10, method:
     amp, h0, beta, g, c = scene.scaled
     x, v, lam = y[:3]
     sin, cos, inv, acc = amp * np.sin(t), amp * np.cos(t), np.exp(-lam), c * np.expm1(1.5 * lam)
-    film = h0 + np.expm1(lam) - sin + x
+    film = np.maximum(h0 + np.expm1(lam) - sin + x, 1e-6 * h0)
     rate = -(beta * np.log(film / h0) + 1.5 * lam) / g
     slope, free = inv * (rate + cos - v), inv > RATE_CAP
     rate2 = np.where(free, acc + sin, -(beta * rate / film + 1.5 * slope) / g)

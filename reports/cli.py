@@ -1,0 +1,179 @@
+"""The command line: `orbitrace scenes` and `orbitrace trace SCENE`.
+
+What is imported here is small; each command imports what it needs, so that --help is quick.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from typer._click.exceptions import ClickException
+
+from reports.errors import InputError, refused
+
+if TYPE_CHECKING:
+    from periodic import Branch
+    from reports import run
+
+DONE, BAD_INPUT, STOPPED_EARLY, INTERRUPTED = 0, 2, 3, 130
+"""Exit codes; the last is a shell's own for a program that Ctrl-C ended."""
+
+app = typer.Typer(
+    help="Traces the periodic orbits of nonlinear vibrating systems through resonance.",
+    epilog="To begin with: orbitrace trace vitrea79-810N",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+
+class Effort(Enum):
+    """The names of `periodic.Accuracy`, which takes longer to import."""
+
+    DRAFT = "draft"
+    STANDARD = "standard"
+    FINE = "fine"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; bad input ends in one sentence on standard error."""
+    given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    try:
+        return app(args=given, prog_name="orbitrace", standalone_mode=False) or DONE
+    except InputError as error:
+        sentence = str(error)
+    except ClickException as error:
+        sentence = " ".join(error.format_message().replace("Value error, ", "").split())
+    _say(sentence)
+    return BAD_INPUT
+
+
+def _say(sentence: str) -> None:
+    typer.echo(f"orbitrace: {sentence}", err=True)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"orbitrace {version('orbitrace')}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+]
+Source = Annotated[str, typer.Argument(metavar="SCENE", help="A built-in scene or a TOML file.")]
+From = Annotated[
+    str | None, typer.Option("--from", metavar="RPM", help="Where to start; rad/s for an oscillator.")
+]
+To = Annotated[str | None, typer.Option("--to", metavar="RPM", help="Where to end.")]
+At = Annotated[
+    str | None,
+    typer.Option("--at", metavar="RPM,RPM,...", help="Values that get a point (UZ) on every sheet."),
+]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change the scene, as in --set film.beta=20."),
+]
+Dial = Annotated[Effort, typer.Option("--accuracy", help="How accurate every orbit is.")]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Where the files go. [default: orbitrace-out/SCENE]"),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
+
+
+@app.callback()
+def _common(version: Version = False) -> None:
+    pass
+
+
+@app.command()
+def scenes() -> None:
+    """List the built-in scenes."""
+    from reports.scene import load, scene_names
+
+    names = scene_names()
+    width = max(map(len, names))
+    for name in names:
+        typer.echo(f"{name:{width}}  {load(name).title}")
+
+
+@app.command()
+def trace(
+    scene: Source,
+    begin: From = None,
+    end: To = None,
+    at: At = None,
+    changes: Changes = None,
+    accuracy: Dial = Effort.STANDARD,
+    out: Out = None,
+    as_json: Json = False,
+) -> int:
+    """Trace the branch of periodic orbits of a scene and find its folds.
+
+    Writes branch.nc, branch.csv, branch.json and branch.png. Exit code 0: done; 2: bad input; 3: stopped
+    early for a numerical reason, with what was traced saved. Ctrl-C saves what is there.
+    """
+    from reports import run
+    from reports.files import writable
+    from reports.scene import short_name
+
+    overrides = tuple(_pair(change) for change in changes or ())
+    task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
+    name = short_name(scene)
+    folder = writable(out or Path("orbitrace-out", name))
+    try:
+        branch = _traced(name, task, accuracy)
+    except KeyboardInterrupt:
+        _say("interrupted before the first point; nothing was saved")
+        return INTERRUPTED
+    _report(name, task, branch, folder, as_json)
+    return _verdict(branch, folder)
+
+
+def _pair(change: str) -> tuple[str, str]:
+    key, equals, value = change.partition("=")
+    if not (key and equals):
+        raise refused("--set", change, "KEY=VALUE, as in film.beta=20")
+    return key.strip(), value.strip()
+
+
+def _traced(name: str, task: run.Task, accuracy: Effort) -> Branch:
+    from periodic import Accuracy
+    from reports import console, run
+
+    with console.progress(name, task.scene) as progress:
+        return run.trace(task, Accuracy[accuracy.name], progress)
+
+
+def _report(name: str, task: run.Task, branch: Branch, folder: Path, as_json: bool) -> None:
+    from reports import console, run, summary
+
+    files = run.save(folder, name, task.scene, branch)
+    if as_json:
+        typer.echo(summary.json_text(name, task.scene, branch), nl=False)
+    else:
+        console.show(task.scene, branch, files)
+
+
+def _verdict(branch: Branch, folder: Path) -> int:
+    """Return the exit code of a branch and say on standard error why it is not done."""
+    from periodic import Reason
+
+    saved = f"the {len(branch)} points so far are in {folder}"
+    stops = [stop for stop in (branch.stop, branch.stop_backwards) if stop is not None]
+    if any(stop.reason is Reason.INTERRUPTED for stop in stops):
+        _say(f"interrupted; {saved}")
+        return INTERRUPTED
+    for stop in stops:
+        if stop.reason.numerical:
+            _say(f"stopped early ({stop}); {saved}")
+            return STOPPED_EARLY
+    return DONE

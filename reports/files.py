@@ -1,0 +1,53 @@
+"""Writing results: every file is complete or not there, and a directory is tried before the work starts."""
+
+from __future__ import annotations
+
+import os
+import signal
+import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from reports.errors import InputError
+
+
+def writable(folder: Path) -> Path:
+    """Make a directory if need be and return it. Raises InputError if no file can be made in it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except (OSError, ValueError) as error:
+        raise unwritable(folder, error) from error
+
+
+def unwritable(folder: Path, error: OSError | ValueError) -> InputError:
+    """Return the error of a directory that does not take files."""
+    reason = getattr(error, "strerror", None) or str(error)
+    return InputError("--out", f'is "{folder}" ({reason})', "it must be a directory that can be written to")
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a place to write to that becomes `path` in one move when the block ends without an error."""
+    part = path.with_name(f".{os.getpid()}-{path.name}")
+    try:
+        yield part
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C wait no longer than the block: it is not heard inside."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

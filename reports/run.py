@@ -1,0 +1,108 @@
+"""One trace of a scene, from validated input to files on disk."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from reports.errors import InputError, refused
+from reports.files import replacing, uninterrupted, unwritable
+from reports.scene import Override, ends, load
+from reports.schema import Scene
+from reports.summary import csv_text, json_text
+from reports.view import view_of
+
+if TYPE_CHECKING:
+    from periodic import Accuracy, Branch, Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What is asked for, as text: the range replaces the scene's own, `at` is a list with commas."""
+
+    source: str
+    begin: str | None = None
+    end: str | None = None
+    at: str | None = None
+    overrides: tuple[Override, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """A validated request; `at` in the units of the scene's view."""
+
+    scene: Scene
+    at: tuple[float, ...]
+
+
+def validated(request: Request) -> Task:
+    """Return the scene and points that a request asks for. Raises InputError, naming the option at fault."""
+    scene = load(request.source, request.overrides)
+    options = dict(zip(ends(scene), ("--from", "--to"), strict=True))
+    given = {
+        key: text for key, text in zip(options, (request.begin, request.end), strict=True) if text is not None
+    }
+    if given:
+        try:
+            scene = load(request.source, (*request.overrides, *given.items()))
+        except InputError as error:
+            raise error.renamed({key: options[key] for key in given}) from None
+    return Task(scene=scene, at=_points(scene, request.at))
+
+
+def _points(scene: Scene, text: str | None) -> tuple[float, ...]:
+    """Return the numbers of a comma-separated list that all lie in the scene's range."""
+    low, high = sorted(scene.trace.ends)
+    values = [_number(item) for item in text.split(",")] if text is not None else []
+    if not all(low <= value <= high for value in values):
+        unit = view_of(scene).unit_name
+        raise refused("--at", text, f"numbers from {low:g} to {high:g} ({unit}) with commas between them")
+    return tuple(sorted(set(values)))
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def trace(task: Task, accuracy: Accuracy, progress: Callable[[Point], None] | None = None) -> Branch:
+    """Build the system of a scene and trace its branch over its range."""
+    import periodic
+    from reports.build import build
+
+    view = view_of(task.scene)
+    begin, end = (value * view.unit for value in task.scene.trace.ends)
+    return periodic.trace(
+        build(task.scene),
+        view.parameter,
+        (min(begin, end), max(begin, end)),
+        start=begin,
+        at=[value * view.unit for value in task.at],
+        accuracy=accuracy,
+        progress=progress,
+    )
+
+
+def save(folder: Path, name: str, scene: Scene, branch: Branch) -> list[Path]:
+    """Write the four files of a branch and return them. Raises InputError if one cannot be written."""
+    from reports.picture import draw
+
+    writers: dict[str, Callable[[Path], object]] = {
+        "branch.nc": branch.save,
+        "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
+        "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
+        "branch.png": lambda path: draw(path, scene, branch),
+    }
+    with uninterrupted():
+        try:
+            for file, write in writers.items():
+                with replacing(folder / file) as part:
+                    write(part)
+        except OSError as error:
+            raise unwritable(folder, error) from error
+    return [folder / file for file in writers]

@@ -1,0 +1,128 @@
+"""What people read of a branch: the columns of its table, in the units of the field.
+
+A disc is read in rev/min, micrometres and newtons, an oscillator in SI.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reports.schema import DiscScene, Scene
+
+if TYPE_CHECKING:
+    from periodic import Point
+
+MICRO = 1e-6
+RPM = 2 * math.pi / 60
+"""rad/s in one rev/min."""
+
+Cell = float | bool | str | None
+"""None where the scene has no such quantity."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A quantity of a point: its name in files, and its heading in a table for people."""
+
+    name: str
+    value: Callable[[Point], Cell]
+    heading: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """How the branches of one kind of scene are read.
+
+    `unit` is the SI value of one shown unit of the continuation parameter, its column the first. `columns`
+    go to the CSV file; those with a heading are told of special points too. `height` is what the picture
+    plots.
+    """
+
+    parameter: str
+    unit: float
+    columns: tuple[Column, ...]
+    height: Column
+    axes: tuple[str, str]
+    unit_name: str
+
+    @property
+    def abscissa(self) -> Column:
+        """The column of the continuation parameter."""
+        return self.columns[0]
+
+    @property
+    def told(self) -> tuple[Column, ...]:
+        """The columns that special points are described by."""
+        return tuple(column for column in self.columns if column.heading)
+
+
+def view_of(scene: Scene) -> View:
+    """Return how branches of a scene are read."""
+    return DISC if isinstance(scene, DiscScene) else OSCILLATOR
+
+
+def _parameter(unit: float) -> Callable[[Point], Cell]:
+    # 14 digits: the conversion to SI and back costs the last one, and 285 rpm should read 285.
+    return lambda point: float(f"{point.parameter / unit:.14g}")
+
+
+def _ripple(output: str, unit: float) -> Callable[[Point], Cell]:
+    return lambda point: point.peak_to_peak(output) / unit if output in point.maximum else None
+
+
+def _least(output: str, unit: float) -> Callable[[Point], Cell]:
+    return lambda point: point.minimum[output] / unit if output in point.minimum else None
+
+
+def _most(output: str, unit: float) -> Callable[[Point], Cell]:
+    return lambda point: point.maximum[output] / unit if output in point.maximum else None
+
+
+LABEL = Column(name="label", heading="label", value=lambda point: point.label.value)
+STABLE = Column(name="stable", heading="stable", value=lambda point: point.stable)
+MULTIPLIER = Column(name="multiplier_max", value=lambda point: float(np.abs(point.multipliers[0])))
+ERROR = Column(name="error_estimate", value=lambda point: point.error.orbit)
+SWING = Column(name="x_pp_um", heading="x p-p (µm)", value=_ripple("x", MICRO))
+LARGEST = Column(name="x_max", heading="x max (m)", value=_most("x", 1.0))
+
+DISC = View(
+    parameter="speed",
+    unit=RPM,
+    columns=(
+        Column(name="speed_rpm", heading="speed (rev/min)", value=_parameter(RPM)),
+        SWING,
+        Column(name="film_pp_um", heading="film p-p (µm)", value=_ripple("film", MICRO)),
+        Column(name="film_min_um", value=_least("film", MICRO)),
+        Column(name="deflection_pp_um", value=_ripple("deflection", MICRO)),
+        Column(name="load_min_N", value=_least("load", 1.0)),
+        Column(name="load_max_N", heading="load max (N)", value=_most("load", 1.0)),
+        MULTIPLIER,
+        STABLE,
+        LABEL,
+        ERROR,
+    ),
+    height=SWING,
+    axes=("speed (rev/min)", "x peak to peak (µm)"),
+    unit_name="rev/min",
+)
+
+OSCILLATOR = View(
+    parameter="Omega",
+    unit=1.0,
+    columns=(
+        Column(name="frequency", heading="frequency (rad/s)", value=_parameter(1.0)),
+        LARGEST,
+        MULTIPLIER,
+        STABLE,
+        LABEL,
+        ERROR,
+    ),
+    height=LARGEST,
+    axes=("frequency (rad/s)", "largest x (m)"),
+    unit_name="rad/s",
+)
