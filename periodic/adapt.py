@@ -1,4 +1,4 @@
-"""Mesh selection: intervals are laid so that each carries the same share of the interpolation error.
+"""Mesh selection: intervals are halved until each carries a like share of the interpolation error.
 
 The (ncol+1)-th derivative is estimated from the jumps of the ncol-th between neighbours of one segment
 (de Boor; Russell & Christiansen 1978), never across an anchor.
@@ -17,6 +17,13 @@ FLOOR = 0.2
 
 MIN_INTERVALS = 4
 """Least number of intervals in a segment."""
+
+
+MAX_HALVINGS = 40
+"""Bound on how often a segment is halved."""
+
+SPLIT = 1.4
+"""An interval is halved where it would hold more than this many intervals of the wanted density."""
 
 
 def density(orbit: Orbit) -> Array:
@@ -48,7 +55,12 @@ def _jumps(top: Array, width: Array, closed: bool) -> Array:
 
 
 def redistribute(orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: Array) -> Mesh:
-    """Return a mesh of about `ntst` intervals for an orbit, with the given anchors at `phases`."""
+    """Return a mesh of about `ntst` intervals for an orbit, with the given anchors at `phases`.
+
+    Each segment is halved again and again where the density asks for it. Its intervals are therefore the
+    same from one mesh to the next wherever the density has hardly changed, and the orbit is carried over
+    without any error there: what Newton needs close to a kink.
+    """
     wanted = density(orbit)
     period = orbit.mesh.period
     edges = np.append(orbit.grid.left, orbit.grid.left[0] + period)
@@ -57,11 +69,13 @@ def redistribute(orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: A
     ends = np.append(begins[1:], begins[0] + period)
     breaks = []
     for begin, end in zip(begins, ends, strict=True):
-        levels = _cumulative(np.array([begin, end]), edges, total)
-        count = max(MIN_INTERVALS, round(ntst * (levels[1] - levels[0]) / total[-1]))
-        tau = _inverse(np.linspace(levels[0], levels[1], count + 1), edges, total)
-        sigma = (tau - begin) / (end - begin)
-        sigma[0], sigma[-1] = 0.0, 1.0
+        sigma = np.linspace(0.0, 1.0, MIN_INTERVALS + 1)
+        for _ in range(MAX_HALVINGS):
+            share = np.diff(_cumulative(begin + sigma * (end - begin), edges, total)) * ntst / total[-1]
+            middle = (sigma[1:] + sigma[:-1])[share > SPLIT] / 2
+            if len(middle) == 0:
+                break
+            sigma = np.sort(np.append(sigma, middle))
         breaks.append(sigma)
     return Mesh(orbit.mesh.scheme, tuple(breaks), anchors, period)
 
@@ -70,8 +84,3 @@ def _cumulative(tau: Array, edges: Array, total: Array) -> Array:
     """Integral of the density from edges[0] to tau, continued periodically."""
     turns, rest = np.divmod(tau - edges[0], edges[-1] - edges[0])
     return turns * total[-1] + np.interp(rest + edges[0], edges, total)
-
-
-def _inverse(level: Array, edges: Array, total: Array) -> Array:
-    turns, rest = np.divmod(level, total[-1])
-    return turns * (edges[-1] - edges[0]) + np.interp(rest, total, edges)

@@ -37,50 +37,71 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
     matrix is singular.
     """
-    columns, residual = _reduced_rows(system, orbit, free)
-    reduced, algebraic = columns
+    rows, residual = _rows(system, orbit, free)
     count, ncol, n = orbit.stages.shape
-    rate, state = reduced[..., 1 : 1 + n], reduced[..., 1 + n : 1 + 2 * n]
+    reduced, algebraic = eliminate(rows, n)
+    width = reduced.shape[2]
+    local = reduced.reshape(count, ncol, n, width)
     weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
-    matrix = rate[:, :, :, None, :] * weights[:, :, None, 1:, None]
+    start = local[..., 1 : 1 + n] * weights[:, :, :1, None]
+    right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
+    stages = solve_stages(local, right, weights)
+    return Condensed(_steps(orbit, stages), stages, algebraic.reshape(count, ncol, -1, width), residual)
+
+
+def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
+    """Eliminate the unknowns z point by point through the algebraic rows.
+
+    Returns the differential rows without z, (points, n, w), and -dz as a map of the columns, (points, m, w).
+    """
+    algebraic = np.linalg.solve(rows.d_algebraic[:, n:], rows.columns[:, n:])
+    return rows.columns[:, :n] - rows.d_algebraic[:, :n] @ algebraic, algebraic
+
+
+def solve_stages(local: Array, right: Array, weights: Array) -> Array:
+    """Solve each interval's rows for its stages: -right (N, ncol, n, w) over the stage matrix."""
+    count, ncol, n, _ = local.shape
+    matrix = local[:, :, :, None, 1 : 1 + n] * weights[:, :, None, 1:, None]
     each = np.arange(ncol)
-    matrix[:, each, :, each, :] += np.moveaxis(state, 1, 0)
-    right = -np.concatenate(
-        [reduced[..., :1], rate * weights[:, :, :1, None], reduced[..., 1 + 2 * n :]], axis=3
-    )
+    matrix[:, each, :, each, :] += np.moveaxis(local[..., 1 + n : 1 + 2 * n], 1, 0)
     size = ncol * n
-    solution = np.linalg.solve(matrix.reshape(count, size, size), right.reshape(count, size, -1))
-    stages = solution.reshape(count, ncol, n, -1)
-    return Condensed(_steps(orbit, stages), stages, algebraic, residual)
+    solution = np.linalg.solve(matrix.reshape(count, size, size), -right.reshape(count, size, -1))
+    return solution.reshape(count, ncol, n, -1)
 
 
-def _reduced_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[tuple[Array, Array], float]:
-    """Columns (residual, d rate, d state, dy) of the differential rows once z is eliminated."""
+@dataclass(frozen=True)
+class Rows:
+    """The linearised equations at all points: columns (points, n+m, 1+2n+q) are residual, d rate, d state, dy.
+
+    d_algebraic (points, n+m, m).
+    """
+
+    columns: Array
+    d_algebraic: Array
+
+
+def _rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, float]:
+    """Linearise at the collocation points of an orbit; also the largest residual."""
     count, ncol, n = orbit.stages.shape
     tau, rate = orbit.stage_phases, orbit.knot_rates[:, 1:]
-    shape = (count * ncol, -1)
     line = system.linearise(
-        rate.reshape(shape),
-        orbit.stages.reshape(shape),
+        rate.reshape(-1, n),
+        orbit.stages.reshape(-1, n),
         orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
         tau.ravel(),
         orbit.parameter,
         free,
     )
-    residual = float(np.abs(line.residual).max())
-    if not np.isfinite(residual):
-        raise FloatingPointError("the residual is not finite")
-    columns = np.concatenate(
-        [line.residual[:, :, None], line.d_rate, line.d_state, _phase_columns(orbit, line.d_rate, line.d_phase),
-         line.d_parameter],
-        axis=2,
-    )  # fmt: skip
-    if not np.isfinite(columns).all():
-        raise FloatingPointError("a derivative of the residual is not finite")
-    algebraic = np.linalg.solve(line.d_algebraic[:, n:], columns[:, n:])
-    reduced = columns[:, :n] - line.d_algebraic[:, :n] @ algebraic
-    m, width = algebraic.shape[1:]
-    return (reduced.reshape(count, ncol, n, width), algebraic.reshape(count, ncol, m, width)), residual
+    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
+    columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
+    return finite_rows(np.concatenate(columns, axis=2), line.d_algebraic)
+
+
+def finite_rows(columns: Array, d_algebraic: Array) -> tuple[Rows, float]:
+    """Return rows and their largest residual. Raises FloatingPointError where they are not finite."""
+    if not (np.isfinite(columns).all() and np.isfinite(d_algebraic).all()):
+        raise FloatingPointError("the residual or a derivative is not finite")
+    return Rows(columns, d_algebraic), float(np.abs(columns[:, :, 0]).max())
 
 
 def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:

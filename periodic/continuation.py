@@ -1,9 +1,10 @@
 """Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
 
 Each step solves on the plane across the tangent; special points inside it are located on planes between.
-A step is rejected where Newton fails, where the corrector moves too far, where the tangent turns too much
-(a jump to another branch), where an anchor is past the end of its excursion, or where the error estimate
-exceeds the tolerance on a mesh made for the new orbit.
+A step is rejected where Newton fails, where its end is not where its two tangents lead (a jump to another
+branch), where the tangent turns too much, where the multipliers pass a resonance unresolved, where an anchor
+is past the end of its excursion, or where the error estimate exceeds the tolerance on a mesh made for the new
+orbit.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from periodic import rotation
 from periodic.closure import Plane
 from periodic.locate import special_points
-from periodic.dense import consistent
+from periodic.relax import relax
 from periodic.newton import Outcome, at_fixed_phase
 from periodic.orbit import Orbit, transfer
 from periodic.adapt import redistribute
@@ -41,8 +43,8 @@ WINDOW = 1 / 60
 ADAPT_EVERY = 4
 """... and every so many steps."""
 
-FAR = 0.5
-"""Largest correction of a prediction, as a part of the step."""
+BENT = 0.1
+"""Largest distance of a step's end from the arc that its two tangents make, as a part of the step."""
 
 
 @dataclass
@@ -117,21 +119,27 @@ class Run:
         self.iterations += new.correction.iterations
         if task.metric.dot(new.orbit, base.tangent, new.tangent) < task.settings.step.turn:
             return "the branch turns too sharply for the step"
-        if self._distance(guess, new.orbit) > FAR * ds:
-            return "the corrector moved too far from the prediction"
+        if self._bend(base, new, ds) > BENT:
+            return "the step does not follow its tangents"
+        if not rotation.is_resolved(base.correction.monodromy, new.correction.monodromy):
+            return "the multipliers turn too far past 1 for the step"
         return new
 
-    def _distance(self, a: Orbit, b: Orbit) -> float:
-        profile = at_fixed_phase(a, b.nodes - a.nodes, b.phases - a.phases)
-        jump = float(b.parameter[self.task.index] - a.parameter[self.task.index])
+    def _bend(self, base: Solved, new: Solved, ds: float) -> float:
+        """How far the step's end lies from where the mean of the two tangents leads, as a part of ds."""
+        a, b = base.orbit, new.orbit
+        mean = (base.tangent.profile + new.tangent.profile) / 2
+        profile = at_fixed_phase(a, b.nodes - a.nodes, b.phases - a.phases) - ds * mean
+        slope = (base.tangent.parameter + new.tangent.parameter) / 2
+        jump = float(b.parameter[self.task.index] - a.parameter[self.task.index]) - ds * slope
         difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
-        return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
+        return float(np.sqrt(self.task.metric.dot(a, difference, difference))) / ds
 
     def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved | Outcome:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
         task, old = self.task, base.orbit
         mesh = redistribute(new.orbit, wanted_ntst(task, new), new.orbit.mesh.anchors, new.orbit.phases)
-        orbit = consistent(task.system, transfer(old, mesh, old.phases))
+        orbit = relax(task.system, transfer(old, mesh, old.phases))
         return on_plane(task, orbit, Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index))
 
     def _prepared(self, new: Solved) -> Solved:

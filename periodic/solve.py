@@ -11,7 +11,7 @@ from periodic.accuracy import ErrorEstimate, estimate
 from periodic.adapt import redistribute
 from periodic.anchors import Crossing
 from periodic.closure import Direction, Metric, Plane
-from periodic.dense import consistent
+from periodic.relax import relax
 from periodic.newton import Correction, Outcome, correct, moved
 from periodic.orbit import Orbit, transfer
 from periodic.settings import Settings
@@ -112,7 +112,7 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases)
-    orbit = consistent(task.system, transfer(old, mesh, phases))
+    orbit = relax(task.system, transfer(old, mesh, phases))
     if fixed:
         return at_parameter(task, orbit, float(np.sign(solved.tangent.parameter)) or 1.0)
     direction = on_mesh(solved.tangent, old, orbit)

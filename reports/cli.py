@@ -70,12 +70,12 @@ Version = Annotated[
 ]
 Source = Annotated[str, typer.Argument(metavar="SCENE", help="A built-in scene or a TOML file.")]
 From = Annotated[
-    str | None, typer.Option("--from", metavar="RPM", help="Where to start; rad/s for an oscillator.")
+    str | None, typer.Option("--from", metavar="RPM", help="Where to start (oscillator: rad/s).")
 ]
 To = Annotated[str | None, typer.Option("--to", metavar="RPM", help="Where to end.")]
 At = Annotated[
     str | None,
-    typer.Option("--at", metavar="RPM,RPM,...", help="Values that get a point (UZ) on every sheet."),
+    typer.Option("--at", metavar="RPM,RPM,...", help="Values that get a point on every sheet."),
 ]
 Changes = Annotated[
     list[str] | None,
@@ -84,7 +84,7 @@ Changes = Annotated[
 Dial = Annotated[Effort, typer.Option("--accuracy", help="How accurate every orbit is.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Where the files go. [default: orbitrace-out/SCENE]"),
+    typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
 
@@ -123,18 +123,20 @@ def trace(
     """
     from reports import run
     from reports.files import writable
+    from reports.interrupts import heard_once
     from reports.scene import short_name
 
     overrides = tuple(_pair(change) for change in changes or ())
     task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
     name = short_name(scene)
     folder = writable(out or Path("orbitrace-out", name))
-    try:
-        branch = _traced(name, task, accuracy)
-    except KeyboardInterrupt:
-        _say("interrupted before the first point; nothing was saved")
-        return INTERRUPTED
-    _report(name, task, branch, folder, as_json)
+    with heard_once():
+        try:
+            branch = _traced(name, task, accuracy)
+        except KeyboardInterrupt:
+            _say("interrupted before the first point; nothing was saved")
+            return INTERRUPTED
+        _report(name, task, branch, folder, as_json)
     return _verdict(branch, folder)
 
 
@@ -146,11 +148,14 @@ def _pair(change: str) -> tuple[str, str]:
 
 
 def _traced(name: str, task: run.Task, accuracy: Effort) -> Branch:
-    from periodic import Accuracy
+    from periodic import Accuracy, Reason
     from reports import console, run
 
     with console.progress(name, task.scene) as progress:
-        return run.trace(task, Accuracy[accuracy.name], progress)
+        branch = run.trace(task, Accuracy[accuracy.name], progress)
+    if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
+        raise KeyboardInterrupt
+    return branch
 
 
 def _report(name: str, task: run.Task, branch: Branch, folder: Path, as_json: bool) -> None:
@@ -167,13 +172,12 @@ def _verdict(branch: Branch, folder: Path) -> int:
     """Return the exit code of a branch and say on standard error why it is not done."""
     from periodic import Reason
 
-    saved = f"the {len(branch)} points so far are in {folder}"
-    stops = [stop for stop in (branch.stop, branch.stop_backwards) if stop is not None]
-    if any(stop.reason is Reason.INTERRUPTED for stop in stops):
-        _say(f"interrupted; {saved}")
+    stop = branch.stop
+    if stop.reason is Reason.INTERRUPTED:
+        _say(f"interrupted; the {len(branch)} points so far are in {folder}")
         return INTERRUPTED
-    for stop in stops:
-        if stop.reason.numerical:
-            _say(f"stopped early ({stop}); {saved}")
-            return STOPPED_EARLY
+    if stop.reason.numerical:
+        kept = f"the {len(branch)} points so far are in {folder}" if len(branch) else "no point was found"
+        _say(f"stopped early ({stop}); {kept}")
+        return STOPPED_EARLY
     return DONE

@@ -28,7 +28,7 @@ def progress(name: str, scene: Scene) -> Iterator[Callable[[Point], None] | None
     from rich.console import Console
 
     view = view_of(scene)
-    with Console(stderr=True, highlight=False).status(f"tracing {name}") as status:
+    with Console(stderr=True, highlight=False, markup=False, emoji=False).status(f"tracing {name}") as status:
         count = 0
 
         def show(point: Point) -> None:
@@ -53,8 +53,7 @@ def show(scene: Scene, branch: Branch, files: Sequence[Path]) -> None:
         _rich(headings, rows) if sys.stdout.isatty() else _plain(headings, rows)
     count, steps = len(branch), branch.newton_iterations
     print(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
-    for stop in filter(None, (branch.stop_backwards, branch.stop)):
-        print(f"stop: {stop}")
+    print(f"stop: {branch.stop}")
     print("written: " + ", ".join(str(file) for file in files))
 
 

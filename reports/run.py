@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.errors import InputError, refused
-from reports.files import replacing, uninterrupted, unwritable
+from reports.files import replacing, unwritable
+from reports.interrupts import unheard
 from reports.scene import Override, ends, load
 from reports.schema import Scene
 from reports.summary import csv_text, json_text
@@ -98,7 +99,7 @@ def save(folder: Path, name: str, scene: Scene, branch: Branch) -> list[Path]:
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
         "branch.png": lambda path: draw(path, scene, branch),
     }
-    with uninterrupted():
+    with unheard():
         try:
             for file, write in writers.items():
                 with replacing(folder / file) as part:

@@ -62,7 +62,7 @@ def _text(source: str) -> str:
     names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
     try:
-        return path.read_text("utf-8")
+        return path.read_text("utf-8-sig")
     except (FileNotFoundError, ValueError) as error:
         if path.is_file():
             found = f'file "{source}" is not text in UTF-8'

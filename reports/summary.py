@@ -6,6 +6,8 @@ import csv
 import io
 import json
 import math
+from importlib.metadata import version
+from platform import python_version
 from typing import TYPE_CHECKING, Any
 
 from reports.schema import Scene
@@ -32,15 +34,8 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
         "elapsed_s": branch.elapsed,
         "stop": branch.stop.reason.value,
         "stop_detail": branch.stop.detail,
-        **_backwards(branch),
-        "versions": dict(branch.versions),
+        "versions": {**branch.versions, "casadi": version("casadi"), "python": python_version()},
     }
-
-
-def _backwards(branch: Branch) -> dict[str, str]:
-    """The second reason of a branch that was traced both ways from a start inside the range."""
-    stop = branch.stop_backwards
-    return {} if stop is None else {"stop_backwards": stop.reason.value, "stop_backwards_detail": stop.detail}
 
 
 def _told(view: View, point: Point) -> dict[str, Any]:
@@ -79,7 +74,6 @@ def special_table(scene: Scene, branch: Branch) -> tuple[list[str], list[list[st
     """Return headings and rows of the special points for people, without what the scene does not have."""
     points = branch.special_points
     columns = [c for c in view_of(scene).told if any(c.value(point) is not None for point in points)]
-    columns.sort(key=lambda column: column.name != "label")
     return [c.heading for c in columns], [[_read(c, point) for c in columns] for point in points]
 
 

@@ -57,8 +57,9 @@ class View:
 
     @property
     def told(self) -> tuple[Column, ...]:
-        """The columns that special points are described by."""
-        return tuple(column for column in self.columns if column.heading)
+        """The columns that special points are described by, the label first."""
+        told = [column for column in self.columns if column.heading]
+        return tuple(sorted(told, key=lambda column: column is not LABEL))
 
 
 def view_of(scene: Scene) -> View:

@@ -1,0 +1,126 @@
+"""The command line where things go wrong: sentences, exit codes and what is saved."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import periodic as per
+from reports.cli import main
+from reports.files import replacing
+
+Capture = pytest.CaptureFixture[str]
+Patch = pytest.MonkeyPatch
+
+REFUSALS = {
+    "trace vitrea80": 'scene is "vitrea80"; it must be one of dry-810N',
+    "trace duffing --set mess=1": '--set key is "mess"; it must be one of oscillator.mass',
+    "trace duffing --set force": '--set is "force"; it must be KEY=VALUE',
+    "trace duffing --set force=-1": "oscillator.force is -1; it must be a number from 1e-12 to 1e+12 (N)",
+    "trace vitrea79-810N --set lubricant=castor": 'film.lubricant is "castor"; it must be turbo33 or',
+    "trace duffing --from -1": "--from is -1; it must be a number from 1e-09 to 1e+09 (rad/s)",
+    "trace duffing --from nan": "--from is nan; it must be a number from",
+    "trace dry-810N --to inf": "--to is inf; it must be a number from 0.1 to 100000 (rev/min)",
+    "trace dry-810N --to fast": '--to is "fast"; it must be a number from',
+    "trace dry-810N --from 100": "trace.to_rpm is 100; it must differ from --from so that there is a range",
+    "trace dry-810N --from 300 --to 300": "--to is 300; it must differ from --from so that there is a range",
+    "trace dry-810N --at 50": '--at is "50"; it must be numbers from 100 to 500 (rev/min) with commas',
+    "trace dry-810N --at 200,,300": '--at is "200,,300"; it must be numbers from',
+    "trace dry-810N --at nan": '--at is "nan"; it must be numbers from',
+    "trace dry-810N --accuracy best": "Invalid value for '--accuracy': 'best' is not one of 'draft', ",
+    "trace": "Missing argument 'SCENE'.",
+    "trace duffing --fast": "No such option: --fast",
+    "paint": "No such command 'paint'.",
+}
+
+
+def refusal(capsys: Capture, *arguments: str) -> str:
+    """Return the one line with which a command line is refused."""
+    assert main(arguments) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("orbitrace: ") and told.err.count("\n") == 1
+    return told.err.removeprefix("orbitrace: ").rstrip()
+
+
+@pytest.mark.parametrize("arguments", REFUSALS)
+def test_refusal(arguments: str, capsys: Capture) -> None:
+    """Assert that bad input ends in exit code 2 and one sentence, before anything is written."""
+    assert refusal(capsys, *arguments.split()).startswith(REFUSALS[arguments])
+
+
+def test_unwritable_folder(tmp_path: Path, capsys: Capture) -> None:
+    """Assert that a folder that cannot be made is refused before the work starts."""
+    (tmp_path / "file").touch()
+    folder = tmp_path / "file" / "out"
+    said = refusal(capsys, "trace", "duffing", "--out", str(folder))
+    assert said == f'--out is "{folder}" (Not a directory); it must be a directory that can be written to'
+
+
+def changed(monkeypatch: Patch, change: Callable[..., per.Branch]) -> None:
+    """Put `change(trace, *args, **kwargs)` in the place of `periodic.trace`."""
+    original = per.trace
+    monkeypatch.setattr(per, "trace", lambda *args, **kwargs: change(original, *args, **kwargs))
+
+
+def test_numerical_stop(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that a branch cut short for a numerical reason is saved and ends in exit code 3."""
+    stop = per.Stop(per.Reason.SMALL_STEP, "for a test")
+    changed(monkeypatch, lambda trace, *args, **kwargs: replace(trace(*args, **kwargs), stop=stop))
+    assert main(["trace", "duffing", "--to", "0.4", "--out", str(tmp_path)]) == 3
+    assert len(list(tmp_path.iterdir())) == 4
+    assert json.loads((tmp_path / "branch.json").read_text("utf-8"))["stop"] == per.Reason.SMALL_STEP.value
+    assert capsys.readouterr().err.startswith(f"orbitrace: stopped early ({stop}); the ")
+
+
+def test_no_point_at_all(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that a branch without a single point still gives all files, and exit code 3."""
+    stop = per.Stop(per.Reason.NO_START, "for a test")
+    changed(monkeypatch, lambda trace, *args, **kwargs: replace(trace(*args, **kwargs), points=(), stop=stop))
+    assert main(["trace", "dry-810N", "--to", "480", "--out", str(tmp_path)]) == 3
+    assert len((tmp_path / "branch.csv").read_text("utf-8").splitlines()) == 1
+    assert len(per.Branch.load(tmp_path / "branch.nc")) == 0
+    assert capsys.readouterr().err == f"orbitrace: stopped early ({stop}); no point was found\n"
+
+
+def test_interrupt(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that Ctrl-C saves the points so far and says so."""
+    seen: list[per.Point] = []
+
+    def interrupted(trace: Callable[..., per.Branch], *args: Any, **kwargs: Any) -> per.Branch:
+        def press(point: per.Point) -> None:
+            seen.append(point)
+            if len(seen) == 4:
+                raise KeyboardInterrupt
+
+        return trace(*args, **{**kwargs, "progress": press})
+
+    changed(monkeypatch, interrupted)
+    assert main(["trace", "duffing", "--out", str(tmp_path)]) == 130
+    assert len((tmp_path / "branch.csv").read_text("utf-8").splitlines()) == 1 + 4
+    assert capsys.readouterr().err == f"orbitrace: interrupted; the 4 points so far are in {tmp_path}\n"
+
+
+def test_interrupt_before_the_first_point(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that Ctrl-C before there is anything to save says just that."""
+
+    def interrupted(*_: Any, **__: Any) -> per.Branch:
+        raise KeyboardInterrupt
+
+    changed(monkeypatch, interrupted)
+    assert main(["trace", "duffing", "--out", str(tmp_path)]) == 130
+    assert list(tmp_path.iterdir()) == []
+    assert "nothing was saved" in capsys.readouterr().err
+
+
+def test_failed_write_keeps_the_old_file(tmp_path: Path) -> None:
+    """Assert that a write that fails leaves the old file as it was and no remains."""
+    file = tmp_path / "branch.csv"
+    file.write_text("old", "utf-8")
+    with pytest.raises(OSError, match="full"), replacing(file) as part:
+        part.write_text("ne", "utf-8")
+        raise OSError("full")
+    assert file.read_text("utf-8") == "old" and list(tmp_path.iterdir()) == [file]
