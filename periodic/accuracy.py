@@ -25,7 +25,8 @@ SLACK = 30.0
 class ErrorEstimate:
     """orbit: largest error of the states over their largest peak to peak.
 
-    multiplier: error of the largest Floquet multiplier, relative to it where it exceeds 1.
+    multiplier: error of the sums of the Floquet multipliers and of their squares, relative to the largest one
+    where that exceeds 1; it is the multipliers' own error unless two of them all but coincide.
     """
 
     orbit: float
@@ -35,11 +36,6 @@ class ErrorEstimate:
     def worst(self) -> float:
         """What is held against the tolerance; multipliers may be `SLACK` times less accurate."""
         return max(self.orbit, self.multiplier / SLACK)
-
-
-def largest(monodromy: Array) -> float:
-    """Return the largest modulus of the Floquet multipliers."""
-    return float(np.abs(np.linalg.eigvals(monodromy)).max())
 
 
 def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None) -> ErrorEstimate:
@@ -52,9 +48,19 @@ def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None
         return ErrorEstimate(np.inf, np.inf)
     change = at_fixed_phase(fine, step.nodes, step.outer[: len(fine.phases)])
     span = max(orbit.span(), np.finfo(float).tiny)
-    fine_multiplier = largest(step.monodromy)
-    multiplier = abs(fine_multiplier - largest(monodromy)) / max(1.0, fine_multiplier)
+    multiplier = _spectral_distance(step.monodromy, monodromy)
     return ErrorEstimate(float(np.abs(change).max()) / span, multiplier)
+
+
+def _spectral_distance(a: Array, b: Array) -> float:
+    """Distance of two spectra in the sums of their first and second powers, over the largest multiplier.
+
+    Unlike the multipliers themselves these stay smooth where two of them meet.
+    """
+    scale = max(1.0, float(np.abs(np.linalg.eigvals(a)).max()))
+    first = abs(np.trace(a) - np.trace(b)) / scale
+    second = abs(np.trace(a @ a) - np.trace(b @ b)) / (2 * scale**2)
+    return float(max(first, second))
 
 
 def _moved(plane: Plane, fine: Orbit) -> Plane:

@@ -54,8 +54,12 @@ def _jumps(top: Array, width: Array, closed: bool) -> Array:
     return np.maximum(left, right)
 
 
-def redistribute(orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: Array) -> Mesh:
+def redistribute(
+    orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: Array, shortest: float
+) -> Mesh:
     """Return a mesh of about `ntst` intervals for an orbit, with the given anchors at `phases`.
+
+    No interval shorter than `shortest` (rad) is halved.
 
     Each segment is halved again and again where the density asks for it. Its intervals are therefore the
     same from one mesh to the next wherever the density has hardly changed, and the orbit is carried over
@@ -72,7 +76,8 @@ def redistribute(orbit: Orbit, ntst: int, anchors: tuple[Anchor, ...], phases: A
         sigma = np.linspace(0.0, 1.0, MIN_INTERVALS + 1)
         for _ in range(MAX_HALVINGS):
             share = np.diff(_cumulative(begin + sigma * (end - begin), edges, total)) * ntst / total[-1]
-            middle = (sigma[1:] + sigma[:-1])[share > SPLIT] / 2
+            long = np.diff(sigma) * (end - begin) > shortest
+            middle = (sigma[1:] + sigma[:-1])[(share > SPLIT) & long] / 2
             if len(middle) == 0:
                 break
             sigma = np.sort(np.append(sigma, middle))

@@ -16,9 +16,9 @@ import numpy as np
 
 from periodic import rotation
 from periodic.closure import Plane
-from periodic.locate import special_points
+from periodic.locate import RejectedError, special_points
 from periodic.relax import relax
-from periodic.newton import Outcome, at_fixed_phase
+from periodic.newton import Outcome
 from periodic.orbit import Orbit, transfer
 from periodic.adapt import redistribute
 from periodic.point import Label, Point, describe
@@ -46,6 +46,9 @@ ADAPT_EVERY = 4
 BENT = 0.1
 """Largest distance of a step's end from the arc that its two tangents make, as a part of the step."""
 
+NOISE = 10.0
+"""What the orbits' own errors may add to that distance, in tolerances."""
+
 
 @dataclass
 class Run:
@@ -71,16 +74,16 @@ class Run:
         yield describe(task, base, Label.END)
         ds, count = step.ds, 1
         while count < step.max_points:
-            found = self._step(base, ds)
-            if isinstance(found, str):
+            try:
+                base, new = self._step(base, ds)
+                specials = special_points(task, base, new, ds, self.bounds, self.user)
+            except RejectedError as rejected:
                 ds /= 2
                 if ds < step.ds_min:
-                    self.stop = Stop.small_step(found)
+                    self.stop = Stop.small_step(str(rejected))
                     yield describe(task, base, Label.FAILED)
                     return
                 continue
-            base, new = found
-            specials = special_points(task, base, new, ds, self.bounds, self.user)
             for special in specials:
                 yield describe(task, special.solved, special.label)
             if any(s.label is Label.END for s in specials):
@@ -97,50 +100,52 @@ class Run:
         factor = 1.5 if iterations <= 3 else 1.2 if iterations <= 4 else 1.0 if iterations <= 6 else 0.7
         return float(np.clip(ds * factor, step.ds_min, step.ds_max))
 
-    def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved] | str:
-        """Take one step; return base and new solution on one mesh, or why the step is rejected."""
-        tolerance = self.task.settings.mesh.tolerance
+    def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
+        """Take one step; return base and new solution on one mesh. Raises RejectedError."""
         for _ in range(3):
             new = self._attempt(base, ds)
-            if isinstance(new, str) or new.error.worst <= tolerance:
-                return new if isinstance(new, str) else (base, new)
-            moved = self._base_on_mesh_for(base, new)
-            if isinstance(moved, Outcome):
-                return "the mesh could not be adapted"
-            base = moved
-        return "the error estimate exceeds the tolerance"
+            if new.error.worst <= self.task.settings.mesh.tolerance:
+                return base, new
+            base = self._base_on_mesh_for(base, new)
+        raise RejectedError("the error estimate exceeds the tolerance")
 
-    def _attempt(self, base: Solved, ds: float) -> Solved | str:
+    def _attempt(self, base: Solved, ds: float) -> Solved:
         task = self.task
         guess = predict(task, base.orbit, base.tangent, ds)
         new = on_plane(task, guess, Plane(base.orbit, base.tangent, ds, task.metric, task.index))
         if isinstance(new, Outcome):
-            return new.value
+            raise RejectedError(new.value)
         self.iterations += new.correction.iterations
         if task.metric.dot(new.orbit, base.tangent, new.tangent) < task.settings.step.turn:
-            return "the branch turns too sharply for the step"
-        if self._bend(base, new, ds) > BENT:
-            return "the step does not follow its tangents"
+            raise RejectedError("the branch turns too sharply for the step")
+        floor = NOISE * task.settings.mesh.tolerance * base.orbit.span()
+        if self._bend(base, new, ds) > BENT * ds + floor:
+            raise RejectedError("the step does not follow its tangents")
         if not rotation.is_resolved(base.correction.monodromy, new.correction.monodromy):
-            return "the multipliers turn too far past 1 for the step"
+            raise RejectedError("the multipliers turn too far past 1 for the step")
         return new
 
     def _bend(self, base: Solved, new: Solved, ds: float) -> float:
-        """How far the step's end lies from where the mean of the two tangents leads, as a part of ds."""
+        """How far the step's end lies from where the mean of the two tangents leads."""
         a, b = base.orbit, new.orbit
         mean = (base.tangent.profile + new.tangent.profile) / 2
-        profile = at_fixed_phase(a, b.nodes - a.nodes, b.phases - a.phases) - ds * mean
+        profile = b.state(a.mesh.nodes(a.phases)) - a.nodes - ds * mean
         slope = (base.tangent.parameter + new.tangent.parameter) / 2
         jump = float(b.parameter[self.task.index] - a.parameter[self.task.index]) - ds * slope
         difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
-        return float(np.sqrt(self.task.metric.dot(a, difference, difference))) / ds
+        return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
 
-    def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved | Outcome:
+    def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
         task, old = self.task, base.orbit
-        mesh = redistribute(new.orbit, wanted_ntst(task, new), new.orbit.mesh.anchors, new.orbit.phases)
+        anchors, phases = new.orbit.mesh.anchors, new.orbit.phases
+        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, phases, task.settings.mesh.tolerance)
         orbit = relax(task.system, transfer(old, mesh, old.phases))
-        return on_plane(task, orbit, Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index))
+        plane = Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index)
+        moved = on_plane(task, orbit, plane)
+        if isinstance(moved, Outcome):
+            raise RejectedError(f"the mesh could not be adapted: {moved.value}")
+        return moved
 
     def _prepared(self, new: Solved) -> Solved:
         """Give the next step its mesh: right anchors, an error estimate inside its window."""

@@ -30,8 +30,8 @@ class Found:
     solved: Solved
 
 
-class NotLocated(Exception):
-    """A plane between the ends of the step could not be solved on."""
+class RejectedError(Exception):
+    """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
 
 
 def special_points(
@@ -112,5 +112,5 @@ def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
     guess = predict(task, base.orbit, base.tangent, distance)
     solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
     if isinstance(solved, Outcome):
-        raise NotLocated(solved.value)
+        raise RejectedError(solved.value)
     return solved

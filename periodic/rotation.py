@@ -15,7 +15,7 @@ from periodic.scheme import Array
 PART = 0.7
 """Largest move of a multiplier, as a part of its distance from +1."""
 
-LEAST = 0.02
+LEAST = 0.002
 """Moves as small as this are always allowed."""
 
 

@@ -111,7 +111,7 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     """Solve again on a mesh made for this orbit: right anchors, right number of intervals."""
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
-    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases)
+    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.tolerance)
     orbit = relax(task.system, transfer(old, mesh, phases))
     if fixed:
         return at_parameter(task, orbit, float(np.sign(solved.tangent.parameter)) or 1.0)

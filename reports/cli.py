@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from enum import Enum
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -43,6 +44,9 @@ class Effort(Enum):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; bad input ends in one sentence on standard error."""
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    if isinstance(sys.stdout, TextIOWrapper):
+        # A terminal that cannot show a letter is no reason to stop.
+        sys.stdout.reconfigure(errors="replace")
     try:
         return app(args=given, prog_name="orbitrace", standalone_mode=False) or DONE
     except InputError as error:

@@ -94,10 +94,11 @@ def save(folder: Path, name: str, scene: Scene, branch: Branch) -> list[Path]:
     from reports.picture import draw
 
     writers: dict[str, Callable[[Path], object]] = {
-        "branch.nc": branch.save,
         "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
         "branch.png": lambda path: draw(path, scene, branch),
+        # Last: on a full disk the HDF5 library may take the whole process down.
+        "branch.nc": branch.save,
     }
     with unheard():
         try:

@@ -24,10 +24,13 @@ REST_XI = math.log(math.e - 1)
 LEAST_LEFT = 0.1
 """Part of the deflection that one Newton step leaves, as long as the step is taken in the deflection."""
 
+EMPTY = -27.0
+"""xi below which the deflection (1e-12 of the steady one) no longer matters to geometry."""
+
 LOST = 1e-3
 """Deflection, relative to the steady one, that marks loss of contact under a film without squeeze."""
 
-LEVELS = tuple(10 ** (-k / 2) for k in range(3, 21))
+LEVELS = tuple(10 ** (-k / 2) for k in range(6, 21))
 """Deflections, relative to the steady one, that mark loss of contact: 10^-1.5 down to 10^-10.
 
 The squeeze film keeps delta positive, many orders below delta0 where contact is lost deeply: the kink
@@ -51,14 +54,16 @@ def move_xi(xi: ca.SX, increment: ca.SX) -> ca.SX:
     """Where a Newton increment takes xi: linear in s = softplus(xi) where that stays positive.
 
     Geometry is linear in s, the film law in ln s. A rise by Newton's tangent in xi overshoots geometry
-    exponentially; a fall that would empty the contact is taken in xi, by no more than 10 at a time.
+    exponentially; a fall that would empty the contact is taken in xi, by no more than 10 at a time. Below
+    EMPTY, where geometry no longer notices s, xi moves freely.
     """
     s = softplus(xi)
     change = increment / (1 + ca.exp(-ca.fmax(xi, -30)) * ca.exp(-ca.fmin(xi + 30, 0))) / s
     kept = ca.log1p(ca.fmax(change, LEAST_LEFT - 1)) + ca.log(s)
     linear_in_s = _inverse_log_softplus(kept)
     fall = xi + ca.fmax(ca.fmin(increment, math.log(LEAST_LEFT)), -10)
-    return ca.if_else(change > LEAST_LEFT - 1, linear_in_s, fall)
+    moved = ca.if_else(change > LEAST_LEFT - 1, linear_in_s, fall)
+    return ca.if_else(xi < EMPTY, ca.fmax(moved, ca.fmin(xi + increment, EMPTY)), moved)
 
 
 def _inverse_log_softplus(y: ca.SX) -> ca.SX:
