@@ -48,7 +48,7 @@ def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None
         return ErrorEstimate(np.inf, np.inf)
     change = at_fixed_phase(fine, step.nodes, step.outer[: len(fine.phases)])
     span = max(orbit.span(), np.finfo(float).tiny)
-    multiplier = _spectral_distance(step.monodromy, monodromy)
+    multiplier = _spectral_distance(step.fundamental[-1], monodromy)
     return ErrorEstimate(float(np.abs(change).max()) / span, multiplier)
 
 

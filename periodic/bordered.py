@@ -18,7 +18,8 @@ from periodic.scheme import Array
 
 @dataclass(frozen=True)
 class BorderedSolution:
-    """Newton increments of mesh-point states (N+1, n) and y (q,), the kernel direction, the monodromy matrix.
+    """Newton increments of mesh-point states (N+1, n) and y (q,), the kernel direction, the fundamental
+    matrices at the mesh points (N+1, n, n), the last of which is the monodromy matrix.
 
     The kernel direction solves the homogeneous equations with right-hand side 1 in the last closure; it is
     None where there is no closure beyond the events.
@@ -28,7 +29,7 @@ class BorderedSolution:
     outer: Array
     kernel_nodes: Array | None
     kernel_outer: Array | None
-    monodromy: Array
+    fundamental: Array
 
 
 def chain(condensed: Condensed) -> Array:
@@ -66,7 +67,7 @@ def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bo
     outer = both[n:]
     nodes = maps[:, :, 0] + maps[:, :, 1:] @ both[:, 0]
     kernel = maps[:, :, 1:] @ both[:, 1] if with_kernel else None
-    return BorderedSolution(nodes, outer[:, 0], kernel, outer[:, 1] if with_kernel else None, maps[-1, :, 1 : 1 + n])
+    return BorderedSolution(nodes, outer[:, 0], kernel, outer[:, 1] if with_kernel else None, maps[:, :, 1 : 1 + n])
 
 
 def _reduced(row: Row, maps: Array) -> Array:

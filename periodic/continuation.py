@@ -121,7 +121,7 @@ class Run:
         floor = NOISE * task.settings.mesh.tolerance * base.orbit.span()
         if self._bend(base, new, ds) > BENT * ds + floor:
             raise RejectedError("the step does not follow its tangents")
-        if not rotation.is_resolved(base.correction.monodromy, new.correction.monodromy):
+        if not rotation.is_resolved(base.correction.fundamental, new.correction.fundamental):
             raise RejectedError("the multipliers turn too far past 1 for the step")
         return new
 

@@ -46,15 +46,23 @@ class NewtonSettings:
 
 @dataclass(frozen=True)
 class Correction:
-    """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave."""
+    """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
+
+    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n).
+    """
 
     orbit: Orbit
     outcome: Outcome
     iterations: int
     increment: float
     residual: float
-    monodromy: Array
+    fundamental: Array
     kernel: Direction | None
+
+    @property
+    def monodromy(self) -> Array:
+        """The monodromy matrix, shape (n, n)."""
+        return self.fundamental[-1]
 
 
 @dataclass(frozen=True)
@@ -68,7 +76,7 @@ class Step:
     size: float
     length: float
     residual: float
-    monodromy: Array
+    fundamental: Array
     kernel: Direction | None
 
 
@@ -106,9 +114,10 @@ def correct(
     if outcome is Outcome.CONVERGED and (orbit.mesh.segment_lengths(orbit.phases) <= 0).any():
         outcome = Outcome.ANCHORS_CROSSED
     if step is None:
-        empty = np.full((orbit.nodes.shape[1],) * 2, np.nan)
+        n = orbit.nodes.shape[1]
+        empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iteration, np.inf, np.inf, empty, None)
-    return Correction(orbit, outcome, iteration, step.size, step.residual, step.monodromy, step.kernel)
+    return Correction(orbit, outcome, iteration, step.size, step.residual, step.fundamental, step.kernel)
 
 
 def linear_step(
@@ -132,7 +141,7 @@ def linear_step(
     size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
-        solution.nodes, stages, algebraic, solution.outer, size, length, condensed.residual, solution.monodromy, kernel
+        solution.nodes, stages, algebraic, solution.outer, size, length, condensed.residual, solution.fundamental, kernel
     )
 
 

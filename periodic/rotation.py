@@ -2,8 +2,8 @@
 
 Where a complex pair of multipliers passes near +1 the free vibration is in tune with a harmonic of the
 excitation (a superharmonic resonance): the branch may leave its course for a peak far narrower than a step
-and return to it. The response to the parameter goes with (I - M)^-1, so the pair may not move by more than
-a part of its distance from +1.
+and return to it. The response to the parameter goes with (I - M)^-1, so the pair may not turn by more than
+a part of its distance from +1. Its angle is followed over the whole period, so that full turns count.
 """
 
 from __future__ import annotations
@@ -13,18 +13,41 @@ import numpy as np
 from periodic.scheme import Array
 
 PART = 0.7
-"""Largest move of a multiplier, as a part of its distance from +1."""
+"""Largest turn of a multiplier (rad), as a part of its distance from +1."""
 
 LEAST = 0.002
-"""Moves as small as this are always allowed."""
+"""Turns as small as this are always allowed."""
+
+
+LIGHT = 0.8
+"""Pairs of smaller modulus are damped too well for a narrow peak."""
 
 
 def is_resolved(before: Array, after: Array) -> bool:
-    """Whether the complex multipliers of two monodromy matrices are close enough, seen from +1."""
-    old, new = np.linalg.eigvals(before), np.linalg.eigvals(after)
-    for multiplier in new[np.abs(new.imag) > 0]:
-        nearest = old[np.abs(old - multiplier).argmin()]
-        allowed = PART * min(abs(1 - multiplier), abs(1 - nearest))
-        if nearest.imag != 0 and abs(multiplier - nearest) > max(allowed, LEAST):
+    """Whether two orbits' complex multipliers are close enough, seen from +1.
+
+    before, after: fundamental matrices at the mesh points, shape (N+1, n, n); the last is the monodromy.
+    """
+    old = turns(before)
+    for angle, distance in turns(after):
+        if not old:
+            return True
+        other, other_distance = min(old, key=lambda pair: abs(pair[0] - angle))
+        if abs(angle - other) > max(PART * min(distance, other_distance), LEAST):
             return False
     return True
+
+
+def turns(fundamental: Array) -> list[tuple[float, float]]:
+    """Angle turned over the period by each lightly damped pair of multipliers, and its distance from +1.
+
+    The angle is that of the largest component of the eigenvector's solution, followed along the mesh.
+    """
+    multipliers, vectors = np.linalg.eig(fundamental[-1])
+    result = []
+    for k in np.flatnonzero((multipliers.imag > 0) & (np.abs(multipliers) > LIGHT)):
+        solution = fundamental @ vectors[:, k]
+        component = int(np.abs(solution).mean(axis=0).argmax())
+        angle = np.unwrap(np.angle(solution[:, component]))
+        result.append((abs(float(angle[-1] - angle[0])), float(abs(1 - multipliers[k]))))
+    return result
