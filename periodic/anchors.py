@@ -1,7 +1,7 @@
 """Which kinks of an orbit the mesh should be tied to.
 
-A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the one that is
-passed most abruptly marks the kink. Excursions (and returns) shorter than a threshold are left to the
+A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest that
+is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and returns) shorter than a threshold are left to the
 ordinary mesh, where they are too weak to matter: an anchor tied to a passage that is about to vanish would
 turn the continuation back on itself.
 """
@@ -25,11 +25,14 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Crossing:
-    """A passage of a switch through a level along an orbit; sharpness is the rate |ds/dtau| over the level."""
+    """A passage of a switch through a level along an orbit.
+
+    slope: the smaller of |ds/dtau| at the collocation points before and after it.
+    """
 
     anchor: Anchor
     phase: float
-    sharpness: float
+    slope: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,13 +42,15 @@ class AnchorSettings:
     appear, vanish: shortest excursion (rad) that gets new anchors, and below which present ones are dropped.
     deepest: levels of a switch between 0 and this are not used; below the accuracy of the states themselves
     a level has no meaning.
-    exchange: how many times sharper another level must be to replace the one in use.
+    exchange: how many times deeper another level must be to replace the one in use.
+    steep: least slope of a passage, as a part of the slope at the shallowest level.
     """
 
     appear: float = 0.10
     vanish: float = 0.05
     deepest: float = 0.0
     exchange: float = 5.0
+    steep: float = 0.25
 
     def __post_init__(self) -> None:
         if not 0 < self.vanish <= self.appear:
@@ -61,18 +66,22 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """
     if not system.switches:
         return []
-    tau = orbit.stage_phases.ravel()
-    values = system.switch(orbit.stages.reshape(len(tau), -1), tau, orbit.parameter)
-    tau, values = np.append(tau, tau[0] + orbit.mesh.period), np.concatenate([values, values[:1]])
+    tau, flat = orbit.stage_phases.ravel(), (-1, orbit.stages.shape[2])
+    state = orbit.stages.reshape(flat)
+    values = system.switch(state, tau, orbit.parameter)
+    d_state, d_phase, _ = system.switch_gradient(state, tau, orbit.parameter)
+    slopes = np.abs(d_phase + np.einsum("tkn,tn->tk", d_state, orbit.knot_rates[:, 1:].reshape(flat)))
+    tau = np.append(tau, tau[0] + orbit.mesh.period)
+    values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
     found = []
     for k, switch in enumerate(system.switches):
         above = values[:, k, None] > np.array(switch.levels)
         for i, j in np.argwhere(above[1:] != above[:-1]):
-            level, step = switch.levels[j], tau[i + 1] - tau[i]
+            level = switch.levels[j]
             begin, end = values[i, k] - level, values[i + 1, k] - level
+            phase = tau[i] + (tau[i + 1] - tau[i]) * begin / (begin - end)
             anchor = Anchor(k, 1 if end > begin else -1, level)
-            phase, rate = tau[i] + step * begin / (begin - end), abs(end - begin) / step
-            found.append(Crossing(anchor, float(phase), float(rate / level if level else rate)))
+            found.append(Crossing(anchor, float(phase), float(slopes[i : i + 2, k].min())))
     return found
 
 
@@ -88,12 +97,16 @@ def wanted(system: System, orbit: Orbit, settings: AnchorSettings) -> list[Cross
         ]
         directions = (switch.direction,) if switch.direction else (-1, 1)
         for excursion in _excursions(kept[0]) if kept else []:
-            chosen += [_sharpest(kept, excursion, d, orbit, settings) for d in directions]
+            chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     return sorted(chosen, key=lambda crossing: crossing.phase)
 
 
-def _sharpest(
-    kept: list[list[Crossing]], excursion: tuple[Crossing, Crossing], direction: int, orbit: Orbit, settings: AnchorSettings
+def _kink(
+    kept: list[list[Crossing]],
+    excursion: tuple[Crossing, Crossing],
+    direction: int,
+    orbit: Orbit,
+    settings: AnchorSettings,
 ) -> Crossing:
     """The passage within an excursion that marks the kink at its begin (-1) or end (+1)."""
     edge = excursion[0] if direction < 0 else excursion[1]
@@ -101,9 +114,11 @@ def _sharpest(
     for level in kept:
         inside = [c for c in level if c.anchor.direction == direction and _inside(c, excursion, orbit.mesh.period)]
         candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
-    best = max(candidates, key=lambda c: c.sharpness)
-    used = [c for c in candidates if _is_anchored(c, orbit) and settings.exchange * c.sharpness > best.sharpness]
-    return used[0] if used else best
+    steep = [c for c in candidates if c.slope >= settings.steep * edge.slope]
+    deepest = min(steep, key=lambda c: c.anchor.level)
+    reach = settings.exchange * deepest.anchor.level
+    used = [c for c in steep if _is_anchored(c, orbit) and c.anchor.level <= reach]
+    return used[0] if used else deepest
 
 
 def _wrapped(phase: float, orbit: Orbit) -> float:
