@@ -3,11 +3,12 @@
 from periodic.branch import Branch, BranchFileError
 from periodic.continuation import Run
 from periodic.measure import extrema, outputs
+from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
 from periodic.plotting import plot
 from periodic.point import Label, Point
 from periodic.scheme import Family, Scheme
-from periodic.settings import Accuracy, MeshSettings, NewtonSettings, Settings, StepSettings
+from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
 from periodic.system import System
 from periodic.tracing import trace

@@ -16,7 +16,6 @@ from periodic.orbit import Orbit, bisect
 from periodic.scheme import Array
 from periodic.system import System
 
-
 SLACK = 30.0
 """How much less accurate than the orbit its largest multiplier may be."""
 
@@ -70,5 +69,3 @@ def _moved(plane: Plane, fine: Orbit) -> Plane:
     profile[::2] = coarse
     profile[1::2] = (coarse[1:] + coarse[:-1]) / 2
     return Plane(fine, plane.direction.with_profile(profile), 0.0, plane.metric, plane.index)
-
-

@@ -25,6 +25,9 @@ MAX_HALVINGS = 40
 SPLIT = 1.4
 """An interval is halved where it would hold more than this many intervals of the wanted density."""
 
+GROWTHS = tuple(1.1**k for k in range(8))
+"""Factors tried on the density until halving gives as many intervals as wanted."""
+
 
 def density(orbit: Orbit) -> Array:
     """Return the mesh density wanted in each interval, shape (N,), in intervals per unit of tau."""
@@ -71,18 +74,28 @@ def redistribute(
     total = np.append(0.0, np.cumsum(wanted * orbit.grid.width))
     begins = phases if anchors else np.zeros(1)
     ends = np.append(begins[1:], begins[0] + period)
-    breaks = []
-    for begin, end in zip(begins, ends, strict=True):
-        sigma = np.linspace(0.0, 1.0, MIN_INTERVALS + 1)
-        for _ in range(MAX_HALVINGS):
-            share = np.diff(_cumulative(begin + sigma * (end - begin), edges, total)) * ntst / total[-1]
-            long = np.diff(sigma) * (end - begin) > shortest
-            middle = (sigma[1:] + sigma[:-1])[(share > SPLIT) & long] / 2
-            if len(middle) == 0:
-                break
-            sigma = np.sort(np.append(sigma, middle))
-        breaks.append(sigma)
-    return Mesh(orbit.mesh.scheme, tuple(breaks), anchors, period)
+    segments = [
+        (begin, end, np.array([edges, total * ntst / total[-1]]))
+        for begin, end in zip(begins, ends, strict=True)
+    ]
+    for growth in GROWTHS:
+        breaks = tuple(_halved(begin, end, curve, growth, shortest) for begin, end, curve in segments)
+        if sum(len(b) - 1 for b in breaks) >= ntst:
+            break
+    return Mesh(orbit.mesh.scheme, breaks, anchors, period)
+
+
+def _halved(begin: float, end: float, curve: Array, growth: float, shortest: float) -> Array:
+    """Breaks of one segment, halved where an interval holds more than SPLIT of the curve's intervals."""
+    sigma = np.linspace(0.0, 1.0, MIN_INTERVALS + 1)
+    for _ in range(MAX_HALVINGS):
+        share = growth * np.diff(_cumulative(begin + sigma * (end - begin), *curve))
+        long = np.diff(sigma) * (end - begin) > shortest
+        middle = (sigma[1:] + sigma[:-1])[(share > SPLIT) & long] / 2
+        if len(middle) == 0:
+            break
+        sigma = np.sort(np.append(sigma, middle))
+    return sigma
 
 
 def _cumulative(tau: Array, edges: Array, total: Array) -> Array:

@@ -1,9 +1,9 @@
 """Which kinks of an orbit the mesh should be tied to.
 
-A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest that
-is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and returns) shorter than a threshold are left to the
-ordinary mesh, where they are too weak to matter: an anchor tied to a passage that is about to vanish would
-turn the continuation back on itself.
+A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest
+that is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and
+returns) shorter than a threshold are left to the ordinary mesh, where they are too weak to matter: an
+anchor tied to a passage that is about to vanish would turn the continuation back on itself.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from periodic.mesh import Anchor
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
-
 
 SAME = 1e-9
 """Phases closer than this are the same."""
@@ -54,7 +53,9 @@ class AnchorSettings:
 
     def __post_init__(self) -> None:
         if not 0 < self.vanish <= self.appear:
-            raise ValueError(f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}")
+            raise ValueError(
+                f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}"
+            )
 
 
 def crossings(system: System, orbit: Orbit) -> list[Crossing]:
@@ -112,7 +113,9 @@ def _kink(
     edge = excursion[0] if direction < 0 else excursion[1]
     candidates = []
     for level in kept:
-        inside = [c for c in level if c.anchor.direction == direction and _inside(c, excursion, orbit.mesh.period)]
+        inside = [
+            c for c in level if c.anchor.direction == direction and _inside(c, excursion, orbit.mesh.period)
+        ]
         candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
     steep = [c for c in candidates if c.slope >= settings.steep * edge.slope]
     deepest = min(steep, key=lambda c: c.anchor.level)
@@ -142,7 +145,9 @@ def _merged(found: list[Crossing], orbit: Orbit, settings: AnchorSettings) -> li
     while len(kept) >= 2:
         phases = np.array([c.phase for c in kept])
         gaps = np.diff(np.append(phases, phases[0] + orbit.mesh.period))
-        limits = np.array([_limit(kept[i], kept[(i + 1) % len(kept)], orbit, settings) for i in range(len(kept))])
+        limits = np.array(
+            [_limit(kept[i], kept[(i + 1) % len(kept)], orbit, settings) for i in range(len(kept))]
+        )
         short = int(np.argmin(gaps / limits))
         if gaps[short] >= limits[short]:
             break

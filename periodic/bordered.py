@@ -67,7 +67,9 @@ def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bo
     outer = both[n:]
     nodes = maps[:, :, 0] + maps[:, :, 1:] @ both[:, 0]
     kernel = maps[:, :, 1:] @ both[:, 1] if with_kernel else None
-    return BorderedSolution(nodes, outer[:, 0], kernel, outer[:, 1] if with_kernel else None, maps[:, :, 1 : 1 + n])
+    return BorderedSolution(
+        nodes, outer[:, 0], kernel, outer[:, 1] if with_kernel else None, maps[:, :, 1 : 1 + n]
+    )
 
 
 def _reduced(row: Row, maps: Array) -> Array:

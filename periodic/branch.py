@@ -91,7 +91,9 @@ class Branch:
         head = ["label", self.parameter, *(f"{n} p-p" for n in names), "|mu| max", "stable", "error"]
         rows = [head, *([*_cells(p, names)] for p in self.points)]
         widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
-        return "\n".join("  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows)
+        return "\n".join(
+            "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the branch, its orbits included, to a NetCDF file (replacing it in one move)."""

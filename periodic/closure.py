@@ -69,8 +69,14 @@ class Direction:
 
     def scaled(self, factor: float) -> Direction:
         """Return the direction times a factor."""
-        arrays = (self.nodes, self.stages, self.algebraic, self.phases, self.profile)
-        return Direction(*[factor * a for a in arrays], factor * self.parameter)
+        return Direction(
+            nodes=factor * self.nodes,
+            stages=factor * self.stages,
+            algebraic=factor * self.algebraic,
+            phases=factor * self.phases,
+            profile=factor * self.profile,
+            parameter=factor * self.parameter,
+        )
 
     def with_profile(self, profile: Array) -> Direction:
         """Return the direction with another profile: all that a plane needs on another mesh."""
@@ -103,7 +109,7 @@ def node_phase_gradient(orbit: Orbit) -> Array:
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane through `origin`, moved by `distance` along `direction`: <u - origin, direction> = distance."""
+    """The plane through `origin`, moved along `direction`: <u - origin, direction> = distance."""
 
     origin: Orbit
     direction: Direction
@@ -116,8 +122,11 @@ class Plane:
         slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
         weighted = self.metric.weights(self.origin)[:, None] * self.direction.profile
         outer = np.append(
-            -np.einsum("jn,jn,jk->k", weighted, slope, moving), self.direction.parameter / self.metric.scale**2
+            -np.einsum("jn,jn,jk->k", weighted, slope, moving),
+            self.direction.parameter / self.metric.scale**2,
         )
-        moved = np.append(orbit.phases - self.origin.phases, orbit.parameter[self.index] - self.origin.parameter[self.index])
+        moved = np.append(
+            orbit.phases - self.origin.phases, orbit.parameter[self.index] - self.origin.parameter[self.index]
+        )
         value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
         return Row(float(value) - self.distance, weighted, outer)

@@ -54,7 +54,7 @@ def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
 
     Returns the differential rows without z, (points, n, w), and -dz as a map of the columns, (points, m, w).
     """
-    algebraic = np.linalg.solve(rows.d_algebraic[:, n:], rows.columns[:, n:])
+    algebraic = np.linalg.solve(rows.d_algebraic[:, n:], rows.columns[:, n:]).astype(float, copy=False)
     return rows.columns[:, :n] - rows.d_algebraic[:, :n] @ algebraic, algebraic
 
 
@@ -66,14 +66,14 @@ def solve_stages(local: Array, right: Array, weights: Array) -> Array:
     matrix[:, each, :, each, :] += np.moveaxis(local[..., 1 + n : 1 + 2 * n], 1, 0)
     size = ncol * n
     solution = np.linalg.solve(matrix.reshape(count, size, size), -right.reshape(count, size, -1))
-    return solution.reshape(count, ncol, n, -1)
+    return solution.reshape(count, ncol, n, -1).astype(float, copy=False)
 
 
 @dataclass(frozen=True)
 class Rows:
-    """The linearised equations at all points: columns (points, n+m, 1+2n+q) are residual, d rate, d state, dy.
+    """The linearised equations at all points.
 
-    d_algebraic (points, n+m, m).
+    columns (points, n+m, 1+2n+q): residual, d rate, d state, dy; d_algebraic (points, n+m, m).
     """
 
     columns: Array

@@ -15,13 +15,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic import rotation
+from periodic.adapt import redistribute
 from periodic.closure import Plane
 from periodic.locate import RejectedError, special_points
-from periodic.relax import relax
 from periodic.newton import Outcome
 from periodic.orbit import Orbit, transfer
-from periodic.adapt import redistribute
 from periodic.point import Label, Point, describe
+from periodic.relax import relax
 from periodic.solve import (
     Solved,
     Task,
@@ -72,6 +72,8 @@ class Run:
             self.stop = Stop.inaccurate(base.error.worst, base.orbit.mesh.ntst)
             return
         yield describe(task, base, Label.END)
+        if float(base.orbit.parameter[task.index]) in self.user:
+            yield describe(task, base, Label.USER)
         ds, count = step.ds, 1
         while count < step.max_points:
             try:
@@ -139,7 +141,7 @@ class Run:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
         task, old = self.task, base.orbit
         anchors, phases = new.orbit.mesh.anchors, new.orbit.phases
-        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, phases, task.settings.mesh.tolerance)
+        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, phases, task.settings.mesh.shortest)
         orbit = relax(task.system, transfer(old, mesh, old.phases))
         plane = Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index)
         moved = on_plane(task, orbit, plane)

@@ -1,8 +1,6 @@
-"""The algebraic unknowns away from collocation points: solved for from the algebraic rows, not interpolated."""
+"""The algebraic unknowns away from collocation points: solved for there, never interpolated."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +13,9 @@ CLOSE = 1e-10
 LONGEST = 5.0
 
 
-def solve_algebraic(system: System, rate: Array, state: Array, guess: Array, tau: Array, parameter: Array) -> Array:
+def solve_algebraic(
+    system: System, rate: Array, state: Array, guess: Array, tau: Array, parameter: Array
+) -> Array:
     """Solve g(x', x, z, tau, p) = 0 for z at each point, shape (points, m), by Newton from a guess."""
     n, algebraic = state.shape[1], guess
     if algebraic.shape[1] == 0:
@@ -36,13 +36,3 @@ def algebraic_at(system: System, orbit: Orbit, tau: Array) -> Array:
     """Return the unknowns at phases tau, shape (len(tau), m)."""
     guess = orbit.algebraic_guess(tau)
     return solve_algebraic(system, orbit.rate(tau), orbit.state(tau), guess, tau, orbit.parameter)
-
-
-def consistent(system: System, orbit: Orbit) -> Orbit:
-    """Return the orbit with its unknowns solved for anew at its collocation points."""
-    tau = orbit.stage_phases.ravel()
-    flat = (len(tau), orbit.stages.shape[2])
-    rate, state = orbit.knot_rates[:, 1:].reshape(flat), orbit.stages.reshape(flat)
-    guess = orbit.algebraic.reshape(len(tau), orbit.algebraic.shape[2])
-    solved = solve_algebraic(system, rate, state, guess, tau, orbit.parameter)
-    return replace(orbit, algebraic=solved.reshape(orbit.algebraic.shape))

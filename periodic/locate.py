@@ -18,7 +18,7 @@ from periodic.point import Label
 from periodic.solve import Solved, Task, at_parameter, on_plane, predict, settle
 
 FOLD_PRECISION = 1e-6
-"""Precision of a fold's place along the branch, as a part of the step; its parameter is second order in it."""
+"""Precision of a fold's place along the branch, in steps; its parameter is second order in it."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def _crosses(task: Task, begin: Found, end: Found, value: float) -> bool:
 
 
 def _folds(task: Task, base: Solved, new: Solved, ds: float) -> list[Found]:
-    """Locate the fold of a step, if it has one; on a mesh made for it where the step's is not accurate there."""
+    """Locate the fold of a step, if it has one, on a mesh that is accurate there."""
     if base.tangent.parameter * new.tangent.parameter >= 0:
         return []
     distance, solved = _root(task, base, (0.0, ds), _slope, FOLD_PRECISION * ds)
@@ -81,9 +81,7 @@ def _slope(solved: Solved) -> float:
     return solved.tangent.parameter
 
 
-def _at_value(
-    task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label
-) -> Found:
+def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
     ends = (begin.distance, end.distance)
     distance, near = _root(task, base, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))

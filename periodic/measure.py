@@ -37,7 +37,9 @@ def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
     both = np.concatenate([-values, values], axis=1)
     index = both.argmax(axis=0)
     best = both[index, np.arange(len(index))]
-    half = np.maximum(np.diff(tau, append=tau[0] + orbit.mesh.period), np.diff(tau, prepend=tau[-1] - orbit.mesh.period))
+    half = np.maximum(
+        np.diff(tau, append=tau[0] + orbit.mesh.period), np.diff(tau, prepend=tau[-1] - orbit.mesh.period)
+    )
     centre, radius = tau[index], half[index]
     for _ in range(ZOOMS):
         best, centre, radius = _zoom(system, orbit, signs, best, centre, radius)

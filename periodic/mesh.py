@@ -16,7 +16,7 @@ from periodic.scheme import Array, Scheme
 
 @dataclass(frozen=True)
 class Anchor:
-    """A passage of a system's switch through a level, falling (-1) or rising (+1), that the mesh is tied to."""
+    """What the mesh is tied to: a switch passing a level, falling (-1) or rising (+1)."""
 
     switch: int
     direction: int

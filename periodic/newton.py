@@ -14,7 +14,6 @@ from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
 
-
 MAX_CHANGE = 2.0
 """Largest relative change in one iteration; longer Newton steps are cut to it."""
 
@@ -31,7 +30,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonSettings:
-    """tolerance: largest last increment, relative (states: to 1 + their size). The last step is still taken."""
+    """tolerance: largest relative increment of the last step, which is still taken."""
 
     tolerance: float = 1e-8
     max_iterations: int = 12
@@ -92,10 +91,11 @@ def correct(
     The outcome is on the result; nothing is raised for a numerical failure.
     """
     settings = settings or NewtonSettings()
-    orbit, outcome, step, iteration = guess, Outcome.TOO_MANY, None, 0
+    orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
     base: tuple[Orbit, Step] | None = None
     factor = 1.0
-    for iteration in range(1, settings.max_iterations + 1):
+    while iterations < settings.max_iterations:
+        iterations += 1
         trial = linear_step(system, orbit, free, closures)
         worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
@@ -116,8 +116,8 @@ def correct(
     if step is None:
         n = orbit.nodes.shape[1]
         empty = np.full((1, n, n), np.nan)
-        return Correction(orbit, outcome, iteration, np.inf, np.inf, empty, None)
-    return Correction(orbit, outcome, iteration, step.size, step.residual, step.fundamental, step.kernel)
+        return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
+    return Correction(orbit, outcome, iterations, step.size, step.residual, step.fundamental, step.kernel)
 
 
 def linear_step(
@@ -141,7 +141,15 @@ def linear_step(
     size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
-        solution.nodes, stages, algebraic, solution.outer, size, length, condensed.residual, solution.fundamental, kernel
+        solution.nodes,
+        stages,
+        algebraic,
+        solution.outer,
+        size,
+        length,
+        condensed.residual,
+        solution.fundamental,
+        kernel,
     )
 
 
@@ -185,7 +193,9 @@ def _advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], fa
     )
 
 
-def _direction(orbit: Orbit, condensed: collocation.Condensed, solution: bordered.BorderedSolution) -> Direction:
+def _direction(
+    orbit: Orbit, condensed: collocation.Condensed, solution: bordered.BorderedSolution
+) -> Direction:
     """The kernel direction with stages and unknowns recovered; not yet of unit length."""
     assert solution.kernel_nodes is not None and solution.kernel_outer is not None
     k = len(orbit.phases)

@@ -124,5 +124,7 @@ def bisect(orbit: Orbit) -> Orbit:
         mesh=orbit.mesh.bisected(),
         nodes=nodes,
         stages=(scheme.basis(halves) @ orbit.knots).reshape(count, scheme.ncol, -1),
-        algebraic=(scheme.algebraic_basis(halves) @ orbit.algebraic).reshape(count, scheme.ncol, orbit.algebraic.shape[2]),
+        algebraic=(scheme.algebraic_basis(halves) @ orbit.algebraic).reshape(
+            count, scheme.ncol, orbit.algebraic.shape[2]
+        ),
     )

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def plot(
-    branch: Branch, output: str | None = None, axes: Axes | None = None, measure: Callable[[Point], float] | None = None
+    branch: Branch,
+    output: str | None = None,
+    axes: Axes | None = None,
+    measure: Callable[[Point], float] | None = None,
 ) -> Axes:
     """Plot the peak to peak of an output (default: the first) against the parameter; return the axes.
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic import measure
 from periodic.accuracy import ErrorEstimate
 from periodic.orbit import Orbit
-from periodic.scheme import Array
 from periodic.solve import Solved, Task
 
 
@@ -36,7 +36,7 @@ class Point:
     orbit: Orbit
     parameter: float
     label: Label
-    multipliers: Array
+    multipliers: NDArray[np.complex128]
     minimum: dict[str, float]
     maximum: dict[str, float]
     error: ErrorEstimate
@@ -58,7 +58,7 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
     """Measure a solved orbit."""
     low, high = measure.extrema(task.system, solved.orbit)
     names = [output.name for output in task.system.outputs]
-    multipliers = np.linalg.eigvals(solved.correction.monodromy)
+    multipliers = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
     return Point(
         orbit=solved.orbit,
         parameter=float(solved.orbit.parameter[task.index]),

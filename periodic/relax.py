@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.collocation import eliminate, finite_rows, solve_stages
 from periodic.orbit import Orbit
@@ -33,12 +34,12 @@ class _Pieces:
     stages: Array
     algebraic: Array
 
-    def take(self, chosen: Array) -> _Pieces:
+    def take(self, chosen: NDArray[np.bool_]) -> _Pieces:
         return _Pieces(*[a[chosen] for a in (self.start, self.width, self.tau, self.stages, self.algebraic)])
 
 
 def relax(system: System, orbit: Orbit) -> Orbit:
-    """Return the orbit with its hard intervals solved locally; those that do not converge stay as they are."""
+    """Return the orbit with its hard intervals solved locally, as far as they converge."""
     pieces = _Pieces(orbit.nodes[:-1], orbit.grid.width, orbit.stage_phases, orbit.stages, orbit.algebraic)
     stages, algebraic = orbit.stages.copy(), orbit.algebraic.copy()
     index = np.arange(orbit.mesh.ntst)
@@ -70,7 +71,9 @@ def _iterate(system: System, orbit: Orbit, pieces: _Pieces) -> Array:
         pieces.tau.ravel(),
         orbit.parameter,
     )
-    rows, _ = finite_rows(np.concatenate([line.residual[:, :, None], line.d_rate, line.d_state], axis=2), line.d_algebraic)
+    rows, _ = finite_rows(
+        np.concatenate([line.residual[:, :, None], line.d_rate, line.d_state], axis=2), line.d_algebraic
+    )
     reduced, map_z = eliminate(rows, n)
     local = reduced.reshape(count, ncol, n, -1)
     change = solve_stages(local, local[..., :1], weights)[..., 0]

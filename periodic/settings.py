@@ -21,6 +21,11 @@ class MeshSettings:
     ntst_max: int = 1000
     anchors: AnchorSettings = field(default_factory=AnchorSettings)
 
+    @property
+    def shortest(self) -> float:
+        """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
+        return 0.05 * self.tolerance
+
     def __post_init__(self) -> None:
         if not 1e-13 <= self.tolerance <= 1e-1:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.1")
@@ -43,7 +48,9 @@ class StepSettings:
 
     def __post_init__(self) -> None:
         if not 0 < self.ds_min <= self.ds <= self.ds_max:
-            raise ValueError(f"ds is {self.ds}; it must lie from ds_min = {self.ds_min} to ds_max = {self.ds_max}")
+            raise ValueError(
+                f"ds is {self.ds}; it must lie from ds_min = {self.ds_min} to ds_max = {self.ds_max}"
+            )
         if self.max_points < 1:
             raise ValueError(f"max_points is {self.max_points}; it must be at least 1")
 

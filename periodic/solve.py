@@ -11,9 +11,9 @@ from periodic.accuracy import ErrorEstimate, estimate
 from periodic.adapt import redistribute
 from periodic.anchors import Crossing
 from periodic.closure import Direction, Metric, Plane
-from periodic.relax import relax
 from periodic.newton import Correction, Outcome, correct, moved
 from periodic.orbit import Orbit, transfer
+from periodic.relax import relax
 from periodic.settings import Settings
 from periodic.system import System
 
@@ -35,7 +35,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Solved:
-    """An orbit of a task with its tangent, its error estimate and the crossings its mesh should be tied to."""
+    """An orbit with its tangent, its error estimate and the crossings its mesh should be tied to."""
 
     correction: Correction
     tangent: Direction
@@ -57,7 +57,12 @@ def parameter_direction(orbit: Orbit, metric: Metric) -> Direction:
     """The direction in which only the parameter changes; a plane across it fixes the parameter."""
     zero = np.zeros_like(orbit.nodes)
     return Direction(
-        zero, np.zeros_like(orbit.stages), np.zeros_like(orbit.algebraic), np.zeros_like(orbit.phases), zero, metric.scale
+        zero,
+        np.zeros_like(orbit.stages),
+        np.zeros_like(orbit.algebraic),
+        np.zeros_like(orbit.phases),
+        zero,
+        metric.scale,
     )
 
 
@@ -75,7 +80,9 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     tangent = tangent.scaled(sign / length)
     origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
     error = estimate(task.system, result.orbit, result.monodromy, origin)
-    return Solved(result, tangent, error, anchors.wanted(task.system, result.orbit, task.settings.mesh.anchors))
+    return Solved(
+        result, tangent, error, anchors.wanted(task.system, result.orbit, task.settings.mesh.anchors)
+    )
 
 
 def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
@@ -111,7 +118,7 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     """Solve again on a mesh made for this orbit: right anchors, right number of intervals."""
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
-    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.tolerance)
+    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
     orbit = relax(task.system, transfer(old, mesh, phases))
     if fixed:
         return at_parameter(task, orbit, float(np.sign(solved.tangent.parameter)) or 1.0)

@@ -6,9 +6,9 @@ shares per point are in the variables `*_count`. Loading reads numbers and strin
 
 from __future__ import annotations
 
+import io
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -27,14 +27,18 @@ FORMAT = "orbitrace branch 1"
 
 
 def save(branch: Branch, path: Path) -> None:
-    """Write a branch; an existing file is replaced only when the new one is complete."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    os.close(handle)
+    """Write a branch; an existing file is replaced only when the new one is complete.
+
+    The file is made in memory first: the HDF5 library does not survive a disk that fills up under it.
+    """
+    memory = io.BytesIO()
+    dataset(branch).to_netcdf(memory, engine="h5netcdf")
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        dataset(branch).to_netcdf(name, engine="h5netcdf")
-        os.replace(name, path)
+        part.write_bytes(memory.getvalue())
+        part.replace(path)
     finally:
-        Path(name).unlink(missing_ok=True)
+        part.unlink(missing_ok=True)
 
 
 def load(path: Path) -> Branch:
@@ -44,12 +48,16 @@ def load(path: Path) -> Branch:
     try:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
             if data.attrs.get("format") != FORMAT:
-                raise BranchFileError(f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}")
+                raise BranchFileError(
+                    f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}"
+                )
             return _branch(data.load())
     except BranchFileError:
         raise
     except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
-        raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch ({type(error).__name__})") from error
+        raise BranchFileError(
+            f"branch file {str(path)!r} is damaged or not a branch ({type(error).__name__})"
+        ) from error
 
 
 def dataset(branch: Branch) -> xr.Dataset:
@@ -71,7 +79,10 @@ def dataset(branch: Branch) -> xr.Dataset:
         data[name] = (("point", "output"), _table([[e[o] for o in outputs] for e in extreme], len(outputs)))
     states = len(branch.layout.states)
     for part, take in (("real", np.real), ("imag", np.imag)):
-        data[f"multiplier_{part}"] = (("point", "state"), _table([take(p.multipliers) for p in points], states))
+        data[f"multiplier_{part}"] = (
+            ("point", "state"),
+            _table([take(p.multipliers) for p in points], states),
+        )
     data["parameters"] = (
         ("point", "parameter"),
         _table([p.orbit.parameter for p in points], len(branch.layout.parameters)),
@@ -185,7 +196,8 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
         tied = tuple(
             Anchor(int(s), int(d), float(v))
             for s, d, v in zip(
-                *(data[f"anchor_{name}"].values[span] for name in ("switch", "direction", "level")), strict=True
+                *(data[f"anchor_{name}"].values[span] for name in ("switch", "direction", "level")),
+                strict=True,
             )
         )
         mesh = Mesh(scheme, mine, tied, float(data["period"].values[i]))

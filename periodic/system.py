@@ -64,7 +64,7 @@ class LinearisationLike(Protocol):
 
 
 class System(Protocol):
-    """See the module's docstring. Shapes: rate, state (N, n); algebraic (N, m); phase (N,); parameter (p,)."""
+    """Shapes: rate, state (N, n); algebraic (N, m); phase (N,); parameter (p,)."""
 
     @property
     def states(self) -> Sequence[VariableLike]: ...

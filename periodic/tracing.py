@@ -12,8 +12,8 @@ import numpy as np
 from periodic.branch import Branch, Layout, Quantity
 from periodic.closure import Metric
 from periodic.continuation import Run
-from periodic.orbit import Orbit, at_rest
 from periodic.mesh import uniform
+from periodic.orbit import Orbit, at_rest
 from periodic.point import Point
 from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
@@ -128,4 +128,3 @@ def _rest(task: Task, index: int, begin: float) -> Orbit:
     parameter[index] = begin
     mesh = task.settings.mesh
     return at_rest(task.system, uniform(mesh.scheme, mesh.ntst), parameter)
-

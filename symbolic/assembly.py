@@ -102,7 +102,7 @@ class Assembly:
         A model without excitation keeps omega = 2 pi / period as a parameter of its own.
         """
         if self.frequency is None:
-            self.excite(self.parameter(Parameter("omega", 1.0, "rad/s"), "omega"))
+            self.frequency = self.parameter(Parameter("omega", 1.0, "rad/s"), "omega")
         return ca.substitute(expression, self.omega, self.frequency)
 
     def state(self, name: str, unit: str, scale: float, rest: ca.SX) -> State:

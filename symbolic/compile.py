@@ -173,10 +173,10 @@ class CompiledSystem:
     def _jacobian_kernel(self, free: tuple[int, ...]) -> Callable[..., None]:
         if free not in self._jacobians:
             e = self.expressions
-            chosen = e.parameter[list(free)] if free else ca.SX(0, 1)
+            chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase)
             results = [e.residual, *(ca.jacobian(e.residual, v) for v in variables)]
-            results.append(ca.jacobian(e.residual, e.parameter)[:, list(free)] if free else ca.SX(e.residual.size1(), 0))
+            results.append(ca.jacobian(e.residual, chosen))
             self._jacobians[free] = build(self._arguments, results)
         return self._jacobians[free]
 
@@ -209,8 +209,8 @@ def _motion_rows(assembly: Assembly) -> list[ca.SX]:
 
 
 def _system(assembly: Assembly) -> CompiledSystem:
-    for motion in assembly.motions.values():
-        assembly.outputs.insert(0, (Variable(motion.position.name, motion.position.unit), motion.position.symbol))
+    positions = [motion.position for motion in assembly.motions.values()]
+    outputs = [(Variable(x.name, x.unit), x.symbol) for x in positions] + assembly.outputs
     rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
     states = assembly.states
     rate, state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
@@ -224,7 +224,8 @@ def _system(assembly: Assembly) -> CompiledSystem:
         stacked = assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
         old = [s.derivative for s in states] + [s.symbol for s in states]
         old += [u.symbol for u in assembly.unknowns] + [p.symbol for p in parameters]
-        return ca.substitute(stacked, ca.vertcat(*old), ca.vertcat(rate * scales, state * scales, unknown, packed))
+        new = ca.vertcat(rate * scales, state * scales, unknown, packed)
+        return ca.substitute(stacked, ca.vertcat(*old), new)
 
     expressions = Expressions(
         rate=rate,
@@ -233,7 +234,7 @@ def _system(assembly: Assembly) -> CompiledSystem:
         phase=assembly.phase,
         parameter=packed,
         residual=scaled(rows),
-        outputs=scaled([expression for _, expression in assembly.outputs]),
+        outputs=scaled([expression for _, expression in outputs]),
         switches=scaled([expression for _, expression in assembly.switches]),
         rest_state=scaled([s.rest / s.scale for s in states]),
         rest_algebraic=scaled([u.rest for u in assembly.unknowns]),
@@ -248,7 +249,7 @@ def _system(assembly: Assembly) -> CompiledSystem:
         states=tuple(Variable(s.name, s.unit, s.scale) for s in states),
         algebraics=tuple(Variable(u.name) for u in assembly.unknowns),
         parameters=tuple(Variable(p.name, p.unit, 1.0, p.value) for p in parameters),
-        outputs=tuple(variable for variable, _ in assembly.outputs),
+        outputs=tuple(variable for variable, _ in outputs),
         switches=tuple(info for info, _ in assembly.switches),
         expressions=expressions,
     )

@@ -31,16 +31,27 @@ class ContactPair:
         object.__setattr__(self, "name", name)
 
 
+@dataclass(frozen=True)
+class Loaded:
+    """A contact under its preload Q (SI): W = K delta^n, delta0 = (Q/K)^(1/n), compression g = w - X."""
+
+    name: str
+    preload: ca.SX
+    exponent: ca.SX
+    delta0: ca.SX
+    compression: ca.SX
+
+
 class Film(Protocol):
     """What lies between the surfaces; it turns the compression g into a load."""
 
-    def close(self, assembly: Assembly, junction: Junction) -> ca.SX:
+    def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Add the film's states, unknowns and rows; return the load W in N."""
 
 
 @dataclass
 class Junction:
-    """What the parts have said of one contact pair (SI symbols)."""
+    """What the parts have said of one contact pair (SI symbols); None where they have said nothing yet."""
 
     pair: ContactPair
     preload: ca.SX | None = None
@@ -49,42 +60,42 @@ class Junction:
     film: Film | None = None
     damping_ratio: ca.SX | None = None
     profile: ca.SX = field(default_factory=lambda: ca.SX(0))
-    delta0: ca.SX = field(default_factory=lambda: ca.SX(0))
-    compression: ca.SX = field(default_factory=lambda: ca.SX(0))
 
     def close(self, assembly: Assembly) -> None:
         """Join the parts: load on every coordinate, outputs and switches."""
-        if self.preload is None or self.stiffness is None:
-            raise ValueError(f"contact {self.pair.name!r} lacks a part; it needs both Preload and Hertz")
-        self.delta0 = (self.preload / self.stiffness) ** (1 / self.exponent)
-        length = assembly.nominal(self.delta0)
+        contact = self._loaded(assembly)
+        load = self.film.close(assembly, contact) if self.film else _dry(assembly, contact)
+        damping = self._damping(assembly, contact)
         for q in self.pair.coordinates:
-            assembly.suggest_scale(q, length)
-        motions = [assembly.motion(q) for q in self.pair.coordinates]
-        displacement = sum((m.position.symbol for m in motions), ca.SX(0))
-        self.compression = self.profile - displacement
-        load = self.film.close(assembly, self) if self.film else self._dry(assembly)
-        damping = self._damping(assembly)
-        for motion in motions:
-            motion.force += load - self.preload - damping
+            assembly.motion(q).force += load - contact.preload - damping
         assembly.output("load", "N", load)
 
-    def _dry(self, assembly: Assembly) -> ca.SX:
-        """W = K max(delta, 0)^n, delta = delta0 + g: no film, no unknown, a kink at both zeros of delta."""
-        deflection = self.delta0 + self.compression
-        assembly.output("deflection", "m", ca.fmax(deflection, 0))
-        assembly.switch(f"{self.pair.name}: delta = 0", deflection / self.delta0, 0)
-        return self.preload * ca.fmax(deflection / self.delta0, 0) ** self.exponent
+    def _loaded(self, assembly: Assembly) -> Loaded:
+        if self.preload is None or self.stiffness is None or self.exponent is None:
+            raise ValueError(f"contact {self.pair.name!r} lacks a part; it needs both Preload and Hertz")
+        delta0 = (self.preload / self.stiffness) ** (1 / self.exponent)
+        for q in self.pair.coordinates:
+            assembly.suggest_scale(q, assembly.nominal(delta0))
+        displacement = sum((assembly.motion(q).position.symbol for q in self.pair.coordinates), ca.SX(0))
+        return Loaded(self.pair.name, self.preload, self.exponent, delta0, self.profile - displacement)
 
-    def _damping(self, assembly: Assembly) -> ca.SX:
+    def _damping(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """2 zeta omega0 mu dX/dt, with omega0^2 = n Q / (delta0 mu), mu the reduced mass of the bodies."""
         if self.damping_ratio is None:
             return ca.SX(0)
         coordinates = self.pair.coordinates
         mu = 1 / sum((1 / assembly.motion(q).mass for q in coordinates), ca.SX(0))
-        stiffness = self.exponent * self.preload / self.delta0
+        stiffness = contact.exponent * contact.preload / contact.delta0
         velocity = sum((assembly.speed_of(q) for q in coordinates), ca.SX(0))
         return 2 * self.damping_ratio * ca.sqrt(stiffness * mu) * velocity
+
+
+def _dry(assembly: Assembly, contact: Loaded) -> ca.SX:
+    """W = K max(delta, 0)^n, delta = delta0 + g: no film, no unknown, a kink at both zeros of delta."""
+    deflection = contact.delta0 + contact.compression
+    assembly.output("deflection", "m", ca.fmax(deflection, 0))
+    assembly.switch(f"{contact.name}: delta = 0", deflection / contact.delta0, 0)
+    return contact.preload * ca.fmax(deflection / contact.delta0, 0) ** contact.exponent
 
 
 def junction_of(assembly: Assembly, pair: ContactPair) -> Junction:

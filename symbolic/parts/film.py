@@ -15,7 +15,7 @@ import casadi as ca
 
 from symbolic.assembly import Assembly
 from symbolic.model import Part
-from symbolic.parts.contact import ContactPair, Junction, junction_of
+from symbolic.parts.contact import ContactPair, Loaded, junction_of
 from symbolic.variables import Value
 
 REST_XI = math.log(math.e - 1)
@@ -63,7 +63,8 @@ def move_xi(xi: ca.SX, increment: ca.SX) -> ca.SX:
     linear_in_s = _inverse_log_softplus(kept)
     fall = xi + ca.fmax(ca.fmin(increment, math.log(LEAST_LEFT)), -10)
     moved = ca.if_else(change > LEAST_LEFT - 1, linear_in_s, fall)
-    return ca.if_else(xi < EMPTY, ca.fmax(moved, ca.fmin(xi + increment, EMPTY)), moved)
+    free = ca.fmin(xi + increment, EMPTY)
+    return ca.if_else(xi < EMPTY, ca.if_else(increment > 0, ca.fmax(moved, free), free), moved)
 
 
 def _inverse_log_softplus(y: ca.SX) -> ca.SX:
@@ -77,7 +78,7 @@ def _inverse_log_softplus(y: ca.SX) -> ca.SX:
 class ThicknessLaw(Protocol):
     """A law for the steady film thickness."""
 
-    def thickness(self, assembly: Assembly, junction: Junction, beta: ca.SX) -> ca.SX:
+    def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m as an expression in the model's parameters."""
 
 
@@ -95,13 +96,13 @@ class CalibratedThickness:
     viscosity: Value
     piezoviscosity: Value
 
-    def thickness(self, assembly: Assembly, junction: Junction, beta: ca.SX) -> ca.SX:
+    def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m."""
         u = entraining_speed(assembly, self.speed, self.radius)
         eta = assembly.parameter(self.viscosity, "viscosity", "Pa s")
         alpha = assembly.parameter(self.piezoviscosity, "piezoviscosity", "m^2/N")
         rolling = (u / 1.92265) ** 0.625 * (eta / 0.890) ** 0.625
-        return 3.85e-6 * rolling * (alpha / 25.9e-9) ** 0.46 * (junction.preload / 810) ** (-1 / beta)
+        return 3.85e-6 * rolling * (alpha / 25.9e-9) ** 0.46 * (contact.preload / 810) ** (-1 / beta)
 
 
 def entraining_speed(assembly: Assembly, speed: Value, radius: Value) -> ca.SX:
@@ -127,21 +128,22 @@ class SqueezeFilm(Part):
         """Put this film into the contact."""
         junction_of(assembly, self.pair).film = self
 
-    def close(self, assembly: Assembly, junction: Junction) -> ca.SX:
+    def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Rows: film law (its xi-derivative never vanishes) for xi, geometry for h. Returns W."""
         beta = assembly.parameter(self.beta, "beta")
-        gamma = assembly.parameter(self.squeeze, "squeeze") / entraining_speed(assembly, self.speed, self.radius)
-        h0 = self.law.thickness(assembly, junction, beta)
-        h = assembly.state("h", "m", assembly.nominal(junction.delta0), h0)
+        u = entraining_speed(assembly, self.speed, self.radius)
+        gamma = assembly.parameter(self.squeeze, "squeeze") / u
+        h0 = self.law.thickness(assembly, contact, beta)
+        h = assembly.state("h", "m", assembly.nominal(contact.delta0), h0)
         xi = assembly.algebraic("xi", ca.SX(REST_XI), move_xi)
-        deflection = 1 + (h.symbol - h0 + junction.compression) / junction.delta0
-        log_load = junction.exponent * log_softplus(xi)
+        deflection = 1 + (h.symbol - h0 + contact.compression) / contact.delta0
+        log_load = contact.exponent * log_softplus(xi)
         squeeze = gamma * assembly.omega * h.derivative
         assembly.algebraic_rows.append(log_load + beta * ca.log(h.symbol / h0) + squeeze)
         assembly.differential_rows.append(softplus(xi) - deflection)
-        _describe(assembly, junction, h.symbol, xi)
-        assembly.switch(f"{junction.pair.name}: lift-off", deflection, -1, LEVELS)
-        return junction.preload * ca.exp(log_load)
+        _describe(assembly, contact, h.symbol, xi)
+        assembly.switch(f"{contact.name}: lift-off", deflection, -1, LEVELS)
+        return contact.preload * ca.exp(log_load)
 
 
 @dataclass(frozen=True)
@@ -156,22 +158,22 @@ class QuasistaticFilm(Part):
         """Put this film into the contact."""
         junction_of(assembly, self.pair).film = self
 
-    def close(self, assembly: Assembly, junction: Junction) -> ca.SX:
+    def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Row: geometry, s(xi) = 1 + (h(xi) - h0 + g)/delta0. Returns W."""
         beta = assembly.parameter(self.beta, "beta")
-        h0 = self.law.thickness(assembly, junction, beta)
+        h0 = self.law.thickness(assembly, contact, beta)
         xi = assembly.algebraic("xi", ca.SX(REST_XI), move_xi)
-        log_load = junction.exponent * log_softplus(xi)
+        log_load = contact.exponent * log_softplus(xi)
         h = h0 * ca.exp(-log_load / beta)
-        gap = 1 + (junction.compression - h0) / junction.delta0
-        assembly.algebraic_rows.append(softplus(xi) - gap - h / junction.delta0)
-        _describe(assembly, junction, h, xi)
-        lifted = h0 * LOST ** (-junction.exponent / beta) / junction.delta0
-        assembly.switch(f"{junction.pair.name}: lift-off", gap + lifted - LOST, 0)
-        return junction.preload * ca.exp(log_load)
+        gap = 1 + (contact.compression - h0) / contact.delta0
+        assembly.algebraic_rows.append(softplus(xi) - gap - h / contact.delta0)
+        _describe(assembly, contact, h, xi)
+        lifted = h0 * LOST ** (-contact.exponent / beta) / contact.delta0
+        assembly.switch(f"{contact.name}: lift-off", gap + lifted - LOST, 0)
+        return contact.preload * ca.exp(log_load)
 
 
-def _describe(assembly: Assembly, junction: Junction, h: ca.SX, xi: ca.SX) -> None:
+def _describe(assembly: Assembly, contact: Loaded, h: ca.SX, xi: ca.SX) -> None:
     """Add the outputs of a lubricated contact."""
     assembly.output("film", "m", h)
-    assembly.output("deflection", "m", junction.delta0 * softplus(xi))
+    assembly.output("deflection", "m", contact.delta0 * softplus(xi))
