@@ -13,7 +13,7 @@ help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-6s %s\n", $$1, $$2 }' Makefile
 
 run: $(VENV)/.installed ## Trace the example disc through resonance
-	$(BIN)/orbitrace trace vitrea79-810N
+	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
 test: $(VENV)/.installed-dev ## Run the tests
 	$(BIN)/python -m pytest

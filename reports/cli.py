@@ -90,6 +90,12 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
 ]
+Sweep = Annotated[
+    bool,
+    typer.Option(
+        "--sweep", help="Also integrate in time, up and down; the picture shows where that settles."
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
 
 
@@ -118,6 +124,7 @@ def trace(
     changes: Changes = None,
     accuracy: Dial = Effort.STANDARD,
     out: Out = None,
+    sweep: Sweep = False,
     as_json: Json = False,
 ) -> int:
     """Trace the branch of periodic orbits of a scene and find its folds.
@@ -137,10 +144,11 @@ def trace(
     with heard_once():
         try:
             branch = _traced(name, task, accuracy)
+            integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
-        _report(name, task, branch, folder, as_json)
+        _report(name, task, branch, integrated, folder, as_json)
     return _verdict(branch, folder)
 
 
@@ -162,10 +170,35 @@ def _traced(name: str, task: run.Task, accuracy: Effort) -> Branch:
     return branch
 
 
-def _report(name: str, task: run.Task, branch: Branch, folder: Path, as_json: bool) -> None:
+def _interrupted(branch: Branch) -> bool:
+    from periodic import Reason
+
+    return branch.stop.reason is Reason.INTERRUPTED
+
+
+def _swept(name: str, task: run.Task) -> run.Settlements | None:
+    """Integrate in time; None where that is interrupted, so that the branch is still saved."""
+    from reports import console, run
+
+    with console.counting(f"integrating {name} in time", 2 * run.SPEEDS) as counted:
+        try:
+            return run.swept(task, counted)
+        except KeyboardInterrupt:
+            _say("the integration in time was interrupted; the picture goes without it")
+            return None
+
+
+def _report(
+    name: str,
+    task: run.Task,
+    branch: Branch,
+    integrated: run.Settlements | None,
+    folder: Path,
+    as_json: bool,
+) -> None:
     from reports import console, run, summary
 
-    files = run.save(folder, name, task.scene, branch)
+    files = run.save(folder, name, task.scene, branch, integrated)
     if as_json:
         typer.echo(summary.json_text(name, task.scene, branch), nl=False)
     else:

@@ -40,6 +40,25 @@ def progress(name: str, scene: Scene) -> Iterator[Callable[[Point], None] | None
         yield show
 
 
+@contextmanager
+def counting(what: str, total: int) -> Iterator[Callable[[object], None] | None]:
+    """Give the callback that counts what is done, or None where standard error is no terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True, highlight=False, markup=False, emoji=False).status(what) as status:
+        done = 0
+
+        def count(_: object) -> None:
+            nonlocal done
+            done += 1
+            status.update(f"{what}: {done} of {total}")
+
+        yield count
+
+
 def _reading(column: Column, point: Point) -> str:
     value = column.value(point)
     return f"{column.heading} {value:.5g}" if isinstance(value, float) else ""

@@ -18,6 +18,7 @@ from reports.view import view_of
 
 if TYPE_CHECKING:
     from periodic import Accuracy, Branch, Point
+    from reports.sweep import Settled
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,14 +90,37 @@ def trace(task: Task, accuracy: Accuracy, progress: Callable[[Point], None] | No
     )
 
 
-def save(folder: Path, name: str, scene: Scene, branch: Branch) -> list[Path]:
+SPEEDS = 33
+"""Values at which a sweep in time lets the motion settle, each way."""
+
+Settlements = tuple[list[tuple[float, float]], list[tuple[float, float]]]
+
+
+def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Settlements:
+    """Return what time integration settles to over the scene's range, rising and falling, as shown."""
+    import numpy as np
+
+    from reports.build import build
+    from reports.sweep import sweep
+
+    view, system = view_of(task.scene), build(task.scene)
+    low, high = sorted(value * view.unit for value in task.scene.trace.ends)
+    values = list(np.linspace(low, high, SPEEDS))
+    ways = [sweep(system, view.parameter, way, progress=progress) for way in (values, values[::-1])]
+    below, above = ([(m.parameter / view.unit, view.settled(m)) for m in way] for way in ways)
+    return below, above
+
+
+def save(
+    folder: Path, name: str, scene: Scene, branch: Branch, integrated: Settlements | None = None
+) -> list[Path]:
     """Write the four files of a branch and return them. Raises InputError if one cannot be written."""
     from reports.picture import draw
 
     writers: dict[str, Callable[[Path], object]] = {
         "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
-        "branch.png": lambda path: draw(path, scene, branch),
+        "branch.png": lambda path: draw(path, scene, branch, integrated),
         # Last: on a full disk the HDF5 library may take the whole process down.
         "branch.nc": branch.save,
     }

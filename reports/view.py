@@ -16,6 +16,7 @@ from reports.schema import DiscScene, Scene
 
 if TYPE_CHECKING:
     from periodic import Point
+    from reports.sweep import Settled
 
 MICRO = 1e-6
 RPM = 2 * math.pi / 60
@@ -40,13 +41,14 @@ class View:
 
     `unit` is the SI value of one shown unit of the continuation parameter, its column the first. `columns`
     go to the CSV file; those with a heading are told of special points too. `height` is what the picture
-    plots.
+    plots, `settled` the same of a motion settled in time.
     """
 
     parameter: str
     unit: float
     columns: tuple[Column, ...]
     height: Column
+    settled: Callable[[Settled], float]
     axes: tuple[str, str]
     unit_name: str
 
@@ -108,6 +110,7 @@ DISC = View(
         ERROR,
     ),
     height=SWING,
+    settled=lambda motion: (motion.maximum - motion.minimum) / MICRO,
     axes=("speed (rev/min)", "x peak to peak (µm)"),
     unit_name="rev/min",
 )
@@ -124,6 +127,7 @@ OSCILLATOR = View(
         ERROR,
     ),
     height=LARGEST,
+    settled=lambda motion: motion.maximum,
     axes=("frequency (rad/s)", "largest x (m)"),
     unit_name="rad/s",
 )

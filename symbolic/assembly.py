@@ -1,5 +1,8 @@
 """The workbench on which parts lay their terms before a model is compiled.
 
+Parts write excitation with `sine` and `cosine`, which are sin tau and cos tau in the compiled system and zero
+in the unexcited one.
+
 Independent variable: the phase tau = omega t of the excitation. A coordinate q brings the states q and
 q' = dq/dtau, so that dq/dt = omega q' and the equation of motion reads m omega^2 q'' = sum of forces.
 """
@@ -56,6 +59,8 @@ class Assembly:
     """Collects what the parts contribute; `symbolic.compile` turns it into a System."""
 
     phase: ca.SX = field(default_factory=lambda: ca.SX.sym("tau"))
+    sine: ca.SX = field(default_factory=lambda: ca.SX.sym("sin_tau"))
+    cosine: ca.SX = field(default_factory=lambda: ca.SX.sym("cos_tau"))
     omega: ca.SX = field(default_factory=lambda: ca.SX.sym("omega"))
     frequency: ca.SX | None = None
     parameters: dict[str, Parameter] = field(default_factory=dict)

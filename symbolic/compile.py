@@ -50,6 +50,8 @@ class Expressions:
     phase: ca.SX
     parameter: ca.SX
     residual: ca.SX
+    unexcited: ca.SX
+    frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
     rest_state: ca.SX
@@ -220,8 +222,10 @@ def _system(assembly: Assembly) -> CompiledSystem:
     unknown = ca.SX.sym("algebraic", len(assembly.unknowns))
     increment = ca.SX.sym("increment", len(assembly.unknowns))
 
-    def scaled(expressions: list[ca.SX]) -> ca.SX:
+    def scaled(expressions: list[ca.SX], excited: bool = True) -> ca.SX:
         stacked = assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
+        waves = ca.vertcat(ca.sin(assembly.phase), ca.cos(assembly.phase)) if excited else ca.SX.zeros(2)
+        stacked = ca.substitute(stacked, ca.vertcat(assembly.sine, assembly.cosine), waves)
         old = [s.derivative for s in states] + [s.symbol for s in states]
         old += [u.symbol for u in assembly.unknowns] + [p.symbol for p in parameters]
         new = ca.vertcat(rate * scales, state * scales, unknown, packed)
@@ -234,6 +238,8 @@ def _system(assembly: Assembly) -> CompiledSystem:
         phase=assembly.phase,
         parameter=packed,
         residual=scaled(rows),
+        unexcited=scaled(rows, excited=False),
+        frequency=scaled([assembly.omega]),
         outputs=scaled([expression for _, expression in outputs]),
         switches=scaled([expression for _, expression in assembly.switches]),
         rest_state=scaled([s.rest / s.scale for s in states]),

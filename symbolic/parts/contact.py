@@ -146,7 +146,7 @@ class Waviness(Part):
         amplitude = assembly.parameter(self.amplitude, "amplitude", "m")
         waves = assembly.parameter(self.waves, "waves")
         assembly.excite(waves * assembly.parameter(self.speed, "speed", "rad/s"))
-        junction_of(assembly, self.pair).profile += amplitude * ca.sin(assembly.phase)
+        junction_of(assembly, self.pair).profile += amplitude * assembly.sine
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import casadi as ca
-
 from symbolic.assembly import Assembly
 from symbolic.model import Part
 from symbolic.variables import Coordinate, Value
@@ -89,4 +87,4 @@ class HarmonicForce(Part):
         """Add F cos(tau) and set the frequency of the excitation."""
         amplitude = assembly.parameter(self.force, "F", "N")
         assembly.excite(assembly.parameter(self.frequency, "Omega", "rad/s"))
-        assembly.motion(self.q).force += amplitude * ca.cos(assembly.phase)
+        assembly.motion(self.q).force += amplitude * assembly.cosine

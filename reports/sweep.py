@@ -1,0 +1,84 @@
+"""What plain time integration finds: the parameter is changed step by step and the motion left to settle."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from symbolic import CompiledSystem
+    from symbolic.compile import Array
+    from symbolic.flow import Flow, Trajectory
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settled:
+    """A parameter value and the extremes of the first coordinate once settled (SI)."""
+
+    parameter: float
+    minimum: float
+    maximum: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepSettings:
+    """Blocks of `block` periods are run until the state changes by less than `change` over one of them."""
+
+    tolerance: float = 1e-7
+    block: int = 20
+    change: float = 1e-4
+    most_blocks: int = 40
+    samples: int = 400
+
+
+def sweep(
+    system: CompiledSystem,
+    parameter: str,
+    values: Sequence[float],
+    settings: SweepSettings | None = None,
+    progress: Callable[[Settled], None] | None = None,
+) -> list[Settled]:
+    """Return what the motion settles to at each value in turn, starting from rest at the first.
+
+    Each run starts where the one before it ended. Where the integrator fails the sweep ends early, and
+    the log says so.
+    """
+    from symbolic.flow import Flow, IntegrationError
+    from symbolic.linear import modes, with_values
+
+    settings = settings or SweepSettings()
+    rest = modes(system, {parameter: values[0]})
+    flow, state, algebraic = Flow(system, settings.tolerance), rest.state, rest.algebraic
+    settled: list[Settled] = []
+    for value in values:
+        try:
+            last = _settle(flow, state, algebraic, with_values(system, {parameter: value}), settings)
+        except IntegrationError as error:
+            log.warning("the sweep ends before %s = %g: %s", parameter, value, error)
+            break
+        state, algebraic = last.state[-1], last.algebraic[-1]
+        coordinate = last.state[:, 0] * system.states[0].scale
+        low, high = float(coordinate.min()), float(coordinate.max())
+        settled.append(Settled(parameter=value, minimum=low, maximum=high))
+        if progress is not None:
+            progress(settled[-1])
+    return settled
+
+
+def _settle(flow: Flow, state: Array, algebraic: Array, values: Array, settings: SweepSettings) -> Trajectory:
+    """Run until nothing changes from block to block; return one period more."""
+    period = 2 * np.pi * np.array([0.0, 1.0])
+    for _ in range(settings.most_blocks):
+        before = state
+        for _ in range(settings.block):
+            end = flow.run(state, algebraic, values, period)
+            state, algebraic = end.state[-1], end.algebraic[-1]
+        if float(np.abs(state - before).max()) < settings.change:
+            break
+    return flow.run(state, algebraic, values, np.linspace(0, 2 * np.pi, settings.samples))
