@@ -99,7 +99,7 @@ class Run:
 
     def _next_size(self, ds: float, new: Solved) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step
-        factor = 1.5 if iterations <= 3 else 1.2 if iterations <= 4 else 1.0 if iterations <= 6 else 0.7
+        factor = 1.5 if iterations <= 4 else 1.2 if iterations <= 5 else 1.0 if iterations <= 6 else 0.7
         return float(np.clip(ds * factor, step.ds_min, step.ds_max))
 
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:

@@ -18,6 +18,10 @@ MAX_CHANGE = 2.0
 """Largest relative change in one iteration; longer Newton steps are cut to it."""
 
 
+SHORT = 1e-3
+"""Width (rad) of intervals below which their unknowns count less in damping."""
+
+
 class Outcome(Enum):
     """How a Newton iteration ended; the value says it in words."""
 
@@ -158,17 +162,21 @@ def _sizes(
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
-    In the first the unknowns count with their square: that is what the last step leaves of theirs, and
-    rounding in the rates of very short intervals keeps their own increments from falling further.
+    For convergence the unknowns count with their square: that is what the last step leaves of them, and
+    rounding in the rates of very short intervals keeps their own increments from falling further. For
+    damping they count the less in short intervals, over whose width they hardly act on the states.
     """
     k = len(orbit.phases)
     sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
     sizes += [abs(d) / max(abs(orbit.parameter[i]), 1e-300) for d, i in zip(outer[k:], free, strict=True)]
-    unknowns = float((np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(initial=0.0))
     regular = float(max(sizes))
-    if not np.isfinite(regular + unknowns):
+    unknowns = (np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
+    width = orbit.grid.width
+    left = float(unknowns.max()) ** 2
+    change = float((np.minimum(1.0, width / SHORT) * unknowns).max())
+    if not np.isfinite(regular + left + change):
         return np.inf, np.inf
-    return max(regular, unknowns**2), max(regular, unknowns)
+    return max(regular, left), max(regular, change)
 
 
 def moved(system: System, algebraic: Array, increment: Array) -> Array:

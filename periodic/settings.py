@@ -84,6 +84,6 @@ class Accuracy(Enum):
                 scheme=Scheme(Family.RADAU, ncol),
                 anchors=AnchorSettings(deepest=DEEPEST * tolerance),
             ),
-            newton=NewtonSettings(tolerance=max(1e-2 * tolerance, 1e-10) ** 0.75, max_iterations=10),
+            newton=NewtonSettings(tolerance=max(1e-2 * tolerance, 1e-10) ** 0.75, max_iterations=16),
             step=step or StepSettings(),
         )
