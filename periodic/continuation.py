@@ -19,15 +19,14 @@ from periodic.adapt import redistribute
 from periodic.closure import Plane
 from periodic.locate import RejectedError, special_points
 from periodic.newton import Outcome
-from periodic.orbit import Orbit, transfer
+from periodic.orbit import Orbit
 from periodic.point import Label, Point, describe
-from periodic.relax import relax
 from periodic.solve import (
     Solved,
     Task,
     at_parameter,
+    carried,
     is_settled,
-    on_mesh,
     on_plane,
     parameter_direction,
     predict,
@@ -58,7 +57,6 @@ class Run:
     bounds: tuple[float, float]
     user: Sequence[float] = ()
     stop: Stop | None = None
-    iterations: int = 0
     _since_remesh: int = field(default=0, repr=False)
 
     def points(self, start: Orbit, sign: int) -> Iterator[Point]:
@@ -117,7 +115,6 @@ class Run:
         new = on_plane(task, guess, Plane(base.orbit, base.tangent, ds, task.metric, task.index))
         if isinstance(new, Outcome):
             raise RejectedError(new.value)
-        self.iterations += new.correction.iterations
         if task.metric.dot(new.orbit, base.tangent, new.tangent) < task.settings.step.turn:
             raise RejectedError("the branch turns too sharply for the step")
         floor = NOISE * task.settings.mesh.tolerance * base.orbit.span()
@@ -139,12 +136,10 @@ class Run:
 
     def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
-        task, old = self.task, base.orbit
-        anchors, phases = new.orbit.mesh.anchors, new.orbit.phases
-        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, phases, task.settings.mesh.shortest)
-        orbit = relax(task.system, transfer(old, mesh, old.phases))
-        plane = Plane(orbit, on_mesh(base.tangent, old, orbit), 0.0, task.metric, task.index)
-        moved = on_plane(task, orbit, plane)
+        task, anchors = self.task, new.orbit.mesh.anchors
+        shortest = task.settings.mesh.shortest
+        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, new.orbit.phases, shortest)
+        moved = carried(task, base, mesh, base.orbit.phases, base.tangent)
         if isinstance(moved, Outcome):
             raise RejectedError(f"the mesh could not be adapted: {moved.value}")
         return moved

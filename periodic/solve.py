@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,9 +11,11 @@ from periodic.accuracy import ErrorEstimate, estimate
 from periodic.adapt import redistribute
 from periodic.anchors import Crossing
 from periodic.closure import Direction, Metric, Plane
+from periodic.mesh import Mesh
 from periodic.newton import Correction, Outcome, correct, moved
 from periodic.orbit import Orbit, transfer
 from periodic.relax import relax
+from periodic.scheme import Array
 from periodic.settings import Settings
 from periodic.system import System
 
@@ -21,6 +23,17 @@ AIM = 0.15
 """The part of the tolerance that a new mesh aims at."""
 
 ROUNDS = 8
+
+
+KEPT = 30.0
+"""How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
+
+
+@dataclass
+class Work:
+    """What has been spent so far: Newton iterations, failed and rejected ones included."""
+
+    iterations: int = 0
 
 
 @dataclass(frozen=True)
@@ -31,6 +44,7 @@ class Task:
     index: int
     metric: Metric
     settings: Settings
+    work: Work = field(default_factory=Work)
 
 
 @dataclass(frozen=True)
@@ -69,6 +83,7 @@ def parameter_direction(orbit: Orbit, metric: Metric) -> Direction:
 def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
     result = correct(task.system, guess, (task.index,), [plane], task.settings.newton)
+    task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
     assert result.kernel is not None
@@ -119,11 +134,29 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
+    direction = parameter_direction(old, task.metric) if fixed else solved.tangent
+    sign = float(np.sign(solved.tangent.parameter)) or 1.0
+    return carried(task, solved, mesh, phases, direction.scaled(sign) if fixed else direction)
+
+
+def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Direction) -> Solved | Outcome:
+    """Solve for an orbit again on another mesh, on the plane across `direction` (given on the old mesh)."""
+    old = solved.orbit
     orbit = relax(task.system, transfer(old, mesh, phases))
-    if fixed:
-        return at_parameter(task, orbit, float(np.sign(solved.tangent.parameter)) or 1.0)
-    direction = on_mesh(solved.tangent, old, orbit)
-    return on_plane(task, orbit, Plane(orbit, direction, 0.0, task.metric, task.index))
+    plane = Plane(orbit, on_mesh(direction, old, orbit), 0.0, task.metric, task.index)
+    new = on_plane(task, orbit, plane)
+    if isinstance(new, Outcome):
+        return new
+    allowed = KEPT * max(solved.error.worst, task.settings.mesh.tolerance) * old.span()
+    return new if distance(task, old, new.orbit) <= allowed else Outcome.MOVED
+
+
+def distance(task: Task, a: Orbit, b: Orbit) -> float:
+    """Distance of two orbits in the task's metric, at equal phases; they may have different meshes."""
+    profile = b.state(a.mesh.nodes(a.phases)) - a.nodes
+    jump = float(b.parameter[task.index] - a.parameter[task.index])
+    difference = replace(parameter_direction(a, task.metric), profile=profile, parameter=jump)
+    return float(np.sqrt(task.metric.dot(a, difference, difference)))
 
 
 def wanted_ntst(task: Task, solved: Solved) -> int:

@@ -89,7 +89,7 @@ def _joined(
         points=tuple(points),
         stop=stop,
         stop_backwards=backwards,
-        newton_iterations=sum(run.iterations for run in runs),
+        newton_iterations=runs[0].task.work.iterations,
         elapsed=elapsed,
         versions={name: metadata.version(name) for name in ("orbitrace", "numpy", "scipy")},
     )

@@ -154,9 +154,7 @@ def draw(system: sym.CompiledSystem, regime: str = "touching", count: int = 7, s
     for i, variable in enumerate(system.states):
         if variable.name in ("x", "x1") and regime != "touching" and system.outputs[-1].name == "load":
             state[:, i] -= math.copysign(1, high) * (3 + rng.uniform(0, 40, count))
-    return Points(
-        rng.uniform(-1, 1, state.shape), state, xi, rng.uniform(0, 2 * math.pi, count), parameter
-    )
+    return Points(rng.uniform(-1, 1, state.shape), state, xi, rng.uniform(0, 2 * math.pi, count), parameter)
 
 
 def reorder(points: Points, source: sym.CompiledSystem, target: sym.CompiledSystem) -> Points:

@@ -151,9 +151,9 @@ class AlgebraicOscillator(LinearOscillator):
         d_state = np.concatenate([lines.d_state, np.zeros((len(phase), 1, 2))], axis=1)
         d_state[:, 1, 0], d_state[:, 2, 0] = 0.0, -1.0
         zero = np.zeros_like(slope)
+        off = spring - state[:, 0]
         return Lines(
-            np.column_stack([lines.residual, spring - state[:, 0]])
-            + np.column_stack([zero, spring - state[:, 0], zero]),
+            np.stack([lines.residual[:, 0], lines.residual[:, 1] + off, off], axis=1),
             np.concatenate([lines.d_rate, np.zeros((len(phase), 1, 2))], axis=1),
             d_state,
             np.stack([zero, slope, slope], axis=1)[:, :, None],
@@ -224,10 +224,6 @@ class BrokenOscillator(LinearOscillator):
     def __init__(self, limit: float = 0.0) -> None:
         super().__init__()
         self.limit = limit
-
-    def restoring(self, x: Array, phase: Array) -> tuple[Array, Array, Array]:
-        """Return r, dr/dx and dr/dtau."""
-        return x, np.ones_like(x), np.zeros_like(x)
 
     def linearise(
         self,

@@ -49,8 +49,12 @@ def test_derivatives_in_rates_states_and_unknowns(name: str, regime: str) -> Non
     rate, state, xi, phase, p = draw(system, regime).arguments
     lines = system.linearise(rate, state, xi, phase, p)
     count = lines.residual.shape[1]
-    assert_derivative(lines.d_rate, differences(lambda r: system.residual(r, state, xi, phase, p), rate, 3e-4))
-    assert_derivative(lines.d_state, differences(lambda x: system.residual(rate, x, xi, phase, p), state, 3e-4))
+    assert_derivative(
+        lines.d_rate, differences(lambda r: system.residual(r, state, xi, phase, p), rate, 3e-4)
+    )
+    assert_derivative(
+        lines.d_state, differences(lambda x: system.residual(rate, x, xi, phase, p), state, 3e-4)
+    )
     assert lines.d_algebraic.shape == (len(phase), count, len(system.algebraics))
     if system.algebraics:
         by_xi = differences(lambda z: system.residual(rate, state, z, phase, p), xi, 1e-3)
@@ -138,7 +142,9 @@ def test_film_law_never_loses_its_derivative() -> None:
     system = scene("squeeze")
     points = draw(system, count=9)
     xi = np.array([[-1e4], [-700.0], [-60.0], [-30.0], [0.0], [3.0], [40.0], [60.0], [100.0]])
-    slope = system.linearise(points.rate, points.state, xi, points.phase, points.parameter).d_algebraic[:, 3, 0]
+    slope = system.linearise(points.rate, points.state, xi, points.phase, points.parameter).d_algebraic[
+        :, 3, 0
+    ]
     assert (slope * np.maximum(xi[:, 0], 1) > 0.5).all()
 
 
@@ -159,7 +165,10 @@ def test_nan_in_an_argument_reaches_every_row_that_depends_on_it(name: str) -> N
         for k in range(derivative.shape[2]):
             spoilt = bad(points, which, k, np.nan)
             depends = (derivative[:, :, k] != 0).all(axis=0)
-            for residual in (system.residual(*spoilt.arguments), system.linearise(*spoilt.arguments).residual):
+            for residual in (
+                system.residual(*spoilt.arguments),
+                system.linearise(*spoilt.arguments).residual,
+            ):
                 assert np.isnan(residual[:, depends]).all(), (("rate", "state", "algebraic")[which], k)
 
 
@@ -172,7 +181,10 @@ def test_infinite_argument_gives_no_finite_residual(name: str, value: float) -> 
     for which in range(3):
         for k in range(points.arguments[which].shape[1]):
             spoilt = bad(points, which, k, value)
-            for residual in (system.residual(*spoilt.arguments), system.linearise(*spoilt.arguments).residual):
+            for residual in (
+                system.residual(*spoilt.arguments),
+                system.linearise(*spoilt.arguments).residual,
+            ):
                 assert not np.isfinite(residual).all(axis=1).any(), (which, k)
 
 
