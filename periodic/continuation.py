@@ -16,7 +16,7 @@ import numpy as np
 
 from periodic import rotation
 from periodic.adapt import redistribute
-from periodic.closure import Plane
+from periodic.closure import Metric, Plane
 from periodic.locate import RejectedError, special_points
 from periodic.newton import Outcome
 from periodic.orbit import Orbit
@@ -48,6 +48,9 @@ BENT = 0.1
 NOISE = 10.0
 """What the orbits' own errors may add to that distance, in tolerances."""
 
+ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
+"""Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
+
 
 @dataclass
 class Run:
@@ -62,7 +65,7 @@ class Run:
     def points(self, start: Orbit, sign: int) -> Iterator[Point]:
         """Yield points from a start orbit, first towards `sign` times the parameter, until `stop` is set."""
         task, step = self.task, self.task.settings.step
-        base = settle(task, at_parameter(task, start, float(sign)), fixed=True)
+        base = self._first(start, float(sign))
         if isinstance(base, Outcome):
             self.stop = Stop.no_start(base)
             return
@@ -94,6 +97,33 @@ class Run:
             ds = self._next_size(ds, new)
             base = self._prepared(new)
         self.stop = Stop.max_points(step.max_points)
+
+    def _first(self, start: Orbit, sign: float) -> Solved | Outcome:
+        """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
+        task = self.task
+        first = settle(task, at_parameter(task, start, sign), fixed=True)
+        if isinstance(first, Solved) or start.mesh.anchors:
+            return first
+        for factor in ELSEWHERE:
+            orbit = self._approached(start, factor)
+            if orbit is not None:
+                return settle(task, at_parameter(task, orbit, sign), fixed=True)
+        return first
+
+    def _approached(self, start: Orbit, factor: float) -> Orbit | None:
+        """Trace from `factor` times the wanted parameter to it; None where the branch does not get there."""
+        task, wanted = self.task, float(start.parameter[self.task.index])
+        parameter = start.parameter.copy()
+        parameter[task.index] = far = factor * wanted
+        elsewhere = replace(start, parameter=parameter)
+        sign = float(np.sign(wanted - far))
+        first = settle(task, at_parameter(task, elsewhere, sign), fixed=True)
+        if isinstance(first, Outcome) or far == wanted:
+            return None
+        bounds = (min(wanted, far), max(wanted, far))
+        approach = Run(replace(task, metric=Metric(abs(wanted - far))), bounds)
+        last = list(approach.points(first.orbit, int(sign)))[-1]
+        return last.orbit if last.parameter == wanted else None
 
     def _next_size(self, ds: float, new: Solved) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step

@@ -21,6 +21,10 @@ FOLD_PRECISION = 1e-6
 """Precision of a fold's place along the branch, in steps; its parameter is second order in it."""
 
 
+SAME = 1e-9
+"""Parameter values closer than this, in units of the range, are the same."""
+
+
 @dataclass(frozen=True)
 class Found:
     """A special point at `distance` from the step's base."""
@@ -41,11 +45,14 @@ def special_points(
     folds = _folds(task, base, new, ds)
     pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
     found = list(folds)
-    targets = [(value, Label.USER) for value in user] + [(value, Label.END) for value in bounds]
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
-        for value, label in targets:
+        for value in user:
             if _crosses(task, begin, end, value):
-                found.append(_at_value(task, base, begin, end, value, label))
+                found.append(_at_value(task, base, begin, end, value, Label.USER))
+        rising = _value(task, end.solved) > _value(task, begin.solved)
+        bound = bounds[1] if rising else bounds[0]
+        if _crosses(task, begin, end, bound):
+            found.append(_at_value(task, base, begin, end, bound, Label.END))
     found.sort(key=lambda item: item.distance)
     labels = [item.label for item in found]
     return found[: labels.index(Label.END) + 1] if Label.END in labels else found
@@ -58,7 +65,8 @@ def _value(task: Task, solved: Solved) -> float:
 def _crosses(task: Task, begin: Found, end: Found, value: float) -> bool:
     """Whether a value lies in the piece, its begin left out (it belongs to the piece before)."""
     a, b = _value(task, begin.solved), _value(task, end.solved)
-    return bool((a < value <= b) or (b <= value < a))
+    margin = SAME * task.metric.scale
+    return bool((a + margin < value <= b) or (b <= value < a - margin))
 
 
 def _folds(task: Task, base: Solved, new: Solved, ds: float) -> list[Found]:

@@ -103,7 +103,11 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
 def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
     """Solve with the parameter fixed at the guess's value; the tangent points to `sign` times it."""
     across = parameter_direction(guess, task.metric).scaled(sign)
-    return on_plane(task, guess, Plane(guess, across, 0.0, task.metric, task.index))
+    solved = on_plane(task, guess, Plane(guess, across, 0.0, task.metric, task.index))
+    if isinstance(solved, Outcome):
+        return solved
+    exact = replace(solved.orbit, parameter=guess.parameter)  # Newton leaves it within rounding
+    return replace(solved, correction=replace(solved.correction, orbit=exact))
 
 
 def settle(task: Task, solved: Solved | Outcome, *, fixed: bool = False) -> Solved | Outcome:
@@ -134,9 +138,10 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
-    direction = parameter_direction(old, task.metric) if fixed else solved.tangent
-    sign = float(np.sign(solved.tangent.parameter)) or 1.0
-    return carried(task, solved, mesh, phases, direction.scaled(sign) if fixed else direction)
+    if fixed:
+        guess = relax(task.system, transfer(old, mesh, phases))
+        return at_parameter(task, guess, float(np.sign(solved.tangent.parameter)) or 1.0)
+    return carried(task, solved, mesh, phases, solved.tangent)
 
 
 def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Direction) -> Solved | Outcome:

@@ -129,7 +129,9 @@ def test_operation_agrees_with_casadi_at_the_ends_of_its_range(name: str, specia
     others = np.array([-2.5, -1.0, 0.0, 1.0, 2.5, np.inf, special])
     expression = OPERATIONS[name][0]
     for x, y in ((np.full(7, special), others), (others, np.full(7, special))):
-        np.testing.assert_allclose(by_kernel(expression, x, y), by_casadi(expression, x, y), rtol=1e-15, atol=0)
+        np.testing.assert_allclose(
+            by_kernel(expression, x, y), by_casadi(expression, x, y), rtol=1e-15, atol=0
+        )
 
 
 @pytest.mark.parametrize("name", sorted(set(OPERATIONS) - LOGICAL))
@@ -194,5 +196,7 @@ def test_residual_of_a_scene_agrees_with_casadi(name: str, regime: str) -> None:
     function = ca.Function("reference", [e.rate, e.state, e.algebraic, e.phase, e.parameter], [e.residual])
     found = system.residual(*points.arguments)
     *each, p = points.arguments
-    expected = np.array([np.array(function(*(a[i] for a in each), p)).ravel() for i in range(len(points.phase))])
+    expected = np.array(
+        [np.array(function(*(a[i] for a in each), p)).ravel() for i in range(len(points.phase))]
+    )
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-15 * np.abs(expected).max())

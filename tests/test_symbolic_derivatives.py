@@ -1,4 +1,4 @@
-"""Exact derivatives of compiled systems against fourth-order central differences of what they differentiate."""
+"""Exact derivatives of compiled systems against fourth-order central differences."""
 
 from collections.abc import Callable
 

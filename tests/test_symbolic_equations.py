@@ -1,4 +1,4 @@
-"""Compiled scenes against the equations of the paper, written out by hand, and their linearisation at rest."""
+"""Compiled scenes against the equations of the paper, written out by hand, and linearised at rest."""
 
 import math
 
