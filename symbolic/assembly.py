@@ -64,6 +64,7 @@ class Assembly:
     omega: ca.SX = field(default_factory=lambda: ca.SX.sym("omega"))
     frequency: ca.SX | None = None
     parameters: dict[str, Parameter] = field(default_factory=dict)
+    owners: dict[str, Parameter] = field(default_factory=dict)
     motions: dict[Coordinate, Motion] = field(default_factory=dict)
     states: list[State] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
@@ -80,7 +81,8 @@ class Assembly:
         """
         item = value if isinstance(value, Parameter) else Parameter(name, float(value), unit)
         known = self.parameters.setdefault(item.name, item)
-        same = known is item or (item is not value and known.value == item.value)
+        bare = item is not value
+        same = known.value == item.value and (bare or self.owners.setdefault(item.name, item) is item)
         if not same:
             raise ValueError(
                 f"parameter {item.name!r} is defined twice ({known.value} and {item.value}); "
@@ -96,10 +98,11 @@ class Assembly:
 
     def nominal(self, expression: ca.SX) -> float:
         """Return the value of an expression in the parameters at their nominal values."""
+        expression = self.with_frequency(expression)
         items = list(self.parameters.values())
         symbols = ca.vertcat(*[item.symbol for item in items])
         values = [item.value for item in items]
-        return float(ca.Function("nominal", [symbols], [self.with_frequency(expression)])(values))
+        return float(ca.Function("nominal", [symbols], [expression])(values))
 
     def with_frequency(self, expression: ca.SX) -> ca.SX:
         """Replace the placeholder omega by the frequency of the excitation.
@@ -148,6 +151,8 @@ class Assembly:
 
     def output(self, name: str, unit: str, expression: ca.SX) -> None:
         """Add an output: any function of derivatives, states, unknowns, phase and parameters."""
+        if any(name == variable.name for variable, _ in self.outputs):
+            raise ValueError(f"output {name!r} is defined twice; give contact pairs names of their own")
         self.outputs.append((Variable(name, unit), expression))
 
     def switch(

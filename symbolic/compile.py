@@ -79,8 +79,9 @@ class CompiledSystem:
 
     def residual(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
         """Return the scaled residual, shape (N, n+m)."""
-        result = np.empty((len(phase), len(self.states) + len(self.algebraics)))
-        self._residual_kernel(rate, state, algebraic, phase, parameter, result)
+        result = np.zeros((len(phase), len(self.states) + len(self.algebraics)))
+        with np.errstate(all="ignore"):
+            self._residual_kernel(rate, state, algebraic, phase, parameter, result)
         return result
 
     def linearise(
@@ -96,14 +97,13 @@ class CompiledSystem:
         points_, n, m = len(phase), len(self.states), len(self.algebraics)
         shapes = [(n + m,), (n + m, n), (n + m, n), (n + m, m), (n + m,), (n + m, len(free))]
         arrays = [np.zeros((points_, *shape)) for shape in shapes]
-        targets = [a if a.ndim == 2 or a.shape[2] != 1 else a[:, :, 0] for a in arrays]
         with np.errstate(all="ignore"):
-            self._jacobian_kernel(free)(rate, state, algebraic, phase, parameter, *targets)
+            self._jacobian_kernel(free)(rate, state, algebraic, phase, parameter, *_columns(*arrays))
         return Linearisation(*arrays)
 
     def move(self, algebraic: Array, increment: Array) -> Array:
         """Return where Newton increments take the unknowns, both of shape (N, m)."""
-        result = np.empty_like(algebraic)
+        result = np.zeros_like(algebraic)
         with np.errstate(all="ignore"):
             self._move_kernel(algebraic, increment, result)
         return result
@@ -118,7 +118,8 @@ class CompiledSystem:
     def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
         """Return the switch functions, shape (N, switches)."""
         result = np.zeros((len(phase), len(self.switches)))
-        self._switch_kernel(state, phase, parameter, result)
+        with np.errstate(all="ignore"):
+            self._switch_kernel(state, phase, parameter, result)
         return result
 
     def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
@@ -127,7 +128,8 @@ class CompiledSystem:
         d_state = np.zeros((count, k, len(self.states)))
         d_phase = np.zeros((count, k))
         d_parameter = np.zeros((count, k, len(self.parameters)))
-        self._switch_gradient_kernel(state, phase, parameter, d_state, d_phase, d_parameter)
+        with np.errstate(all="ignore"):
+            self._switch_gradient_kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
@@ -183,6 +185,11 @@ class CompiledSystem:
         return self._jacobians[free]
 
 
+def _columns(*arrays: Array) -> list[Array]:
+    """The arrays as a kernel writes them: it takes a last axis of one for a column."""
+    return [a[:, :, 0] if a.ndim == 3 and a.shape[2] == 1 else a for a in arrays]
+
+
 def compile(model: Model | Part) -> CompiledSystem:  # noqa: A001 - the field's word for it
     """Return the System of a model.
 
@@ -202,7 +209,7 @@ def _motion_rows(assembly: Assembly) -> list[ca.SX]:
     rows: list[ca.SX] = []
     for coordinate, motion in assembly.motions.items():
         inertia = motion.mass * assembly.omega**2
-        if motion.mass.is_zero():
+        if motion.mass.is_zero() or assembly.nominal(motion.mass) == 0:
             raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
         scale = assembly.nominal(inertia) * motion.position.scale
         rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)

@@ -29,8 +29,8 @@ _BINARY = {
     ca.OP_OR: "np.logical_or({0}, {1}) * 1.0",
     ca.OP_FMOD: "np.fmod({0}, {1})",
     ca.OP_COPYSIGN: "np.copysign({0}, {1})",
-    ca.OP_FMIN: "np.fmin({0}, {1})",
-    ca.OP_FMAX: "np.fmax({0}, {1})",
+    ca.OP_FMIN: "np.minimum({0}, {1})",
+    ca.OP_FMAX: "np.maximum({0}, {1})",
     ca.OP_ATAN2: "np.arctan2({0}, {1})",
     ca.OP_HYPOT: "np.hypot({0}, {1})",
     ca.OP_IF_ELSE_ZERO: "np.where({0}, {1}, 0.0)",
@@ -98,7 +98,7 @@ def build(arguments: Sequence[Argument], results: Sequence[ca.SX]) -> Callable[.
     """
     function = ca.Function("kernel", [a.symbol for a in arguments], ca.cse(list(results)))
     source = _source(function, [a.read for a in arguments])
-    scope: dict[str, Any] = {"np": np, "special": special}
+    scope: dict[str, Any] = {"np": np, "special": special, "inf": np.inf, "nan": np.nan}
     exec(compile(source, "<orbitrace kernel>", "exec"), scope)  # source is made above from an operation table
     kernel: Callable[..., None] = scope["kernel"]
     return kernel

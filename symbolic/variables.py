@@ -64,6 +64,12 @@ class Coordinate:
     unit: str = "m"
     scale: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.scale is not None and not (math.isfinite(self.scale) and self.scale > 0):
+            raise ValueError(
+                f"scale of coordinate {self.name!r} is {self.scale}; it must be a positive number"
+            )
+
 
 def parameter(name: str, value: float, unit: str = "") -> Parameter:
     """Return a named parameter with its nominal value in SI units."""
@@ -72,6 +78,4 @@ def parameter(name: str, value: float, unit: str = "") -> Parameter:
 
 def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordinate:
     """Return a mechanical coordinate. Raises ValueError for a scale that is not positive."""
-    if scale is not None and not (math.isfinite(scale) and scale > 0):
-        raise ValueError(f"scale of coordinate {name!r} is {scale}; it must be a positive number")
     return Coordinate(name, unit, scale)

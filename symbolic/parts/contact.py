@@ -7,6 +7,7 @@ one is g = w - X (Mehdigoli et al. 1990, eq. 10), shared by the Hertz deflection
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -16,15 +17,18 @@ from symbolic.assembly import Assembly
 from symbolic.model import Part
 from symbolic.variables import Coordinate, Value
 
+DEFAULT = "contact"
+"""Name of a contact pair where none is given."""
+
 
 @dataclass(frozen=True, eq=False)
 class ContactPair:
     """A place where bodies touch; Preload, Hertz, Waviness and a film are parts laid on it."""
 
     coordinates: tuple[Coordinate, ...]
-    name: str = "contact"
+    name: str = DEFAULT
 
-    def __init__(self, *coordinates: Coordinate, name: str = "contact") -> None:
+    def __init__(self, *coordinates: Coordinate, name: str = DEFAULT) -> None:
         if not coordinates:
             raise ValueError("a contact pair has 0 coordinates; it needs at least one")
         object.__setattr__(self, "coordinates", coordinates)
@@ -40,6 +44,10 @@ class Loaded:
     exponent: ca.SX
     delta0: ca.SX
     compression: ca.SX
+
+    def label(self, quantity: str) -> str:
+        """Name of a quantity of this contact: bare in the contact of the default name."""
+        return quantity if self.name == DEFAULT else f"{self.name} {quantity}"
 
 
 class Film(Protocol):
@@ -68,12 +76,16 @@ class Junction:
         damping = self._damping(assembly, contact)
         for q in self.pair.coordinates:
             assembly.motion(q).force += load - contact.preload - damping
-        assembly.output("load", "N", load)
+        assembly.output(contact.label("load"), "N", load)
 
     def _loaded(self, assembly: Assembly) -> Loaded:
         if self.preload is None or self.stiffness is None or self.exponent is None:
             raise ValueError(f"contact {self.pair.name!r} lacks a part; it needs both Preload and Hertz")
         delta0 = (self.preload / self.stiffness) ** (1 / self.exponent)
+        if not 0 < assembly.nominal(delta0) < math.inf:
+            raise ValueError(
+                f"contact {self.pair.name!r} has no static deflection; preload and stiffness must be positive"
+            )
         for q in self.pair.coordinates:
             assembly.suggest_scale(q, assembly.nominal(delta0))
         displacement = sum((assembly.motion(q).position.symbol for q in self.pair.coordinates), ca.SX(0))
@@ -93,9 +105,10 @@ class Junction:
 def _dry(assembly: Assembly, contact: Loaded) -> ca.SX:
     """W = K max(delta, 0)^n, delta = delta0 + g: no film, no unknown, a kink at both zeros of delta."""
     deflection = contact.delta0 + contact.compression
-    assembly.output("deflection", "m", ca.fmax(deflection, 0))
+    assembly.output(contact.label("deflection"), "m", ca.fmax(deflection, 0))
     assembly.switch(f"{contact.name}: delta = 0", deflection / contact.delta0, 0)
-    return contact.preload * ca.fmax(deflection / contact.delta0, 0) ** contact.exponent
+    # Not 0: the derivative of 0^n in n would be 0 log 0.
+    return contact.preload * ca.fmax(deflection / contact.delta0, 1e-300) ** contact.exponent
 
 
 def junction_of(assembly: Assembly, pair: ContactPair) -> Junction:

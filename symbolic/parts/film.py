@@ -134,8 +134,8 @@ class SqueezeFilm(Part):
         u = entraining_speed(assembly, self.speed, self.radius)
         gamma = assembly.parameter(self.squeeze, "squeeze") / u
         h0 = self.law.thickness(assembly, contact, beta)
-        h = assembly.state("h", "m", assembly.nominal(contact.delta0), h0)
-        xi = assembly.algebraic("xi", ca.SX(REST_XI), move_xi)
+        h = assembly.state(contact.label("h"), "m", assembly.nominal(contact.delta0), h0)
+        xi = assembly.algebraic(contact.label("xi"), ca.SX(REST_XI), move_xi)
         deflection = 1 + (h.symbol - h0 + contact.compression) / contact.delta0
         log_load = contact.exponent * log_softplus(xi)
         squeeze = gamma * assembly.omega * h.derivative
@@ -162,7 +162,7 @@ class QuasistaticFilm(Part):
         """Row: geometry, s(xi) = 1 + (h(xi) - h0 + g)/delta0. Returns W."""
         beta = assembly.parameter(self.beta, "beta")
         h0 = self.law.thickness(assembly, contact, beta)
-        xi = assembly.algebraic("xi", ca.SX(REST_XI), move_xi)
+        xi = assembly.algebraic(contact.label("xi"), ca.SX(REST_XI), move_xi)
         log_load = contact.exponent * log_softplus(xi)
         h = h0 * ca.exp(-log_load / beta)
         gap = 1 + (contact.compression - h0) / contact.delta0
@@ -175,5 +175,5 @@ class QuasistaticFilm(Part):
 
 def _describe(assembly: Assembly, contact: Loaded, h: ca.SX, xi: ca.SX) -> None:
     """Add the outputs of a lubricated contact."""
-    assembly.output("film", "m", h)
-    assembly.output("deflection", "m", contact.delta0 * softplus(xi))
+    assembly.output(contact.label("film"), "m", h)
+    assembly.output(contact.label("deflection"), "m", contact.delta0 * softplus(xi))
