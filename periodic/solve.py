@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -27,6 +28,10 @@ ROUNDS = 8
 
 KEPT = 30.0
 """How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
+
+
+ASIDE = (1.0, 0.0, 10.0)
+"""How far before its kink an anchor begins on a new mesh (rad), in tolerances; tried in turn."""
 
 
 @dataclass
@@ -138,22 +143,45 @@ def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outco
     old = solved.orbit
     tied, phases = anchors.placed(task.system, old, solved.wanted)
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
+    sign = float(np.sign(solved.tangent.parameter)) or 1.0
     if fixed:
-        guess = relax(task.system, transfer(old, mesh, phases))
-        return at_parameter(task, guess, float(np.sign(solved.tangent.parameter)) or 1.0)
+        return _first_of(at_parameter(task, guess, sign) for guess in _guesses(task, old, mesh, phases))
     return carried(task, solved, mesh, phases, solved.tangent)
 
 
 def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Direction) -> Solved | Outcome:
     """Solve for an orbit again on another mesh, on the plane across `direction` (given on the old mesh)."""
     old = solved.orbit
-    orbit = relax(task.system, transfer(old, mesh, phases))
-    plane = Plane(orbit, on_mesh(direction, old, orbit), 0.0, task.metric, task.index)
-    new = on_plane(task, orbit, plane)
-    if isinstance(new, Outcome):
-        return new
     allowed = KEPT * max(solved.error.worst, task.settings.mesh.tolerance) * old.span()
-    return new if distance(task, old, new.orbit) <= allowed else Outcome.MOVED
+
+    def attempt(guess: Orbit) -> Solved | Outcome:
+        plane = Plane(guess, on_mesh(direction, old, guess), 0.0, task.metric, task.index)
+        new = on_plane(task, guess, plane)
+        moved_away = isinstance(new, Solved) and distance(task, old, new.orbit) > allowed
+        return Outcome.MOVED if moved_away else new
+
+    return _first_of(attempt(guess) for guess in _guesses(task, old, mesh, phases))
+
+
+def _first_of(attempts: Iterable[Solved | Outcome]) -> Solved | Outcome:
+    """Return the first solution, or the first failure if there is none."""
+    failures: list[Outcome] = []
+    for attempt in attempts:
+        if isinstance(attempt, Solved):
+            return attempt
+        failures.append(attempt)
+    return failures[0]
+
+
+def _guesses(task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+    """Carry an orbit to another mesh, its anchors a little before their kinks, where they are well defined.
+
+    Past its kink a switch hardly changes, and Newton has nothing to hold on to.
+    """
+    deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.anchors])
+    for aside in ASIDE if deep.any() else (0.0,):
+        shifted = phases + aside * task.settings.mesh.tolerance * deep
+        yield relax(task.system, transfer(old, mesh, shifted))
 
 
 def distance(task: Task, a: Orbit, b: Orbit) -> float:
