@@ -34,6 +34,10 @@ ASIDE = (1.0, 0.0, 10.0)
 """How far before its kink an anchor begins on a new mesh (rad), in tolerances; tried in turn."""
 
 
+SHALLOWER = (10.0, 100.0)
+"""How much shallower anchors are tried where a new mesh fails."""
+
+
 @dataclass
 class Work:
     """What has been spent so far: Newton iterations, failed and rejected ones included."""
@@ -139,9 +143,25 @@ def is_settled(task: Task, solved: Solved) -> bool:
 
 
 def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
-    """Solve again on a mesh made for this orbit: right anchors, right number of intervals."""
+    """Solve again on a mesh made for this orbit: right anchors, right number of intervals.
+
+    Where that fails, anchors at shallower levels are tried: they lie farther before the kink.
+    """
+    return _first_of(_remeshed(task, solved, chosen, fixed) for chosen in _choices(task, solved))
+
+
+def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:
+    yield solved.wanted
+    settings = task.settings.mesh.anchors
+    levels = [c.anchor.level for c in solved.wanted if c.anchor.level > 0]
+    for factor in SHALLOWER if levels else ():
+        shallower = replace(settings, deepest=factor * min(levels))
+        yield anchors.wanted(task.system, solved.orbit, shallower)
+
+
+def _remeshed(task: Task, solved: Solved, chosen: list[Crossing], fixed: bool) -> Solved | Outcome:
     old = solved.orbit
-    tied, phases = anchors.placed(task.system, old, solved.wanted)
+    tied, phases = anchors.placed(task.system, old, chosen)
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
     sign = float(np.sign(solved.tangent.parameter)) or 1.0
     if fixed:
