@@ -44,6 +44,7 @@ def special_points(
     """Return the special points of a step in order along the branch; a bound (EP) ends the list."""
     folds = _folds(task, base, new, ds)
     pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
+    _check_ways(task, pieces)
     found = list(folds)
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
         for value in user:
@@ -56,6 +57,18 @@ def special_points(
     found.sort(key=lambda item: item.distance)
     labels = [item.label for item in found]
     return found[: labels.index(Label.END) + 1] if Label.END in labels else found
+
+
+def _check_ways(task: Task, pieces: list[Found]) -> None:
+    """Reject a step whose end does not lie where the folds within it lead.
+
+    Between folds the parameter goes the way of the tangent; an end on the other side is on another part of
+    the branch.
+    """
+    for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
+        way = _slope(begin.solved) if begin.label is not Label.FOLD else _slope(end.solved)
+        if (_value(task, end.solved) - _value(task, begin.solved)) * way < 0:
+            raise RejectedError("the step ends on another part of the branch")
 
 
 def _value(task: Task, solved: Solved) -> float:
