@@ -17,6 +17,9 @@ from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
 
+BEFORE = 1e-9
+"""How far before a kink (rad) the equations are evaluated where a collocation point falls on it."""
+
 
 @dataclass(frozen=True)
 class Condensed:
@@ -83,10 +86,11 @@ class Rows:
 def _rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, float]:
     """Linearise at the collocation points of an orbit; also the largest residual."""
     count, ncol, n = orbit.stages.shape
-    tau, rate = orbit.stage_phases, orbit.knot_rates[:, 1:]
+    rate = orbit.knot_rates[:, 1:]
+    tau, stages = _before_kinks(orbit, rate)
     line = system.linearise(
         rate.reshape(-1, n),
-        orbit.stages.reshape(-1, n),
+        stages.reshape(-1, n),
         orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
         tau.ravel(),
         orbit.parameter,
@@ -95,6 +99,20 @@ def _rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, fl
     moving = _phase_columns(orbit, line.d_rate, line.d_phase)
     columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
     return finite_rows(np.concatenate(columns, axis=2), line.d_algebraic)
+
+
+def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
+    """Phases and stages at which the equations are evaluated: the collocation points, BEFORE a kink.
+
+    A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
+    either side, as rounding has it.
+    """
+    tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
+    if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
+        stages = stages.copy()
+        tau[ends, -1] -= BEFORE
+        stages[ends, -1] -= BEFORE * rate[ends, -1]
+    return tau, stages
 
 
 def finite_rows(columns: Array, d_algebraic: Array) -> tuple[Rows, float]:

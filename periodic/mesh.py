@@ -10,13 +10,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.scheme import Array, Scheme
 
 
 @dataclass(frozen=True)
 class Anchor:
-    """What the mesh is tied to: a switch passing a level, falling (-1) or rising (+1)."""
+    """What the mesh is tied to: a switch passing a level, falling (-1) or rising (+1).
+
+    Level 0 is the kink itself; other levels mark one that lies close by.
+    """
 
     switch: int
     direction: int
@@ -55,6 +59,13 @@ class Mesh:
         """Index of each anchored segment's first node, shape (k,)."""
         counts = [len(b) - 1 for b in self.breaks]
         return np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(int)[: len(self.anchors)]
+
+    @cached_property
+    def exact_ends(self) -> NDArray[np.int_]:
+        """Intervals that end at an anchor of level 0, where derivatives of the equations may jump."""
+        ends = np.append(self.starts[1:], self.ntst) - 1 if self.anchors else np.zeros(0, dtype=int)
+        following = self.anchors[1:] + self.anchors[:1]
+        return np.array([j for j, a in zip(ends, following, strict=True) if a.level == 0.0], dtype=int)
 
     @cached_property
     def _layout(self) -> tuple[Array, Array, Array]:

@@ -42,14 +42,20 @@ def both_ways() -> per.Branch:
 def test_user_points_on_every_sheet() -> None:
     """Assert that every value asked for is hit exactly, once on each sheet, in order along the branch."""
     inside = [value for value in VALUES if 1.4386701455 < value < 2.2119353170]
-    expected = [*[v for v in VALUES if v < 2.2119353170], *inside[::-1], *[v for v in VALUES if v > 1.4386701455]]
+    expected = [
+        *[v for v in VALUES if v < 2.2119353170],
+        *inside[::-1],
+        *[v for v in VALUES if v > 1.4386701455],
+    ]
     assert labelled(duffing(at=VALUES), Label.USER) == expected
 
 
 def test_user_points_near_a_fold() -> None:
     """Assert that a value 1e-6 inside a fold has its points on all sheets, one 1e-6 outside on one alone."""
     fold = duffing().labelled(Label.FOLD)[0].parameter
-    assert labelled(per.trace(SYSTEM, "Omega", (0.9, 2.4), at=(fold - 1e-6,)), Label.USER) == [fold - 1e-6] * 3
+    assert (
+        labelled(per.trace(SYSTEM, "Omega", (0.9, 2.4), at=(fold - 1e-6,)), Label.USER) == [fold - 1e-6] * 3
+    )
     assert labelled(per.trace(SYSTEM, "Omega", (0.9, 2.4), at=(fold + 1e-6,)), Label.USER) == [fold + 1e-6]
 
 
@@ -83,7 +89,9 @@ def test_bounds_are_reached_exactly(bounds: tuple[float, float]) -> None:
 
 def test_branch_that_returns_to_its_bound() -> None:
     """Assert that a branch which turns back at a fold ends where it leaves the range again."""
-    branch = per.trace(SYSTEM, "Omega", (1.7, 2.9), start=1.7, guess=duffing(at=(1.7,)).labelled(Label.USER)[0].orbit)
+    branch = per.trace(
+        SYSTEM, "Omega", (1.7, 2.9), start=1.7, guess=duffing(at=(1.7,)).labelled(Label.USER)[0].orbit
+    )
     assert len(branch.labelled(Label.FOLD)) == 1
     assert labelled(branch, Label.END) == [1.7, 1.7]
     assert branch.stop.reason is Reason.BOUND

@@ -55,9 +55,7 @@ def test_heights_at_the_folds(accuracy: per.Accuracy, precision: float) -> None:
 
 @each_problem
 @pytest.mark.parametrize("accuracy, precision", [(FINE, 1e-9), (STANDARD, 1e-8)])
-def test_folds_do_not_depend_on_direction(
-    problem: Problem, accuracy: per.Accuracy, precision: float
-) -> None:
+def test_folds_do_not_depend_on_direction(problem: Problem, accuracy: per.Accuracy, precision: float) -> None:
     """Assert that the branch traced downwards has the same folds in the opposite order."""
     down = folds(duffing(problem, accuracy, (3.0, 0.3)))
     assert down[::-1] == pytest.approx(folds(duffing(problem, accuracy)), rel=precision)

@@ -71,7 +71,16 @@ def changed(saved: bytes, path: Path) -> xr.Dataset:
         return data.load()
 
 
-NAMES = ["value", "label", "multiplier_imag", "parameters", "node_state", "stage_state", "sigma", "break_count"]
+NAMES = [
+    "value",
+    "label",
+    "multiplier_imag",
+    "parameters",
+    "node_state",
+    "stage_state",
+    "sigma",
+    "break_count",
+]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -16,7 +16,10 @@ REFUSED_TRACES = [
     ({"parameter": ""}, "parameter is ''; it must be one of Omega, zeta, F"),
     ({"bounds": (1.0, 1.0)}, "bounds of Omega are (1.0, 1.0); they must be two different finite numbers"),
     ({"bounds": (0.4, NAN)}, "bounds of Omega are (0.4, nan); they must be two different finite numbers"),
-    ({"bounds": (0.4, INFINITE)}, "bounds of Omega are (0.4, inf); they must be two different finite numbers"),
+    (
+        {"bounds": (0.4, INFINITE)},
+        "bounds of Omega are (0.4, inf); they must be two different finite numbers",
+    ),
     ({"start": 2.0}, "start is 2.0; it must lie within the bounds 0.4 to 1.6"),
     ({"start": NAN}, "start is nan; it must lie within the bounds 0.4 to 1.6"),
     ({"at": (0.5, 0.3)}, "at is 0.3; it must lie within the bounds 0.4 to 1.6"),

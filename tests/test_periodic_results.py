@@ -114,7 +114,11 @@ def test_load_gives_the_same_orbits(pair: tuple[per.Branch, per.Branch]) -> None
         for name in ("nodes", "stages", "algebraic", "phases", "parameter"):
             before, after = getattr(a, name), getattr(b, name)
             assert before.shape == after.shape and before.tobytes() == after.tobytes()
-        assert (a.mesh.scheme, a.mesh.anchors, a.mesh.period) == (b.mesh.scheme, b.mesh.anchors, b.mesh.period)
+        assert (a.mesh.scheme, a.mesh.anchors, a.mesh.period) == (
+            b.mesh.scheme,
+            b.mesh.anchors,
+            b.mesh.period,
+        )
         assert [x.tobytes() for x in a.mesh.breaks] == [x.tobytes() for x in b.mesh.breaks]
 
 
