@@ -45,10 +45,19 @@ def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None
     step = linear_step(system, fine, free, closures)
     if isinstance(step, Outcome):
         return ErrorEstimate(np.inf, np.inf)
-    change = at_fixed_phase(fine, step.nodes, step.outer[: len(fine.phases)])
+    moved = step.outer[: len(fine.phases)]
+    change = np.abs(at_fixed_phase(fine, step.nodes, moved)).max()
+    change = max(change, np.abs(step.stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
     span = max(orbit.span(), np.finfo(float).tiny)
     multiplier = _spectral_distance(step.fundamental[-1], monodromy)
-    return ErrorEstimate(float(np.abs(change).max()) / span, multiplier)
+    return ErrorEstimate(float(change) / span, multiplier)
+
+
+def _stage_shift(orbit: Orbit, moved: Array) -> Array:
+    """How far the collocation points move in tau with the anchors, shape (N, ncol, 1)."""
+    grid, points = orbit.grid, orbit.mesh.scheme.points
+    left, stretch = grid.left_gradient @ moved, grid.width_gradient @ moved
+    return (left[:, None] + stretch[:, None] * points)[:, :, None]
 
 
 def _spectral_distance(a: Array, b: Array) -> float:

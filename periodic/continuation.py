@@ -42,6 +42,9 @@ WINDOW = 1 / 60
 ADAPT_EVERY = 4
 """... and every so many steps."""
 
+MESHES = 3
+"""How many new meshes are tried for one step."""
+
 BENT = 0.1
 """Largest distance of a step's end from the arc that its two tangents make, as a part of the step."""
 
@@ -69,8 +72,8 @@ class Run:
         if isinstance(base, Outcome):
             self.stop = Stop.no_start(base)
             return
-        if base.error.worst > task.settings.mesh.tolerance:
-            self.stop = Stop.inaccurate(base.error.worst, base.orbit.mesh.ntst)
+        if base.error.orbit > task.settings.mesh.tolerance:
+            self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
             return
         yield describe(task, base, Label.END)
         if float(base.orbit.parameter[task.index]) in self.user:
@@ -131,13 +134,21 @@ class Run:
         return float(np.clip(ds * factor, step.ds_min, step.ds_max))
 
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
-        """Take one step; return base and new solution on one mesh. Raises RejectedError."""
-        for _ in range(3):
+        """Take one step; return base and new solution on one mesh. Raises RejectedError.
+
+        The mesh is made anew up to MESHES times; where then only the multipliers' error still exceeds its
+        bound the point stands, and tells it.
+        """
+        tolerance = self.task.settings.mesh.tolerance
+        for _ in range(MESHES):
             new = self._attempt(base, ds)
-            if new.error.worst <= self.task.settings.mesh.tolerance:
+            if new.error.worst <= tolerance:
                 return base, new
             base = self._base_on_mesh_for(base, new)
-        raise RejectedError("the error estimate exceeds the tolerance")
+        new = self._attempt(base, ds)
+        if new.error.orbit > tolerance:
+            raise RejectedError("the error estimate exceeds the tolerance")
+        return base, new
 
     def _attempt(self, base: Solved, ds: float) -> Solved:
         task = self.task
@@ -185,7 +196,7 @@ class Run:
         better = remesh(task, new)
         if isinstance(better, Solved) and not is_settled(task, better):
             better = settle(task, better)
-        if isinstance(better, Outcome) or better.error.worst > tolerance:
+        if isinstance(better, Outcome) or better.error.orbit > tolerance:
             return new
         self._since_remesh = 0
         return better

@@ -33,7 +33,7 @@ class Scheme:
     ncol: int = 4
 
     def __post_init__(self) -> None:
-        if not 2 <= self.ncol <= 7:
+        if self.ncol not in range(2, 8):
             raise ValueError(f"ncol is {self.ncol}; it must be a whole number from 2 to 7")
 
     @cached_property

@@ -30,7 +30,7 @@ class MeshSettings:
         if not 1e-13 <= self.tolerance <= 1e-1:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.1")
         for name in ("ntst", "ntst_min", "ntst_max"):
-            if getattr(self, name) < 1:
+            if not (getattr(self, name) >= 1 and float(getattr(self, name)).is_integer()):
                 raise ValueError(f"{name} is {getattr(self, name)}; it must be a whole number of at least 1")
         if not self.ntst_min <= self.ntst <= self.ntst_max:
             raise ValueError(f"ntst is {self.ntst}; it must lie from ntst_min to ntst_max")
@@ -51,6 +51,8 @@ class StepSettings:
             raise ValueError(
                 f"ds is {self.ds}; it must lie from ds_min = {self.ds_min} to ds_max = {self.ds_max}"
             )
+        if not 0 < self.turn < 1:
+            raise ValueError(f"turn is {self.turn}; it must lie between 0 and 1")
         if self.max_points < 1:
             raise ValueError(f"max_points is {self.max_points}; it must be at least 1")
 

@@ -185,6 +185,13 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     """Cut the ragged arrays into orbits."""
     scheme = Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
     n, m, ncol = len(layout.states), len(layout.algebraics), scheme.ncol
+    for dimension, counts in (
+        ("segment", "segment_count"),
+        ("break", "break_count"),
+        ("anchor", "anchor_count"),
+    ):
+        if int(data[counts].sum()) != data.sizes.get(dimension, 0):
+            raise ValueError(f"{counts} does not add up to the {dimension}s there are")
     breaks = np.split(data["sigma"].values, np.cumsum(data["break_count"].values)[:-1])
     algebraic = data["stage_algebraic"].values if m else np.zeros((data.sizes.get("stage", 0), 0))
     segment = anchor = node = stage = 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from importlib import metadata
 
 import numpy as np
@@ -12,8 +13,8 @@ import numpy as np
 from periodic.branch import Branch, Layout, Quantity
 from periodic.closure import Metric
 from periodic.continuation import Run
-from periodic.mesh import uniform
-from periodic.orbit import Orbit, at_rest
+from periodic.mesh import Mesh, uniform
+from periodic.orbit import Orbit, at_rest, transfer
 from periodic.point import Point
 from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
@@ -52,9 +53,9 @@ def trace(
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     task = Task(system, index, Metric(high - low), settings or accuracy.settings())
     clock = time.perf_counter()
-    orbit = guess if guess is not None else _rest(task, index, begin)
+    orbit = _rest(task, index, begin) if guess is None else _adopted(task, guess, index, begin)
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
-    runs = [Run(task, (low, high), tuple(at)) for _ in signs]
+    runs = [Run(task, (low, high), tuple(sorted(set(map(float, at))))) for _ in signs]
     halves: list[list[Point]] = []
     for run, sign in zip(runs, signs, strict=True):
         halves.append(_collect(run, run.points(orbit, sign), progress))
@@ -80,7 +81,7 @@ def _joined(
 ) -> Branch:
     """One branch out of one or two runs from the same start."""
     two = len(halves) == 2
-    points = [*halves[0][:0:-1], *halves[1]] if two else halves[0]
+    points = [*_reversed(halves[0]), *halves[1]] if two else halves[0]
     stop, backwards = (runs[1].stop, runs[0].stop) if two else (runs[0].stop, None)
     assert stop is not None
     return Branch(
@@ -93,6 +94,13 @@ def _joined(
         elapsed=elapsed,
         versions={name: metadata.version(name) for name in ("orbitrace", "numpy", "scipy")},
     )
+
+
+def _reversed(half: list[Point]) -> list[Point]:
+    """A half run backwards as the first part of a branch, without its start."""
+    start = half[0].parameter
+    away = [p for i, p in enumerate(half) if i > 1 or p.parameter != start]
+    return [replace(point, slope=-point.slope) for point in reversed(away)]
 
 
 def layout_of(system: System) -> Layout:
@@ -121,6 +129,14 @@ def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError(f"bounds of {parameter} are {bounds}; they must be two different finite numbers")
     return low, high
+
+
+def _adopted(task: Task, guess: Orbit, index: int, begin: float) -> Orbit:
+    """A guess in the settings' scheme, at the system's parameters and the start."""
+    old, parameter = guess.mesh, np.array(task.system.nominal, dtype=float)
+    parameter[index] = begin
+    mesh = Mesh(task.settings.mesh.scheme, old.breaks, old.anchors, old.period)
+    return replace(transfer(guess, mesh, guess.phases), parameter=parameter)
 
 
 def _rest(task: Task, index: int, begin: float) -> Orbit:
