@@ -16,6 +16,9 @@ from periodic.orbit import Orbit, bisect
 from periodic.scheme import Array
 from periodic.system import System
 
+LEAST_SPAN = 1e-6
+"""Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
+
 SLACK = 30.0
 """How much less accurate than the orbit its largest multiplier may be."""
 
@@ -48,7 +51,7 @@ def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None
     moved = step.outer[: len(fine.phases)]
     change = np.abs(at_fixed_phase(fine, step.nodes, moved)).max()
     change = max(change, np.abs(step.stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
-    span = max(orbit.span(), np.finfo(float).tiny)
+    span = max(orbit.span(), LEAST_SPAN)
     multiplier = _spectral_distance(step.fundamental[-1], monodromy)
     return ErrorEstimate(float(change) / span, multiplier)
 

@@ -56,6 +56,12 @@ class AnchorSettings:
             raise ValueError(
                 f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}"
             )
+        if not 0 <= self.deepest < np.inf:
+            raise ValueError(f"deepest is {self.deepest}; it must be a number of at least 0")
+        if not 1 <= self.exchange < np.inf:
+            raise ValueError(f"exchange is {self.exchange}; it must be a number of at least 1")
+        if not 0 <= self.steep <= 1:
+            raise ValueError(f"steep is {self.steep}; it must lie between 0 and 1")
 
 
 def crossings(system: System, orbit: Orbit) -> list[Crossing]:
@@ -193,9 +199,10 @@ def genuine(system: System, orbit: Orbit) -> bool:
 
 
 def placed(system: System, orbit: Orbit, chosen: list[Crossing]) -> tuple[tuple[Anchor, ...], Array]:
-    """Return anchors and exact phases of crossings for a new mesh, the first phase in [0, 2 pi)."""
+    """Return anchors and exact phases of crossings for a new mesh, the first phase in [0, period)."""
     phases = np.array([_exact(system, orbit, c) for c in chosen])
-    return tuple(c.anchor for c in chosen), phases - 2 * np.pi * np.floor(phases[:1] / (2 * np.pi))
+    period = orbit.mesh.period
+    return tuple(c.anchor for c in chosen), phases - period * np.floor(phases[:1] / period)
 
 
 def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:

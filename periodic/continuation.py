@@ -57,11 +57,15 @@ ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 
 @dataclass
 class Run:
-    """A continuation under way: where it stands and why it stopped."""
+    """A continuation under way: where it stands and why it stopped.
+
+    `search` allows a first orbit that Newton does not find to be approached from elsewhere.
+    """
 
     task: Task
     bounds: tuple[float, float]
     user: Sequence[float] = ()
+    search: bool = True
     stop: Stop | None = None
     _since_remesh: int = field(default=0, repr=False)
 
@@ -78,11 +82,11 @@ class Run:
         yield describe(task, base, Label.END)
         if float(base.orbit.parameter[task.index]) in self.user:
             yield describe(task, base, Label.USER)
-        ds, count = step.ds, 1
+        ds, count, since = step.ds, 1, float(base.orbit.parameter[task.index])
         while count < step.max_points:
             try:
                 base, new = self._step(base, ds)
-                specials = special_points(task, base, new, ds, self.bounds, self.user)
+                specials = special_points(task, base, new, ds, self.bounds, self.user, since)
             except RejectedError as rejected:
                 ds /= 2
                 if ds < step.ds_min:
@@ -96,7 +100,7 @@ class Run:
                 self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
                 return
             yield describe(task, new, Label.NONE)
-            count += 1
+            count, since = count + 1, float(new.orbit.parameter[task.index])
             ds = self._next_size(ds, new)
             base = self._prepared(new)
         self.stop = Stop.max_points(step.max_points)
@@ -105,7 +109,7 @@ class Run:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
         task = self.task
         first = settle(task, at_parameter(task, start, sign), fixed=True)
-        if isinstance(first, Solved) or start.mesh.anchors:
+        if isinstance(first, Solved) or start.mesh.anchors or not self.search:
             return first
         for factor in ELSEWHERE:
             orbit = self._approached(start, factor)
@@ -124,9 +128,9 @@ class Run:
         if isinstance(first, Outcome) or far == wanted:
             return None
         bounds = (min(wanted, far), max(wanted, far))
-        approach = Run(replace(task, metric=Metric(abs(wanted - far))), bounds)
-        last = list(approach.points(first.orbit, int(sign)))[-1]
-        return last.orbit if last.parameter == wanted else None
+        approach = Run(replace(task, metric=Metric(abs(wanted - far))), bounds, search=False)
+        points = list(approach.points(first.orbit, int(sign)))
+        return points[-1].orbit if points and points[-1].parameter == wanted else None
 
     def _next_size(self, ds: float, new: Solved) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step

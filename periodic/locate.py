@@ -21,10 +21,6 @@ FOLD_PRECISION = 1e-6
 """Precision of a fold's place along the branch, in steps; its parameter is second order in it."""
 
 
-SAME = 1e-9
-"""Parameter values closer than this, in units of the range, are the same."""
-
-
 @dataclass(frozen=True)
 class Found:
     """A special point at `distance` from the step's base."""
@@ -39,21 +35,30 @@ class RejectedError(Exception):
 
 
 def special_points(
-    task: Task, base: Solved, new: Solved, ds: float, bounds: tuple[float, float], user: Sequence[float]
+    task: Task,
+    base: Solved,
+    new: Solved,
+    ds: float,
+    bounds: tuple[float, float],
+    user: Sequence[float],
+    since: float,
 ) -> list[Found]:
-    """Return the special points of a step in order along the branch; a bound (EP) ends the list."""
+    """Return the special points of a step in order along the branch; a bound (EP) ends the list.
+
+    `since` is the parameter up to which values have been looked for: that of the last point, from which the
+    base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
+    """
     folds = _folds(task, base, new, ds)
     pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
     found = list(folds)
-    for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
-        for value in user:
-            if _crosses(task, begin, end, value):
-                found.append(_at_value(task, base, begin, end, value, Label.USER))
-        rising = _value(task, end.solved) > _value(task, begin.solved)
-        bound = bounds[1] if rising else bounds[0]
-        if _crosses(task, begin, end, bound):
-            found.append(_at_value(task, base, begin, end, bound, Label.END))
+    starts = [since, *(_value(task, fold.solved) for fold in folds)]
+    for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
+        last = _value(task, end.solved)
+        bound = bounds[1] if last > first else bounds[0]
+        for value, label in [*((v, Label.USER) for v in user), (bound, Label.END)]:
+            if first < value <= last or last <= value < first:
+                found.append(_at_value(task, base, begin, end, value, label))
     found.sort(key=lambda item: item.distance)
     labels = [item.label for item in found]
     return found[: labels.index(Label.END) + 1] if Label.END in labels else found
@@ -75,27 +80,29 @@ def _value(task: Task, solved: Solved) -> float:
     return float(solved.orbit.parameter[task.index])
 
 
-def _crosses(task: Task, begin: Found, end: Found, value: float) -> bool:
-    """Whether a value lies in the piece, its begin left out (it belongs to the piece before)."""
-    a, b = _value(task, begin.solved), _value(task, end.solved)
-    margin = SAME * task.metric.scale
-    return bool((a + margin < value <= b) or (b <= value < a - margin))
-
-
 def _folds(task: Task, base: Solved, new: Solved, ds: float) -> list[Found]:
     """Locate the fold of a step, if it has one, on a mesh that is accurate there."""
     if base.tangent.parameter * new.tangent.parameter >= 0:
         return []
     distance, solved = _root(task, base, (0.0, ds), _slope, FOLD_PRECISION * ds)
-    refined = settle(task, solved)
-    if refined is solved or isinstance(refined, Outcome):
+    refined = _accepted(task, settle(task, solved))
+    if refined is solved:
         return [Found(Label.FOLD, distance, solved)]
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
         if _slope(ends[0]) * _slope(ends[1]) < 0:
             solved = _root(task, refined, (-reach, reach), _slope, FOLD_PRECISION * ds)[1]
-            break
-    return [Found(Label.FOLD, distance, solved)]
+            return [Found(Label.FOLD, distance, solved)]
+    raise RejectedError("a fold was not found again on a finer mesh")
+
+
+def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
+    """Return a solution that meets the tolerance; raise RejectedError for any other."""
+    if isinstance(solved, Outcome):
+        raise RejectedError(solved.value)
+    if solved.error.orbit > task.settings.mesh.tolerance:
+        raise RejectedError("the error estimate of a special point exceeds the tolerance")
+    return solved
 
 
 def _slope(solved: Solved) -> float:
@@ -110,7 +117,7 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
     parameter[task.index] = value
     guess = replace(near.orbit, parameter=parameter)
     exact = settle(task, at_parameter(task, guess, float(np.sign(_slope(near))) or 1.0), fixed=True)
-    return Found(label, distance, near if isinstance(exact, Outcome) else exact)
+    return Found(label, distance, _accepted(task, exact))
 
 
 def _root(
@@ -123,6 +130,10 @@ def _root(
         solutions[distance] = _at_distance(task, base, distance)
         return test(solutions[distance])
 
+    at_ends = [value(end) for end in ends]
+    if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
+        nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
+        return nearest, solutions[nearest]
     root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
     return root, solutions[root] if root in solutions else _at_distance(task, base, root)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic import anchors
-from periodic.accuracy import ErrorEstimate, estimate
+from periodic.accuracy import LEAST_SPAN, ErrorEstimate, estimate
 from periodic.adapt import redistribute
 from periodic.anchors import Crossing
 from periodic.closure import Direction, Metric, Plane
@@ -165,22 +165,28 @@ def _remeshed(task: Task, solved: Solved, chosen: list[Crossing], fixed: bool) -
     mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
     sign = float(np.sign(solved.tangent.parameter)) or 1.0
     if fixed:
-        return _first_of(at_parameter(task, guess, sign) for guess in _guesses(task, old, mesh, phases))
+        attempts = (at_parameter(task, guess, sign) for guess in _guesses(task, old, mesh, phases))
+        return _first_of(_unmoved(task, solved, new) for new in attempts)
     return carried(task, solved, mesh, phases, solved.tangent)
 
 
 def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Direction) -> Solved | Outcome:
     """Solve for an orbit again on another mesh, on the plane across `direction` (given on the old mesh)."""
     old = solved.orbit
-    allowed = KEPT * max(solved.error.worst, task.settings.mesh.tolerance) * old.span()
 
     def attempt(guess: Orbit) -> Solved | Outcome:
         plane = Plane(guess, on_mesh(direction, old, guess), 0.0, task.metric, task.index)
-        new = on_plane(task, guess, plane)
-        moved_away = isinstance(new, Solved) and distance(task, old, new.orbit) > allowed
-        return Outcome.MOVED if moved_away else new
+        return _unmoved(task, solved, on_plane(task, guess, plane))
 
     return _first_of(attempt(guess) for guess in _guesses(task, old, mesh, phases))
+
+
+def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome:
+    """Return the new solution if it is the old orbit within its error."""
+    allowed = KEPT * max(old.error.worst, task.settings.mesh.tolerance) * max(old.orbit.span(), LEAST_SPAN)
+    if isinstance(new, Solved) and distance(task, old.orbit, new.orbit) > allowed:
+        return Outcome.MOVED
+    return new
 
 
 def _first_of(attempts: Iterable[Solved | Outcome]) -> Solved | Outcome:

@@ -80,7 +80,7 @@ def _joined(
     system: System, parameter: str, runs: list[Run], halves: list[list[Point]], elapsed: float
 ) -> Branch:
     """One branch out of one or two runs from the same start."""
-    two = len(halves) == 2
+    two = len(halves) == 2 and len(halves[1]) > 0
     points = [*_reversed(halves[0]), *halves[1]] if two else halves[0]
     stop, backwards = (runs[1].stop, runs[0].stop) if two else (runs[0].stop, None)
     assert stop is not None
@@ -92,7 +92,7 @@ def _joined(
         stop_backwards=backwards,
         newton_iterations=runs[0].task.work.iterations,
         elapsed=elapsed,
-        versions={name: metadata.version(name) for name in ("orbitrace", "numpy", "scipy")},
+        versions=_versions("orbitrace", "numpy", "scipy"),
     )
 
 
@@ -101,6 +101,16 @@ def _reversed(half: list[Point]) -> list[Point]:
     start = half[0].parameter
     away = [p for i, p in enumerate(half) if i > 1 or p.parameter != start]
     return [replace(point, slope=-point.slope) for point in reversed(away)]
+
+
+def _versions(*names: str) -> dict[str, str]:
+    def version(name: str) -> str:
+        try:
+            return metadata.version(name)
+        except metadata.PackageNotFoundError:
+            return "not installed"
+
+    return {name: version(name) for name in names}
 
 
 def layout_of(system: System) -> Layout:

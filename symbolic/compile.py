@@ -7,6 +7,7 @@ Residual rows, with x the scaled states, z the algebraic unknowns and ' = d/dtau
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -209,8 +210,13 @@ def _motion_rows(assembly: Assembly) -> list[ca.SX]:
     rows: list[ca.SX] = []
     for coordinate, motion in assembly.motions.items():
         inertia = motion.mass * assembly.omega**2
-        if motion.mass.is_zero() or assembly.nominal(motion.mass) == 0:
+        if motion.mass.is_zero() or not assembly.nominal(motion.mass) > 0:
             raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
+        if not 0 < assembly.nominal(assembly.omega) < math.inf:
+            raise ValueError(
+                f"the frequency of the excitation is {assembly.nominal(assembly.omega)} rad/s; "
+                f"its nominal value must be greater than 0"
+            )
         scale = assembly.nominal(inertia) * motion.position.scale
         rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
         rows.append((inertia * motion.velocity.derivative - motion.force) / scale)

@@ -63,6 +63,8 @@ def modes(system: CompiledSystem, values: Mapping[str, float] | None = None) -> 
     point = np.concatenate(system.rest(parameter))
     for _ in range(20):
         residual, stiffness, inertia, omega = function(np.zeros(n), point[:n], point[n:], parameter)
+        if np.linalg.matrix_rank(np.array(stiffness)) < len(point):
+            break
         change = np.linalg.solve(np.array(stiffness), np.array(residual)).ravel()
         point = point - change
         if not np.isfinite(point).all():
