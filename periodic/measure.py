@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.dense import algebraic_at
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
+
+CANDIDATES = 3
+"""How many of the highest samples that stand out from their neighbours are looked at more closely."""
 
 ZOOMS = 2
 SAMPLES = 9
@@ -33,39 +37,54 @@ def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
         tau,
         orbit.parameter,
     )
-    signs = np.repeat([-1.0, 1.0], values.shape[1])
-    both = np.concatenate([-values, values], axis=1)
-    index = both.argmax(axis=0)
-    best = both[index, np.arange(len(index))]
-    half = np.maximum(
-        np.diff(tau, append=tau[0] + orbit.mesh.period), np.diff(tau, prepend=tau[-1] - orbit.mesh.period)
-    )
-    centre, radius = tau[index], half[index]
-    for _ in range(ZOOMS):
-        best, centre, radius = _zoom(system, orbit, signs, best, centre, radius)
     count = values.shape[1]
+    both = np.concatenate([-values, values], axis=1)
+    index = _candidates(both)
+    row = np.repeat(np.arange(2 * count), CANDIDATES)
+    signs = np.where(row < count, -1.0, 1.0)
+    gaps = np.diff(tau, append=tau[0] + orbit.mesh.period)
+    half = np.maximum(gaps, np.roll(gaps, 1))
+    best, centre, radius = both[index, row], tau[index], half[index]
+    for _ in range(ZOOMS):
+        best, centre, radius = _zoom(system, orbit, signs, row % count, best, centre, radius)
+    best = best.reshape(2 * count, CANDIDATES).max(axis=1)
     return -best[:count], best[count:]
 
 
+def _candidates(values: Array) -> NDArray[np.int_]:
+    """The CANDIDATES highest local maxima of each column of samples around the period, column by column."""
+    peaks = (values >= np.roll(values, 1, axis=0)) & (values >= np.roll(values, -1, axis=0))
+    ranked = np.argsort(np.where(peaks, values, -np.inf), axis=0)[-CANDIDATES:]
+    return ranked.T.ravel()
+
+
 def _zoom(
-    system: System, orbit: Orbit, signs: Array, best: Array, centre: Array, radius: Array
+    system: System,
+    orbit: Orbit,
+    signs: Array,
+    column: NDArray[np.int_],
+    best: Array,
+    centre: Array,
+    radius: Array,
 ) -> tuple[Array, Array, Array]:
     """Look for the maximum of signs * output on a finer window around each centre, then at the vertex of
     the parabola through the largest sample and its neighbours."""
     grid = centre[:, None] + radius[:, None] * np.linspace(-1, 1, SAMPLES)
-    chosen = _signed(system, orbit, signs, grid)
+    chosen = _signed(system, orbit, signs, column, grid)
     each, peak = np.arange(len(signs)), chosen.argmax(axis=1)
     vertex = grid[each, peak] + radius * 2 / (SAMPLES - 1) * _offset(chosen, peak)
     grid = np.column_stack([grid[each, peak], vertex, centre])
-    chosen = np.column_stack([chosen[each, peak], _signed(system, orbit, signs, vertex[:, None])[:, 0], best])
+    chosen = np.column_stack(
+        [chosen[each, peak], _signed(system, orbit, signs, column, vertex[:, None])[:, 0], best]
+    )
     peak = chosen.argmax(axis=1)
     return chosen[each, peak], grid[each, peak], radius * 2 / (SAMPLES - 1)
 
 
-def _signed(system: System, orbit: Orbit, signs: Array, grid: Array) -> Array:
+def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_], grid: Array) -> Array:
     """signs * output at the phases of each row's own output, shape of `grid`."""
     values = outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
-    return signs[:, None] * values[np.arange(len(signs)), :, np.arange(len(signs)) % values.shape[2]]
+    return signs[:, None] * values[np.arange(len(signs)), :, column]
 
 
 def _offset(values: Array, peak: Array) -> Array:

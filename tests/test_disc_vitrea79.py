@@ -189,7 +189,9 @@ def test_no_point_has_a_residual() -> None:
     """Assert that every accepted orbit fulfils its equations, the film law (a logarithm of the load) too."""
     system = disc_system("vitrea79-810N")
     for orbit in (point.orbit for point in main_branch(STANDARD)):
-        arguments = [a.reshape(-1, a.shape[2]) for a in (orbit.knot_rates[:, 1:], orbit.stages, orbit.algebraic)]
+        arguments = [
+            a.reshape(-1, a.shape[2]) for a in (orbit.knot_rates[:, 1:], orbit.stages, orbit.algebraic)
+        ]
         residual = system.residual(*arguments, orbit.stage_phases.ravel(), orbit.parameter)
         assert np.abs(residual[:, :3]).max() < 1e-5
         assert np.abs(residual[:, 3]).max() < 1e-3
@@ -211,6 +213,8 @@ def test_mean_load_is_the_preload() -> None:
         nodes, weights = np.polynomial.legendre.leggauss(12)
         half, middle = np.diff(edges) / 2, (edges[1:] + edges[:-1]) / 2
         tau = (middle[:, None] + half[:, None] * nodes).ravel()
-        load = per.outputs(disc_system("vitrea79-810N"), point.orbit, tau)[:, list(point.maximum).index("load")]
+        load = per.outputs(disc_system("vitrea79-810N"), point.orbit, tau)[
+            :, list(point.maximum).index("load")
+        ]
         mean = (load.reshape(len(half), -1) @ weights) @ half / (2 * np.pi)
         assert mean == pytest.approx(810.0, rel=1e-6)
