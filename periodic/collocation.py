@@ -52,6 +52,11 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     return Condensed(_steps(orbit, stages), stages, algebraic.reshape(count, ncol, -1, width), residual)
 
 
+def largest_residual(system: System, orbit: Orbit) -> float:
+    """Return the largest residual (scaled) at the collocation points of an orbit."""
+    return _rows(system, orbit, ())[1]
+
+
 def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
     """Eliminate the unknowns z point by point through the algebraic rows.
 

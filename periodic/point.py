@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from periodic import measure
 from periodic.accuracy import ErrorEstimate
+from periodic.collocation import largest_residual
 from periodic.orbit import Orbit
 from periodic.solve import Solved, Task
 
@@ -67,7 +68,7 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
         minimum=dict(zip(names, map(float, low), strict=True)),
         maximum=dict(zip(names, map(float, high), strict=True)),
         error=solved.error,
-        residual=solved.correction.residual,
+        residual=largest_residual(task.system, solved.orbit),
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
     )
