@@ -4,7 +4,7 @@ Scaled variables: length delta0, time 1/omega, x = X/delta0, d = 1 + A sin(tau) 
 
     x'' = c (w - 1) - 2 zeta r x',    w = W/Q,  r = omega0/omega,  c = r^2/1.5
 
-dry contact: w = max(d, 0)^1.5. Film without squeeze: w^(2/3) - H0 (w^(-1/beta) - 1) = d, all films over delta0.
+dry contact: w = max(d, 0)^1.5. Film without squeeze: w^(2/3) - H0 (w^(-1/beta) - 1) = d, H0 = h0/delta0.
 """
 
 from __future__ import annotations

@@ -193,7 +193,7 @@ class BilinearOscillator(LinearOscillator):
 
 
 class MeissnerOscillator(LinearOscillator):
-    """r = 1.5 x while cos tau > 0 and 0.5 x while it is not: the multipliers are those of two exponentials."""
+    """r = 1.5 x where cos tau > 0, else 0.5 x: the multipliers are those of two matrix exponentials."""
 
     switches = (Switch("cos tau = 0"),)
 

@@ -1,4 +1,4 @@
-"""Single shooting with SciPy's DOP853 for x'' = a(tau, x, x'): a reference that shares nothing with `periodic`.
+"""Single shooting with SciPy's DOP853 for x'' = a(tau, x, x'): it shares nothing with `periodic`.
 
 Where a has a kink at the zero of a switch s(tau, x), each piece is integrated to the zero and the next one
 started there, on the other side; perturbations are carried along (a is continuous: no jump in them).

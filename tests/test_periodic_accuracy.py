@@ -80,7 +80,7 @@ def test_estimate_while_in_contact(tolerance: float) -> None:
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 def test_estimate_through_loss_of_contact(tolerance: float) -> None:
-    """Assert that the estimate is nowhere ten times too small, and within a factor of ten more often than not.
+    """Assert that the estimate is nowhere ten times too small, and mostly within a factor of ten.
 
     At a kink a single tiny interval may make it too large.
     """

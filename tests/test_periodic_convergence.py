@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from numpy_systems import AlgebraicOscillator, LinearOscillator
 from numpy.typing import NDArray
+from numpy_systems import AlgebraicOscillator, LinearOscillator
 
 import periodic as per
 from periodic.mesh import uniform

@@ -67,7 +67,7 @@ def test_settings_are_frozen() -> None:
 
 
 def test_accuracies_differ_in_tolerance() -> None:
-    """Assert that each accuracy has a smaller tolerance and no fewer collocation points than the one before."""
+    """Assert that each accuracy has a smaller tolerance than the one before, and no fewer points."""
     meshes = [accuracy.settings().mesh for accuracy in per.Accuracy]
     assert [a.tolerance > b.tolerance for a, b in zip(meshes, meshes[1:], strict=False)] == [True, True]
     assert [a.scheme.ncol <= b.scheme.ncol for a, b in zip(meshes, meshes[1:], strict=False)] == [True, True]

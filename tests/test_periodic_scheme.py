@@ -61,7 +61,7 @@ def test_radau_ends_at_one(ncol: int) -> None:
     """Assert that Radau IIA has its last point at exactly 1 and the others inside."""
     points = per.Scheme(per.Family.RADAU, ncol).points
     assert points[-1] == 1.0
-    assert (np.diff(points) > 0).all() and 0 < points[0] and points[-2] < 1
+    assert (np.diff(points) > 0).all() and points[0] > 0 and points[-2] < 1
 
 
 @pytest.mark.parametrize("ncol", NCOLS)
@@ -69,7 +69,7 @@ def test_gauss_is_symmetric(ncol: int) -> None:
     """Assert that Gauss points lie symmetrically about 1/2, both ends left out."""
     points = per.Scheme(per.Family.GAUSS, ncol).points
     assert points + points[::-1] == pytest.approx(1.0, abs=1e-15)
-    assert (np.diff(points) > 0).all() and 0 < points[0]
+    assert (np.diff(points) > 0).all() and points[0] > 0
 
 
 def test_radau_of_two() -> None:
