@@ -9,6 +9,7 @@ from dataclasses import replace
 from importlib import metadata
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from periodic.branch import Branch, Layout, Quantity
 from periodic.closure import Metric
@@ -57,10 +58,11 @@ def trace(
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), tuple(sorted(set(map(float, at))))) for _ in signs]
     halves: list[list[Point]] = []
-    for run, sign in zip(runs, signs, strict=True):
-        halves.append(_collect(run, run.points(orbit, sign), progress))
-        if run.stop is not None and run.stop.reason is Reason.INTERRUPTED:
-            break
+    with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
+        for run, sign in zip(runs, signs, strict=True):
+            halves.append(_collect(run, run.points(orbit, sign), progress))
+            if run.stop is not None and run.stop.reason is Reason.INTERRUPTED:
+                break
     return _joined(system, parameter, runs, halves, time.perf_counter() - clock)
 
 
