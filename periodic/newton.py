@@ -122,6 +122,12 @@ def correct(
         n = orbit.nodes.shape[1]
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
+    if outcome is Outcome.CONVERGED:
+        last = linear_step(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+        if isinstance(last, Outcome):
+            outcome = last
+        else:
+            step = replace(last, size=step.size)
     return Correction(orbit, outcome, iterations, step.size, step.residual, step.fundamental, step.kernel)
 
 

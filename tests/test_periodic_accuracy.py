@@ -119,7 +119,7 @@ def test_dial() -> None:
     """Assert that every accepted point of a dialled accuracy has an estimate below its tolerance."""
     for accuracy in per.Accuracy:
         tolerance = accuracy.settings().mesh.tolerance
-        assert all(point.error.orbit <= tolerance for point in duffing(accuracy=accuracy))
+        assert all(point.error.worst <= tolerance for point in duffing(accuracy=accuracy))
 
 
 def test_fine_is_finer() -> None:
