@@ -7,6 +7,7 @@ from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
 from periodic.plotting import plot
 from periodic.point import Label, Point
+from periodic.sampling import sampled
 from periodic.scheme import Family, Scheme
 from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
@@ -33,5 +34,6 @@ __all__ = [
     "extrema",
     "outputs",
     "plot",
+    "sampled",
     "trace",
 ]

@@ -26,6 +26,7 @@ from periodic.solve import (
     Task,
     at_parameter,
     carried,
+    closes,
     is_settled,
     on_plane,
     parameter_direction,
@@ -80,13 +81,14 @@ class Run:
             self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
             return
         yield describe(task, base, Label.END)
-        if float(base.orbit.parameter[task.index]) in self.user:
+        if _value(task, base) in self.user:
             yield describe(task, base, Label.USER)
-        ds, count, since = step.ds, 1, float(base.orbit.parameter[task.index])
+        ds, count, since = step.ds, 1, _value(task, base)
+        begun, sought = base, self._sought(since)
         while count < step.max_points:
             try:
                 base, new = self._step(base, ds)
-                specials = special_points(task, base, new, ds, self.bounds, self.user, since)
+                specials = special_points(task, base, new, ds, self.bounds, sought, since)
             except RejectedError as rejected:
                 ds /= 2
                 if ds < step.ds_min:
@@ -95,15 +97,25 @@ class Run:
                     return
                 continue
             for special in specials:
-                yield describe(task, special.solved, special.label)
+                if special.label is Label.USER and closes(task, begun, special.solved):
+                    self.stop = Stop.closed(count)
+                    yield describe(task, special.solved, Label.END)
+                    return
+                if special.label is not Label.USER or _value(task, special.solved) in self.user:
+                    yield describe(task, special.solved, special.label)
             if any(s.label is Label.END for s in specials):
                 self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
                 return
             yield describe(task, new, Label.NONE)
-            count, since = count + 1, float(new.orbit.parameter[task.index])
+            count, since = count + 1, _value(task, new)
             ds = self._next_size(ds, new)
             base = self._prepared(new)
         self.stop = Stop.max_points(step.max_points)
+
+    def _sought(self, begin: float) -> Sequence[float]:
+        """Values at which the branch gets a point: the user's, and where it may meet its own start."""
+        inside = self.bounds[0] < begin < self.bounds[1]
+        return sorted({*self.user, begin}) if inside else self.user
 
     def _first(self, start: Orbit, sign: float) -> Solved | Outcome:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
@@ -204,3 +216,7 @@ class Run:
             return new
         self._since_remesh = 0
         return better
+
+
+def _value(task: Task, solved: Solved) -> float:
+    return float(solved.orbit.parameter[task.index])

@@ -1,7 +1,9 @@
 """Special points inside one continuation step, located on planes between its two ends.
 
-A fold (LP) is where the tangent's parameter component vanishes; user points (UZ) and bounds (EP) where the
-parameter takes a given value, looked for on each side of the folds, where the parameter is monotone.
+A fold (LP) is where the tangent's parameter component vanishes, a period doubling (PD) where a multiplier
+passes -1, that is det(M + I) = 0. A branch of doubled orbits turns where it meets the orbits it came from:
+the same doubling, seen from the other branch. User points (UZ) and bounds (EP) are where the parameter takes
+a given value, looked for on each side of the turns, where the parameter is monotone.
 """
 
 from __future__ import annotations
@@ -15,10 +17,19 @@ from scipy import optimize
 from periodic.closure import Plane
 from periodic.newton import Outcome
 from periodic.point import Label
-from periodic.solve import Solved, Task, at_parameter, on_plane, predict, settle
+from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, predict, settle
 
 FOLD_PRECISION = 1e-6
 """Precision of a fold's place along the branch, in steps; its parameter is second order in it."""
+
+DOUBLING_PRECISION = 1e-10
+"""The same of a period doubling; its parameter is first order in it."""
+
+MERGED = 0.05
+"""What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
+
+Test = Callable[[Solved], float]
+"""A function of an orbit that vanishes at a special point."""
 
 
 @dataclass(frozen=True)
@@ -48,10 +59,11 @@ def special_points(
     `since` is the parameter up to which values have been looked for: that of the last point, from which the
     base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
     """
-    folds = _folds(task, base, new, ds)
+    folds = _where(task, base, new, ds, _slope, FOLD_PRECISION, Label.FOLD)
+    doublings = _where(task, base, new, ds, _doubling, DOUBLING_PRECISION, Label.DOUBLING)
     pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = list(folds)
+    found = [*(_named(task, fold, base, new) for fold in folds), *doublings]
     starts = [since, *(_value(task, fold.solved) for fold in folds)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = _value(task, end.solved)
@@ -80,20 +92,32 @@ def _value(task: Task, solved: Solved) -> float:
     return float(solved.orbit.parameter[task.index])
 
 
-def _folds(task: Task, base: Solved, new: Solved, ds: float) -> list[Found]:
-    """Locate the fold of a step, if it has one, on a mesh that is accurate there."""
-    if base.tangent.parameter * new.tangent.parameter >= 0:
+def _where(
+    task: Task, base: Solved, new: Solved, ds: float, test: Test, precision: float, label: Label
+) -> list[Found]:
+    """Locate where `test` changes sign within a step, if it does, on a mesh that is accurate there."""
+    if test(base) * test(new) >= 0:
         return []
-    distance, solved = _root(task, base, (0.0, ds), _slope, FOLD_PRECISION * ds)
+    distance, solved = _root(task, base, (0.0, ds), test, precision * ds)
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
-        return [Found(Label.FOLD, distance, solved)]
+        return [Found(label, distance, solved)]
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
-        if _slope(ends[0]) * _slope(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), _slope, FOLD_PRECISION * ds)[1]
-            return [Found(Label.FOLD, distance, solved)]
-    raise RejectedError("a fold was not found again on a finer mesh")
+        if test(ends[0]) * test(ends[1]) < 0:
+            solved = _root(task, refined, (-reach, reach), test, precision * ds)[1]
+            return [Found(label, distance, solved)]
+    raise RejectedError("a special point was not found again on a finer mesh")
+
+
+def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
+    """A turn of the branch by its name: PD where its orbit takes fewer periods than those of the step's ends.
+
+    There the orbit is as good as itself one or more excitation periods later.
+    """
+    apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
+    repeats = apart[0] < MERGED * max(apart[1:]) < np.inf
+    return replace(turn, label=Label.DOUBLING) if repeats else turn
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
@@ -109,6 +133,11 @@ def _slope(solved: Solved) -> float:
     return solved.tangent.parameter
 
 
+def _doubling(solved: Solved) -> float:
+    monodromy = solved.correction.monodromy
+    return float(np.linalg.det(monodromy + np.eye(len(monodromy))))
+
+
 def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
     ends = (begin.distance, end.distance)
@@ -121,7 +150,7 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
 
 
 def _root(
-    task: Task, base: Solved, ends: tuple[float, float], test: Callable[[Solved], float], precision: float
+    task: Task, base: Solved, ends: tuple[float, float], test: Test, precision: float
 ) -> tuple[float, Solved]:
     """Return distance and solution where `test` changes sign between two distances from the base."""
     solutions: dict[float, Solved] = {}

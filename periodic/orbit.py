@@ -11,6 +11,9 @@ from periodic.mesh import Grid, Mesh
 from periodic.scheme import Array
 from periodic.system import System
 
+FORCED = 2 * np.pi
+"""Period of the excitation in tau."""
+
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
@@ -74,6 +77,11 @@ class Orbit:
         """Unknowns at phases tau, interpolated within each interval, shape (len(tau), m)."""
         index, theta = self.locate(tau)
         return np.einsum("tl,tlm->tm", self.mesh.scheme.algebraic_basis(theta), self.algebraic[index])
+
+    @property
+    def periods(self) -> int:
+        """How many periods of the excitation the orbit takes to come back."""
+        return round(self.mesh.period / FORCED)
 
     def span(self) -> float:
         """Largest peak-to-peak value of the scaled states: what errors are compared with."""

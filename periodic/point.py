@@ -21,6 +21,7 @@ class Label(Enum):
     NONE = ""
     END = "EP"
     FOLD = "LP"
+    DOUBLING = "PD"
     USER = "UZ"
     FAILED = "MX"
 
@@ -30,8 +31,8 @@ class Point:
     """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
 
     minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
-    arclength. A point is stable when all multipliers lie inside the unit circle; a fold, where one is at 1,
-    is not.
+    arclength. A point is stable when all multipliers lie inside the unit circle; a fold or a period doubling,
+    where one is on it, is not.
     """
 
     orbit: Orbit
@@ -48,7 +49,7 @@ class Point:
     @property
     def stable(self) -> bool:
         """Whether all multipliers lie inside the unit circle."""
-        return self.label is not Label.FOLD and bool(np.abs(self.multipliers).max() < 1)
+        return self.label not in (Label.FOLD, Label.DOUBLING) and bool(np.abs(self.multipliers).max() < 1)
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output."""

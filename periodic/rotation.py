@@ -2,8 +2,9 @@
 
 Where a complex pair of multipliers passes near +1 the free vibration is in tune with a harmonic of the
 excitation (a superharmonic resonance): the branch may leave its course for a peak far narrower than a step
-and return to it. The response to the parameter goes with (I - M)^-1, so the pair may not turn by more than
-a part of its distance from +1. Its angle is followed over the whole period, so that full turns count.
+and return to it. Near -1 it may double its period and undouble it again. The response to the parameter goes
+with (I - M)^-1 or (I + M)^-1, so the pair may not turn by more than a part of its distance from these points.
+Its angle is followed over the whole period, so that full turns count.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from periodic.scheme import Array
 PART = 0.7
 """Largest turn of a multiplier (rad), as a part of its distance from +1."""
 
+DOUBLED = 1.5
+"""The same for -1, where a peak that is passed unseen has both its doublings within the step."""
+
 LEAST = 0.002
 """Turns as small as this are always allowed."""
 
@@ -24,22 +28,22 @@ LIGHT = 0.8
 
 
 def is_resolved(before: Array, after: Array) -> bool:
-    """Whether two orbits' complex multipliers are close enough, seen from +1.
+    """Whether two orbits' complex multipliers are close enough, seen from +1 and -1.
 
     before, after: fundamental matrices at the mesh points, shape (N+1, n, n); the last is the monodromy.
     """
     old = turns(before)
-    for angle, distance in turns(after):
+    for angle, allowed in turns(after):
         if not old:
             return True
-        other, other_distance = min(old, key=lambda pair: abs(pair[0] - angle))
-        if abs(angle - other) > max(PART * min(distance, other_distance), LEAST):
+        other, other_allowed = min(old, key=lambda pair: abs(pair[0] - angle))
+        if abs(angle - other) > max(min(allowed, other_allowed), LEAST):
             return False
     return True
 
 
 def turns(fundamental: Array) -> list[tuple[float, float]]:
-    """Angle turned over the period by each lightly damped pair of multipliers, and its distance from +1.
+    """Angle turned over the period by each lightly damped pair of multipliers, and how far it may turn on.
 
     The angle is that of the largest component of the eigenvector's solution, followed along the mesh.
     """
@@ -49,5 +53,6 @@ def turns(fundamental: Array) -> list[tuple[float, float]]:
         solution = fundamental @ vectors[:, k]
         component = int(np.abs(solution).mean(axis=0).argmax())
         angle = np.unwrap(np.angle(solution[:, component]))
-        result.append((abs(float(angle[-1] - angle[0])), float(abs(1 - multipliers[k]))))
+        allowed = min(PART * abs(1 - multipliers[k]), DOUBLED * abs(1 + multipliers[k]))
+        result.append((abs(float(angle[-1] - angle[0])), float(allowed)))
     return result

@@ -14,10 +14,10 @@ from periodic.anchors import Crossing
 from periodic.closure import Direction, Metric, Plane
 from periodic.mesh import Mesh
 from periodic.newton import Correction, Outcome, correct, moved
-from periodic.orbit import Orbit, transfer
+from periodic.orbit import FORCED, Orbit, transfer
 from periodic.relax import relax
 from periodic.scheme import Array
-from periodic.settings import Settings
+from periodic.settings import DEEPEST, Settings
 from periodic.system import System
 
 AIM = 0.15
@@ -104,9 +104,13 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     tangent = tangent.scaled(sign / length)
     origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
     error = estimate(task.system, result.orbit, result.monodromy, origin)
-    return Solved(
-        result, tangent, error, anchors.wanted(task.system, result.orbit, task.settings.mesh.anchors)
-    )
+    return Solved(result, tangent, error, _wanted(task, result.orbit, error))
+
+
+def _wanted(task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
+    """Return the crossings to tie the mesh to, at levels that the orbit's own accuracy gives a meaning."""
+    settings, meaningful = task.settings.mesh.anchors, DEEPEST * min(error.orbit, 1.0)
+    return anchors.wanted(task.system, orbit, replace(settings, deepest=max(settings.deepest, meaningful)))
 
 
 def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
@@ -183,8 +187,7 @@ def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Di
 
 def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome:
     """Return the new solution if it is the old orbit within its error."""
-    allowed = KEPT * max(old.error.worst, task.settings.mesh.tolerance) * max(old.orbit.span(), LEAST_SPAN)
-    if isinstance(new, Solved) and distance(task, old.orbit, new.orbit) > allowed:
+    if isinstance(new, Solved) and not _same(task, old, new):
         return Outcome.MOVED
     return new
 
@@ -210,9 +213,31 @@ def _guesses(task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbi
         yield relax(task.system, transfer(old, mesh, shifted))
 
 
-def distance(task: Task, a: Orbit, b: Orbit) -> float:
-    """Distance of two orbits in the task's metric, at equal phases; they may have different meshes."""
-    profile = b.state(a.mesh.nodes(a.phases)) - a.nodes
+def closes(task: Task, start: Solved, new: Solved) -> bool:
+    """Whether the branch comes back to its start on the way it left it.
+
+    The same orbit a whole number of excitation periods later counts as the start again. A branch that comes
+    back the other way has passed through an orbit of fewer periods and goes on.
+    """
+    onward = start.tangent.parameter * new.tangent.parameter > 0
+    return onward and any(_same(task, start, new, later) for later in range(start.orbit.periods))
+
+
+def from_itself(task: Task, solved: Solved) -> float:
+    """Least distance of an orbit of several excitation periods from itself so many of them later."""
+    orbit = solved.orbit
+    return min((distance(task, orbit, orbit, FORCED * k) for k in range(1, orbit.periods)), default=np.inf)
+
+
+def _same(task: Task, a: Solved, b: Solved, later: int = 0) -> bool:
+    """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
+    allowed = KEPT * max(a.error.worst, task.settings.mesh.tolerance) * max(a.orbit.span(), LEAST_SPAN)
+    return distance(task, a.orbit, b.orbit, FORCED * later) <= allowed
+
+
+def distance(task: Task, a: Orbit, b: Orbit, later: float = 0.0) -> float:
+    """Distance of a and b in the task's metric, b taken `later` (rad); they may have different meshes."""
+    profile = b.state(a.mesh.nodes(a.phases) + later) - a.nodes
     jump = float(b.parameter[task.index] - a.parameter[task.index])
     difference = replace(parameter_direction(a, task.metric), profile=profile, parameter=jump)
     return float(np.sqrt(task.metric.dot(a, difference, difference)))

@@ -12,6 +12,7 @@ class Reason(Enum):
     """Named reasons; `numerical` tells those that cut a branch short of what was asked."""
 
     BOUND = "bound reached"
+    CLOSED = "branch closed"
     MAX_POINTS = "largest number of points reached"
     SMALL_STEP = "step size below its minimum"
     NO_START = "no orbit found at the start"
@@ -39,6 +40,11 @@ class Stop:
         """The parameter reached an end of its range."""
         side = "lower" if abs(value - bounds[0]) < abs(value - bounds[1]) else "upper"
         return cls(Reason.BOUND, f"{side} end of the range")
+
+    @classmethod
+    def closed(cls, count: int) -> Stop:
+        """The branch came back to its start."""
+        return cls(Reason.CLOSED, f"it came back to its start after {count} points")
 
     @classmethod
     def max_points(cls, count: int) -> Stop:

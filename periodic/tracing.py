@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib import metadata
 
@@ -17,6 +17,8 @@ from periodic.continuation import Run
 from periodic.mesh import Mesh, uniform
 from periodic.orbit import Orbit, at_rest, transfer
 from periodic.point import Point
+from periodic.relax import relax
+from periodic.scheme import Array
 from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
 from periodic.stop import Reason, Stop
@@ -34,15 +36,18 @@ def trace(
     at: Sequence[float] = (),
     accuracy: Accuracy = Accuracy.STANDARD,
     settings: Settings | None = None,
+    values: Mapping[str, float] | None = None,
     guess: Orbit | None = None,
     progress: Progress | None = None,
 ) -> Branch:
     """Trace the branch of forced periodic orbits through `start` (default bounds[0]) within `bounds`.
 
     From a start at a bound the branch is followed towards the other, from one inside both ways. `at`
-    are values that get a point of their own (UZ) on every sheet. `guess` is an orbit to start from (default:
-    rest). An interrupt (Ctrl-C) returns the branch so far. A numerical failure is the branch's `stop`.
-    Raises ValueError, in one sentence, for a parameter, bound or value that is not allowed.
+    are values that get a point of their own (UZ) on every sheet. `values` (SI, by name) replace the nominal
+    ones of other parameters. `guess` is an orbit to start from (default: rest): one of an earlier branch, or
+    `sampled` from a simulation, of one excitation period or several. An interrupt (Ctrl-C) returns the
+    branch so far. A numerical failure is the branch's `stop`. Raises ValueError, in one sentence, for a
+    parameter, bound or value that is not allowed.
     """
     index = _index(system, parameter)
     low, high = _range(parameter, bounds)
@@ -54,14 +59,15 @@ def trace(
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     task = Task(system, index, Metric(high - low), settings or accuracy.settings())
     clock = time.perf_counter()
-    orbit = _rest(task, index, begin) if guess is None else _adopted(task, guess, index, begin)
+    fixed = _parameters(system, {**(values or {}), parameter: begin})
+    orbit = _rest(task, fixed) if guess is None else _adopted(task, guess, fixed)
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), tuple(sorted(set(map(float, at))))) for _ in signs]
     halves: list[list[Point]] = []
     with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
         for run, sign in zip(runs, signs, strict=True):
             halves.append(_collect(run, run.points(orbit, sign), progress))
-            if run.stop is not None and run.stop.reason is Reason.INTERRUPTED:
+            if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
                 break
     return _joined(system, parameter, runs, halves, time.perf_counter() - clock)
 
@@ -143,16 +149,23 @@ def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-def _adopted(task: Task, guess: Orbit, index: int, begin: float) -> Orbit:
-    """A guess in the settings' scheme, at the system's parameters and the start."""
-    old, parameter = guess.mesh, np.array(task.system.nominal, dtype=float)
-    parameter[index] = begin
+def _parameters(system: System, values: Mapping[str, float]) -> Array:
+    """The nominal parameters with some values replaced, by name."""
+    parameter = np.array(system.nominal, dtype=float)
+    for name, value in values.items():
+        if not math.isfinite(value):
+            raise ValueError(f"value of {name} is {value}; it must be a finite number")
+        parameter[_index(system, name)] = value
+    return parameter
+
+
+def _adopted(task: Task, guess: Orbit, parameter: Array) -> Orbit:
+    """A guess in the settings' scheme, at the given parameters."""
+    old = guess.mesh
     mesh = Mesh(task.settings.mesh.scheme, old.breaks, old.anchors, old.period)
-    return replace(transfer(guess, mesh, guess.phases), parameter=parameter)
+    return relax(task.system, replace(transfer(guess, mesh, guess.phases), parameter=parameter))
 
 
-def _rest(task: Task, index: int, begin: float) -> Orbit:
-    parameter = np.array(task.system.nominal, dtype=float)
-    parameter[index] = begin
+def _rest(task: Task, parameter: Array) -> Orbit:
     mesh = task.settings.mesh
     return at_rest(task.system, uniform(mesh.scheme, mesh.ntst), parameter)

@@ -7,7 +7,7 @@ from typing import Any
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-STYLE: dict[str, Any] = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.fontsize": 8}
+STYLE: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.fontsize": 8}
 
 TRUSTED, PAPER, SECOND = "tab:blue", "tab:red", "tab:green"
 """Colours: our curves, what the paper reports or its method gives, a second curve of ours."""
