@@ -32,11 +32,10 @@ def is_resolved(before: Array, after: Array) -> bool:
 
     before, after: fundamental matrices at the mesh points, shape (N+1, n, n); the last is the monodromy.
     """
-    old = turns(before)
-    for angle, allowed in turns(after):
-        if not old:
-            return True
-        other, other_allowed = min(old, key=lambda pair: abs(pair[0] - angle))
+    # A pair may be born of two real multipliers or end in them.
+    fewer, more = sorted((turns(before), turns(after)), key=len)
+    for angle, allowed in fewer:
+        other, other_allowed = min(more, key=lambda pair: abs(pair[0] - angle))
         if abs(angle - other) > max(min(allowed, other_allowed), LEAST):
             return False
     return True

@@ -1,4 +1,4 @@
-"""The command line: `orbitrace scenes` and `orbitrace trace SCENE`.
+"""The command line: `orbitrace scenes`, `trace SCENE`, `linear SCENE` and `report NAME`.
 
 What is imported here is small; each command imports what it needs, so that --help is quick.
 """
@@ -97,6 +97,22 @@ Sweep = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
+Values = Annotated[
+    str | None,
+    typer.Option(
+        "--at",
+        metavar="RPM,RPM,...",
+        help="Values to linearise at (oscillator: rad/s). [default: the resonance]",
+    ),
+]
+Page = Annotated[str, typer.Argument(metavar="NAME", help="The report to compute: paper.")]
+Only = Annotated[
+    str | None, typer.Option("--only", metavar="SECTION", help="Compute one section, keep the others.")
+]
+PageOut = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Where the page goes. [default: reports/NAME]")
+]
+LinearJson = Annotated[bool, typer.Option("--json", help="Print what linear.json holds, and nothing else.")]
 
 
 @app.callback()
@@ -150,6 +166,67 @@ def trace(
             return INTERRUPTED
         _report(name, task, branch, integrated, folder, as_json)
     return _verdict(branch, folder)
+
+
+@app.command()
+def linear(
+    scene: Source, at: Values = None, changes: Changes = None, out: Out = None, as_json: LinearJson = False
+) -> int:
+    """Show the linear system about the rest of a scene: natural frequencies, damping, frequency response.
+
+    Writes linear.csv (the response over the scene's range), linear.json and linear.png. Exit code 0: done;
+    2: bad input; 3: no equilibrium was found.
+    """
+    from reports import linear as study
+    from reports.files import writable
+    from reports.linear_text import json_text
+    from reports.run import Request, validated
+    from reports.scene import short_name
+    from symbolic.linear import NoRestError
+
+    overrides = tuple(_pair(change) for change in changes or ())
+    task = validated(Request(source=scene, at=at, overrides=overrides))
+    name = short_name(scene)
+    folder = writable(out or Path("orbitrace-out", name))
+    try:
+        found = study.study(task)
+    except NoRestError as error:
+        _say(f"{error}; nothing was saved")
+        return STOPPED_EARLY
+    files = study.save(folder, name, found)
+    if as_json:
+        typer.echo(json_text(name, found), nl=False)
+    else:
+        study.show(found, files)
+    return DONE
+
+
+@app.command()
+def report(name: Page, only: Only = None, out: PageOut = None) -> int:
+    """Compute a report: its page, figures and numbers.
+
+    Takes minutes; each section is written as soon as it is done, and Ctrl-C keeps those. Exit code 0: done;
+    2: bad input; 130: interrupted.
+    """
+    from reports import console
+    from reports.files import writable
+    from reports.interrupts import heard_once
+
+    if name != "paper":
+        raise refused("NAME", name, '"paper"')
+    from reports.paper import page
+
+    if only is not None and only not in page.SECTIONS:
+        raise refused("--only", only, f"one of {', '.join(page.SECTIONS)}")
+    folder = writable(out or Path("reports", name))
+    with heard_once(), console.telling("computing") as tell:
+        try:
+            written = page.make(folder, (only,) if only else page.SECTIONS, tell)
+        except KeyboardInterrupt:
+            _say(f"interrupted; the sections computed so far are in {folder}")
+            return INTERRUPTED
+    typer.echo(f"written: {written}")
+    return DONE
 
 
 def _pair(change: str) -> tuple[str, str]:

@@ -59,6 +59,18 @@ def counting(what: str, total: int) -> Iterator[Callable[[object], None] | None]
         yield count
 
 
+@contextmanager
+def telling(what: str) -> Iterator[Callable[[str], None]]:
+    """Give the callback that says on standard error what is being worked on; piped, one line for each."""
+    if not sys.stderr.isatty():
+        yield lambda step: print(f"{what} {step}", file=sys.stderr, flush=True)
+        return
+    from rich.console import Console
+
+    with Console(stderr=True, highlight=False, markup=False, emoji=False).status(what) as status:
+        yield lambda step: status.update(f"{what} {step}")
+
+
 def _reading(column: Column, point: Point) -> str:
     value = column.value(point)
     return f"{column.heading} {value:.5g}" if isinstance(value, float) else ""

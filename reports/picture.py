@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from reports.curve import draw_curve, solid
 from reports.schema import Scene
 from reports.view import View, view_of
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
 Points = Sequence[tuple[float, float]]
 
 BLUE, ORANGE, GREEN, INK = "#1f5fa8", "#d1661b", "#2b8a57", "#222222"
-
-PER_SEGMENT = 8
-"""Parts that the curve is drawn in between two computed points."""
 
 
 def draw(
@@ -54,17 +52,9 @@ def draw(
 
 
 def _curve(axes: Axes, view: View, branch: Branch) -> None:
-    """Draw the branch as two lines, each broken where the other goes on."""
-    if len(branch) < 2:
-        return
+    """Draw the branch, stable parts solid."""
     across, up = _values(view, branch)
-    sound = np.array([point.stable or point.label.value == "LP" for point in branch])
-    solid = np.repeat(sound[:-1] & sound[1:], PER_SEGMENT)
-    across, up = _smooth(across, up)
-    for chosen, style, name in ((solid, "-", "stable"), (~solid, "--", "unstable")):
-        if chosen.any():
-            x, y = _pieces(across, chosen), _pieces(up, chosen)
-            axes.plot(x, y, style, color=BLUE, linewidth=1.8, label=name)
+    draw_curve(axes, across, up, solid(branch), color=BLUE)
 
 
 def _values(view: View, branch: Branch) -> tuple[np.ndarray, np.ndarray]:
@@ -72,31 +62,6 @@ def _values(view: View, branch: Branch) -> tuple[np.ndarray, np.ndarray]:
     across = [view.abscissa.value(point) for point in branch]
     up = [view.height.value(point) for point in branch]
     return np.array(across, dtype=float), np.array(up, dtype=float)
-
-
-def _smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return a curve through the points, each segment in PER_SEGMENT parts.
-
-    Monotone cubics of the chord length: they turn in speed at the computed folds and nowhere else.
-    """
-    from scipy.interpolate import PchipInterpolator
-
-    spans = [max(float(np.ptp(values)), np.finfo(float).tiny) for values in (x, y)]
-    chords = np.hypot(np.diff(x) / spans[0], np.diff(y) / spans[1])
-    length = np.concatenate([[0.0], np.cumsum(np.maximum(chords, 1e-9))])
-    parts = np.arange(len(x) - 1)[:, None] + np.arange(PER_SEGMENT) / PER_SEGMENT
-    where = np.interp(np.append(parts, len(x) - 1), np.arange(len(x)), length)
-    curve = PchipInterpolator(length, np.column_stack([x, y]))(where)
-    return curve[:, 0], curve[:, 1]
-
-
-def _pieces(values: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return the ends of the chosen segments, a gap before each that does not go on from the last."""
-    line: list[float] = []
-    for k in np.flatnonzero(chosen):
-        begins = not (k and chosen[k - 1])
-        line += [np.nan, values[k], values[k + 1]] if begins else [values[k + 1]]
-    return np.array(line)
 
 
 def _integrated(axes: Axes, below: Points, above: Points) -> None:
@@ -109,10 +74,10 @@ def _integrated(axes: Axes, below: Points, above: Points) -> None:
 
 
 def _marks(axes: Axes, view: View, branch: Branch) -> None:
-    """Mark and name the folds, and the point where a trace failed, on the side away from the branch."""
+    """Mark and name folds, doublings and where a trace failed, on the side away from the branch."""
     across, up = _values(view, branch)
     for k, point in enumerate(branch):
-        if point.label.value not in ("LP", "MX"):
+        if point.label.value not in ("LP", "PD", "MX"):
             continue
         neighbours = across[max(k - 1, 0) : k + 2]
         side = 1 if across[k] >= neighbours.mean() else -1

@@ -33,10 +33,17 @@ class Table(BaseModel):
 
 
 class Discs(Table):
-    """Two equal discs."""
+    """Two equal discs. Crown radius and elastic constants matter to some laws of film thickness only."""
 
     mass: float = number(1e-6, 1e6, "kg")
     diameter: float = number(1e-4, 100, "m")
+    crown: float | None = Field(
+        None, ge=1e-4, le=1e3, description="a number from 0.0001 to 1000 (m; 0.102 where absent)"
+    )
+    modulus: float | None = Field(
+        None, ge=1e6, le=1e13, description="a number from 1e+06 to 1e+13 (Pa; 2.07e+11 where absent)"
+    )
+    poisson: float | None = Field(None, ge=0, le=0.5, description="a number from 0 to 0.5 (0.3 where absent)")
 
 
 class Contact(Table):
@@ -54,16 +61,37 @@ class Waviness(Table):
     waves: int = whole(1, 100_000)
 
 
+FILM_NEEDS: dict[str, tuple[str, ...]] = {
+    "squeeze": ("squeeze",),
+    "quasistatic": (),
+    "cavitating": ("squeeze", "floor"),
+    "third-order": ("squeeze",),
+}
+"""Numbers that a film law needs and others may not have."""
+
+
 class Film(Table):
     """The lubricant film; a viscosity given beside a lubricant replaces the lubricant's."""
 
-    law: Literal["squeeze", "quasistatic"] = Field(description='"squeeze" or "quasistatic"')
+    law: Literal["squeeze", "quasistatic", "cavitating", "third-order"] = Field(
+        description='"squeeze", "quasistatic", "cavitating" or "third-order"'
+    )
+    thickness: Literal[
+        "calibrated", "equation-5", "constant-one-body", "constant-two-body", "hamrock-dowson"
+    ] = Field(
+        "calibrated",
+        description='"calibrated", "equation-5", "constant-one-body", "constant-two-body" '
+        'or "hamrock-dowson"',
+    )
     lubricant: str | None = Field(None, description="the name of a lubricant")
     viscosity: float = number(1e-5, 1e3, "Pa s")
     piezoviscosity: float = number(1e-10, 1e-6, "m^2/N")
     beta: float = number(0.5, 200)
     squeeze: float | None = Field(
         None, ge=1e-3, le=1e7, description='a number from 0.001 to 1e+07 (law = "quasistatic" has none)'
+    )
+    floor: float | None = Field(
+        None, ge=1e-8, le=0.5, description='a number from 1e-08 to 0.5 (law = "cavitating" only)'
     )
 
     @model_validator(mode="before")
@@ -77,12 +105,14 @@ class Film(Table):
         return {**known[table["lubricant"]], **table}
 
     @model_validator(mode="after")
-    def _squeezed(self) -> Film:
-        allowed = str(type(self).model_fields["squeeze"].description)
-        if self.law == "squeeze" and self.squeeze is None:
-            raise InputError("film.squeeze", "is missing", f"it must be {allowed}")
-        if self.law == "quasistatic" and self.squeeze is not None:
-            raise InputError("film.squeeze", f"is {self.squeeze:g}", 'law = "quasistatic" must have none')
+    def _complete(self) -> Film:
+        for key in ("squeeze", "floor"):
+            value, needed = getattr(self, key), key in FILM_NEEDS[self.law]
+            if needed and value is None:
+                allowed = type(self).model_fields[key].description
+                raise InputError(f"film.{key}", "is missing", f"it must be {allowed}")
+            if value is not None and not needed:
+                raise InputError(f"film.{key}", f"is {value:g}", f'law = "{self.law}" must have none')
         return self
 
 
@@ -90,6 +120,17 @@ class Damping(Table):
     """Viscous damping of the contact's approach, relative to critical damping."""
 
     ratio: float = number(0, 5)
+
+
+class Support(Table):
+    """Each disc sits in a bearing of finite stiffness, the housing behind it on a leaf spring."""
+
+    stiffness: float = number(1e2, 1e15, "N/m, of each disc's bearing")
+    damping: float = number(0, 1e12, "N s/m, of each disc's bearing")
+    disc_share: float = number(0.001, 0.999, "part of discs.mass before the bearing")
+    leaf: float | None = Field(
+        None, ge=0, le=1e15, description="a number from 0 to 1e+15 (N/m, from each housing to ground)"
+    )
 
 
 class SpeedRange(Table):
@@ -120,7 +161,14 @@ class DiscScene(Table):
     waviness: Waviness
     film: Film | None = None
     damping: Damping | None = None
+    support: Support | None = None
     trace: SpeedRange
+
+    @model_validator(mode="after")
+    def _reducible(self) -> DiscScene:
+        if self.support is not None and self.film is not None and self.film.law == "third-order":
+            raise InputError("support", "is given", 'film.law = "third-order" must have none')
+        return self
 
 
 class Oscillator(Table):

@@ -19,7 +19,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class Settled:
-    """A parameter value and the extremes of the first coordinate once settled (SI)."""
+    """A parameter value and the extremes of the first output, a displacement, once settled (SI)."""
 
     parameter: float
     minimum: float
@@ -63,12 +63,18 @@ def sweep(
             log.warning("the sweep ends before %s = %g: %s", parameter, value, error)
             break
         state, algebraic = last.state[-1], last.algebraic[-1]
-        coordinate = last.state[:, 0] * system.states[0].scale
-        low, high = float(coordinate.min()), float(coordinate.max())
+        low, high = _extremes(system, last, with_values(system, {parameter: value}))
         settled.append(Settled(parameter=value, minimum=low, maximum=high))
         if progress is not None:
             progress(settled[-1])
     return settled
+
+
+def _extremes(system: CompiledSystem, motion: Trajectory, values: Array) -> tuple[float, float]:
+    """Extremes of the first output, which depends on no rate."""
+    still = np.zeros_like(motion.state)
+    first = system.output(still, motion.state, motion.algebraic, motion.phase, values)[:, 0]
+    return float(first.min()), float(first.max())
 
 
 def _settle(flow: Flow, state: Array, algebraic: Array, values: Array, settings: SweepSettings) -> Trajectory:

@@ -2,19 +2,48 @@
 
 from symbolic.compile import CompiledSystem, compile
 from symbolic.model import Model, Part, combine
+from symbolic.parts.cavitation import CavitatingFilm
 from symbolic.parts.contact import ContactDamping, ContactPair, Hertz, Preload, Waviness
-from symbolic.parts.film import CalibratedThickness, QuasistaticFilm, SqueezeFilm
-from symbolic.parts.mechanics import CubicSpring, Damper, HarmonicForce, Mass, ReducedMass, Spring
+from symbolic.parts.film import QuasistaticFilm, SqueezeFilm
+from symbolic.parts.mechanics import (
+    Coupling,
+    CubicSpring,
+    Damper,
+    HarmonicForce,
+    Mass,
+    ReducedMass,
+    Spring,
+    Support,
+)
+from symbolic.parts.start import ExplicitSqueezeFilm, RampedWaviness
+from symbolic.parts.thickness import (
+    CalibratedThickness,
+    Compliance,
+    ConstantThickness,
+    GivenThickness,
+    HamrockDowsonThickness,
+    RegressionThickness,
+    Rolling,
+    ThicknessLaw,
+)
+from symbolic.parts.thirdorder import ThirdOrder
 from symbolic.variables import Coordinate, Parameter, Variable, coordinate, parameter
 
 __all__ = [
     "CalibratedThickness",
+    "CavitatingFilm",
     "CompiledSystem",
+    "Compliance",
+    "ConstantThickness",
     "ContactDamping",
     "ContactPair",
     "Coordinate",
+    "Coupling",
     "CubicSpring",
     "Damper",
+    "ExplicitSqueezeFilm",
+    "GivenThickness",
+    "HamrockDowsonThickness",
     "HarmonicForce",
     "Hertz",
     "Mass",
@@ -23,9 +52,15 @@ __all__ = [
     "Part",
     "Preload",
     "QuasistaticFilm",
+    "RampedWaviness",
     "ReducedMass",
+    "RegressionThickness",
+    "Rolling",
     "Spring",
     "SqueezeFilm",
+    "Support",
+    "ThicknessLaw",
+    "ThirdOrder",
     "Variable",
     "Waviness",
     "combine",

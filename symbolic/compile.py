@@ -43,7 +43,10 @@ class Linearisation:
 
 @dataclass(frozen=True)
 class Expressions:
-    """The scaled symbolic system: what the kernels are generated from."""
+    """The scaled symbolic system: what the kernels are generated from.
+
+    `waved` are residual and outputs in terms of the symbols `waves` (sin tau, cos tau) of the excitation.
+    """
 
     rate: ca.SX
     state: ca.SX
@@ -52,6 +55,8 @@ class Expressions:
     parameter: ca.SX
     residual: ca.SX
     unexcited: ca.SX
+    waves: ca.SX
+    waved: ca.SX
     frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
@@ -235,10 +240,12 @@ def _system(assembly: Assembly) -> CompiledSystem:
     unknown = ca.SX.sym("algebraic", len(assembly.unknowns))
     increment = ca.SX.sym("increment", len(assembly.unknowns))
 
-    def scaled(expressions: list[ca.SX], excited: bool = True) -> ca.SX:
+    waves = ca.vertcat(assembly.sine, assembly.cosine)
+    circular = ca.vertcat(ca.sin(assembly.phase), ca.cos(assembly.phase))
+
+    def scaled(expressions: list[ca.SX], waved: ca.SX = circular) -> ca.SX:
         stacked = assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
-        waves = ca.vertcat(ca.sin(assembly.phase), ca.cos(assembly.phase)) if excited else ca.SX.zeros(2)
-        stacked = ca.substitute(stacked, ca.vertcat(assembly.sine, assembly.cosine), waves)
+        stacked = ca.substitute(stacked, waves, waved)
         old = [s.derivative for s in states] + [s.symbol for s in states]
         old += [u.symbol for u in assembly.unknowns] + [p.symbol for p in parameters]
         new = ca.vertcat(rate * scales, state * scales, unknown, packed)
@@ -251,7 +258,9 @@ def _system(assembly: Assembly) -> CompiledSystem:
         phase=assembly.phase,
         parameter=packed,
         residual=scaled(rows),
-        unexcited=scaled(rows, excited=False),
+        unexcited=scaled(rows, ca.SX.zeros(2)),
+        waves=waves,
+        waved=scaled([*rows, *(expression for _, expression in outputs)], waves),
         frequency=scaled([assembly.omega]),
         outputs=scaled([expression for _, expression in outputs]),
         switches=scaled([expression for _, expression in assembly.switches]),

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ import pytest
 
 import periodic as per
 from reports.cli import main
+from reports.paper.section import Section
 from reports.picture import draw
 from reports.scene import load, scene_names
 
@@ -215,3 +217,24 @@ def test_picture_with_time_integration(disc: Outcome, tmp_path: Path) -> None:
         integrated=([(360.0, 3.865)], [(450.0, 1.615), (360.0, 3.865)]),
     )
     assert plain.read_bytes() == (disc.folder / "branch.png").read_bytes() != dressed.read_bytes()
+
+
+def test_report_keeps_what_is_done(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that an interrupted report keeps its finished sections, and a finished one says where it is."""
+    from reports.paper import page
+
+    def computed(name: str, tell: Callable[[str], None]) -> Section:
+        tell("working")
+        if name == "timedomain":
+            raise KeyboardInterrupt
+        return Section(title="Done", text="Text.", numbers={})
+
+    monkeypatch.setattr(page, "computed", computed)
+    assert main(["report", "paper", "--out", str(tmp_path)]) == 130
+    told = capsys.readouterr().err
+    assert "computing method: working" in told
+    assert f"interrupted; the sections computed so far are in {tmp_path}" in told
+    assert list(page.kept(tmp_path)) == ["method"]
+    assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().out == f"written: {tmp_path / 'README.md'}\n"
+    assert list(page.kept(tmp_path)) == ["method", "unseen"]

@@ -16,7 +16,9 @@ Capture = pytest.CaptureFixture[str]
 Patch = pytest.MonkeyPatch
 
 REFUSALS = {
-    "trace vitrea80": 'scene is "vitrea80"; it must be one of dry-810N',
+    "trace vitrea80": 'scene is "vitrea80"; it must be one of cavitating-film-810N, dry-810N',
+    "report thesis": 'NAME is "thesis"; it must be "paper"',
+    "report paper --only abstract": '--only is "abstract"; it must be one of method, timedomain',
     "trace duffing --set mess=1": '--set key is "mess"; it must be one of oscillator.mass',
     "trace duffing --set force": '--set is "force"; it must be KEY=VALUE',
     "trace duffing --set force=-1": "oscillator.force is -1; it must be a number from 1e-12 to 1e+12 (N)",

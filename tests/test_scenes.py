@@ -10,9 +10,12 @@ from reports.scene import load, scene_names, short_name
 from reports.schema import DiscScene, OscillatorScene
 
 SIZES = {
+    "cavitating-film-810N": (3, 0),
     "dry-810N": (2, 0),
     "duffing": (2, 0),
     "quasistatic-film-810N": (2, 1),
+    "supports-810N": (5, 1),
+    "third-order-810N": (3, 0),
     "turbo33-810N": (3, 1),
     "turbo33-2100N": (3, 1),
     "vitrea79-810N": (3, 1),
@@ -42,6 +45,17 @@ NUMBERS = [
         for text in (*NO_ABSURD, "0", "1e-300")
     ),
     *(("dry-810N", "damping.ratio", text) for text in NO_ABSURD),
+    *(
+        ("supports-810N", key, text)
+        for key in ("support.stiffness", "support.disc_share", "discs.crown", "discs.modulus")
+        for text in (*NO_ABSURD, "0", "1e-300")
+    ),
+    *(
+        ("supports-810N", key, text)
+        for key in ("support.damping", "support.leaf", "discs.poisson")
+        for text in NO_ABSURD
+    ),
+    *(("cavitating-film-810N", "film.floor", text) for text in (*NO_ABSURD, "0", "1e-300", "1")),
     *(
         ("duffing", key, text)
         for key in ("oscillator.mass", "oscillator.force", "trace.from_frequency", "trace.to_frequency")
@@ -222,7 +236,7 @@ def test_no_lubricant() -> None:
 def test_unknown_law() -> None:
     """Assert that an unknown film law is answered with those that exist."""
     assert sentence("vitrea79-810N", ("law", "wet")) == (
-        'film.law is "wet"; it must be "squeeze" or "quasistatic"'
+        'film.law is "wet"; it must be "squeeze", "quasistatic", "cavitating" or "third-order"'
     )
 
 
@@ -232,6 +246,22 @@ def test_law_and_squeeze_agree() -> None:
         'film.squeeze is 2734.3; law = "quasistatic" must have none'
     )
     assert sentence("quasistatic-film-810N", ("law", "squeeze")).startswith("film.squeeze is missing; ")
+
+
+def test_only_the_cavitating_film_has_a_floor() -> None:
+    """Assert that the cavitating film has a floor and the squeeze film none."""
+    assert sentence("vitrea79-810N", ("law", "cavitating")) == (
+        'film.floor is missing; it must be a number from 1e-08 to 0.5 (law = "cavitating" only)'
+    )
+    assert sentence("cavitating-film-810N", ("law", "squeeze")) == (
+        'film.floor is 0.0001; law = "squeeze" must have none'
+    )
+
+
+def test_unknown_thickness() -> None:
+    """Assert that an unknown law of the steady thickness is answered with those that exist."""
+    said = sentence("vitrea79-810N", ("thickness", "thin"))
+    assert said.startswith('film.thickness is "thin"; it must be "calibrated", "equation-5", ')
 
 
 def test_oscillator_without_spring() -> None:

@@ -1,4 +1,4 @@
-"""Lubricant films in series with a Hertz contact, and the laws for their steady thickness h0.
+"""Lubricant films in series with a Hertz contact.
 
 Film relative to its steady state (Mehdigoli et al. 1990, eq. 13): W = Q (h/h0)^(-beta) exp(-gamma dh/dt),
 gamma = squeeze / u, u the entraining speed. With the deflection delta/delta0 = s(xi) = ln(1 + e^xi) and
@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import casadi as ca
 
 from symbolic.assembly import Assembly
 from symbolic.model import Part
 from symbolic.parts.contact import ContactPair, Loaded, junction_of
+from symbolic.parts.thickness import ThicknessLaw, entraining_speed
 from symbolic.variables import Value
 
 REST_XI = math.log(math.e - 1)
@@ -73,41 +73,6 @@ def _inverse_log_softplus(y: ca.SX) -> ca.SX:
     small = y + ca.log(ca.expm1(ca.fmax(ca.fmin(s, 1), 1e-12)) / ca.fmax(ca.fmin(s, 1), 1e-12))
     large = s + ca.log(-ca.expm1(-ca.fmax(s, 1)))
     return ca.if_else(s > 1, large, small)
-
-
-class ThicknessLaw(Protocol):
-    """A law for the steady film thickness."""
-
-    def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
-        """Return h0 in m as an expression in the model's parameters."""
-
-
-@dataclass(frozen=True)
-class CalibratedThickness:
-    """h0 = 3.85 um (u/1.92265)^0.625 (eta0/0.890)^0.625 (alpha/25.9e-9)^0.46 (Q/810)^(-1/beta).
-
-    Exponents of Mostofi & Gohar's regression as used by Mehdigoli et al. (1990), fixed by the film that
-    the paper prints at 360 rev/min, 810 N, Shell Vitrea 79. speed in rad/s, radius in m (u = radius *
-    speed, m/s), viscosity in Pa s, piezoviscosity in m^2/N.
-    """
-
-    speed: Value
-    radius: Value
-    viscosity: Value
-    piezoviscosity: Value
-
-    def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
-        """Return h0 in m."""
-        u = entraining_speed(assembly, self.speed, self.radius)
-        eta = assembly.parameter(self.viscosity, "viscosity", "Pa s")
-        alpha = assembly.parameter(self.piezoviscosity, "piezoviscosity", "m^2/N")
-        rolling = (u / 1.92265) ** 0.625 * (eta / 0.890) ** 0.625
-        return 3.85e-6 * rolling * (alpha / 25.9e-9) ** 0.46 * (contact.preload / 810) ** (-1 / beta)
-
-
-def entraining_speed(assembly: Assembly, speed: Value, radius: Value) -> ca.SX:
-    """u = radius * speed in m/s."""
-    return assembly.parameter(radius, "radius", "m") * assembly.parameter(speed, "speed", "rad/s")
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Inertia, springs, dampers and forces on one coordinate q."""
+"""Inertia, springs, dampers and forces on a coordinate q, and springs and dampers between two."""
 
 from __future__ import annotations
 
@@ -73,6 +73,52 @@ class Damper(Part):
         """Add -c dq/dt."""
         damping = assembly.parameter(self.c, "c", "N s/m")
         assembly.motion(self.q).force -= damping * assembly.speed_of(self.q)
+
+
+@dataclass(frozen=True)
+class Coupling(Part):
+    """Spring and damper between coordinates: force -(k (q - r) + c d(q - r)/dt)/n on q, its opposite on r.
+
+    k in N/m, c in N s/m. `in_series` = n such couplings one after another share the deflection q - r: n = 2
+    where q and r are sums over two equal sides, each with a coupling of its own.
+    """
+
+    q: Coordinate
+    r: Coordinate
+    k: Value
+    c: Value = 0.0
+    in_series: int = 1
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the force to both coordinates."""
+        q, r = assembly.motion(self.q), assembly.motion(self.r)
+        k = assembly.parameter(self.k, "coupling_stiffness", "N/m")
+        c = assembly.parameter(self.c, "coupling_damping", "N s/m")
+        deflection = q.position.symbol - r.position.symbol
+        rate = assembly.speed_of(self.q) - assembly.speed_of(self.r)
+        force = (k * deflection + c * rate) / self.in_series
+        q.force -= force
+        r.force += force
+
+
+@dataclass(frozen=True)
+class Support(Part):
+    """Spring and damper to ground: force -(k q + c dq/dt)/n. k in N/m, c in N s/m.
+
+    `in_series` = n as in `Coupling`: 2 where q is the sum over two equal sides, each on a support of its own.
+    """
+
+    q: Coordinate
+    k: Value
+    c: Value = 0.0
+    in_series: int = 1
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the force."""
+        motion = assembly.motion(self.q)
+        k = assembly.parameter(self.k, "support_stiffness", "N/m")
+        c = assembly.parameter(self.c, "support_damping", "N s/m")
+        motion.force -= (k * motion.position.symbol + c * assembly.speed_of(self.q)) / self.in_series
 
 
 @dataclass(frozen=True)

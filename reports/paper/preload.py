@@ -1,0 +1,71 @@
+"""Continuation in preload at a fixed speed, and its agreement with continuation in speed."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+import periodic
+from reports.paper.scenes import system
+from reports.view import RPM
+
+SCENE = "vitrea79-810N"
+SPEEDS = (200.0, 360.0)
+"""Speeds of the paper's Figs. 12a and 12b, rev/min."""
+
+RANGE = (100.0, 2500.0)
+"""Preloads, N."""
+
+COMMON = {810.0: "vitrea79-810N", 2100.0: "vitrea79-2100N"}
+"""Preloads at which a scene of its own is continued in speed."""
+
+KEPT = 1e-3
+"""Contact is kept where the load never falls below this part of the preload."""
+
+
+@cache
+def branch(speed: float) -> periodic.Branch:
+    """Return the orbits of oil A at a speed in rev/min from 2500 N down to 100 N, at accuracy fine."""
+    return periodic.trace(
+        system(SCENE),
+        "preload",
+        RANGE,
+        start=RANGE[1],
+        at=tuple(COMMON),
+        values={"speed": speed * RPM},
+        accuracy=periodic.Accuracy.FINE,
+    )
+
+
+def disagreement(speed: float, preload: float) -> float:
+    """Return the relative difference of x peak to peak between the two continuations at a common point."""
+    (here,) = [p for p in branch(speed).labelled(periodic.Label.USER) if p.parameter == preload]
+    in_speed = periodic.trace(
+        system(COMMON[preload]),
+        "speed",
+        ((speed - 5) * RPM, (speed + 5) * RPM),
+        at=(speed * RPM,),
+        accuracy=periodic.Accuracy.FINE,
+    )
+    (there,) = in_speed.labelled(periodic.Label.USER)
+    return abs(here.peak_to_peak("x") / there.peak_to_peak("x") - 1)
+
+
+def trend(speed: float) -> tuple[float, float, int]:
+    """Return the range of preload (N) over which the orbits joined to 2500 N are stable and keep contact.
+
+    It ends at a fold or period doubling, that point included. With it goes the sign of d x / d Q there, 0
+    where x peak to peak both rises and falls.
+    """
+    preload, swing = [], []
+    for point in branch(speed):
+        if point.minimum["load"] <= KEPT * point.parameter:
+            break
+        preload.append(point.parameter)
+        swing.append(point.peak_to_peak("x"))
+        if not point.stable:
+            break
+    changes = np.diff(swing)[np.diff(preload) < 0]
+    sign = -1 if (changes > 0).all() else 1 if (changes < 0).all() else 0
+    return preload[-1], preload[0], sign

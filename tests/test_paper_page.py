@@ -1,0 +1,114 @@
+"""The committed page of the report on the paper: complete, put together from its sections, and not stale."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+from reports.paper import damping, filmlaws, frequency, page, supports, timedomain, unseen
+from reports.paper.section import Row, Section, Verdict, compared
+
+FOLDER = Path(page.__file__).parent
+NUMBERS: dict[str, Callable[[], Mapping[str, float]]] = {
+    "timedomain": lambda: timedomain.key_numbers(lambda _: None),
+    "damping": damping.key_numbers,
+    "frequency": frequency.numbers,
+    "supports": lambda: supports.numbers() | supports.branch_numbers(),
+    "unseen": unseen.numbers,
+}
+ROUGH = ("settled", "stepped", "read", "second", "free", "early", "until", "error", "decay")
+"""Parts of the names of numbers read off transients, which are known to fewer digits."""
+
+
+def assert_fresh(name: str, found: Mapping[str, float]) -> None:
+    """Assert that numbers computed anew are those that the page was made from."""
+    told = page.kept(FOLDER)[name]["numbers"]
+    assert set(found) <= set(told)
+    for key, value in found.items():
+        rough = any(word in key for word in ROUGH)
+        assert value == pytest.approx(told[key], rel=1e-2 if rough else 1e-4, abs=1e-6 if rough else 1e-12), (
+            key
+        )
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_numbers_are_fresh(name: str) -> None:
+    """Assert that the page's key numbers are those of the code as it is."""
+    assert_fresh(name, NUMBERS[name]())
+
+
+@pytest.mark.long
+def test_film_laws_are_fresh() -> None:
+    """Assert the same of the section on film laws, which takes a minute."""
+    assert_fresh("filmlaws", filmlaws.numbers())
+
+
+def test_page_is_complete() -> None:
+    """Assert that every section is there, and that the first table has a row for every row of the paper."""
+    said = page.kept(FOLDER)
+    assert tuple(said) == page.SECTIONS
+    keys = {row["key"] for section in said.values() for row in section["rows"]}
+    assert {f"P{k}" for k in range(1, 17)} <= keys
+
+
+def test_page_is_put_together_from_its_sections(tmp_path: Path) -> None:
+    """Assert that nobody has edited the page by hand."""
+    (tmp_path / page.KEPT).symlink_to(FOLDER / page.KEPT)
+    page.assemble(tmp_path)
+    assert (tmp_path / page.PAGE).read_text("utf-8") == (FOLDER / page.PAGE).read_text("utf-8")
+
+
+def test_figures_are_those_of_the_page() -> None:
+    """Assert that every figure that the page shows is there, and no other."""
+    shown = re.findall(rf"\]\({page.FIGURES}/([\w-]+\.png)\)", (FOLDER / page.PAGE).read_text("utf-8"))
+    assert sorted(shown) == sorted(file.name for file in (FOLDER / page.FIGURES).iterdir())
+
+
+def test_section_is_kept(tmp_path: Path) -> None:
+    """Assert that what a section says comes back as the page needs it, its figures with captions."""
+    figure = Figure()
+    figure.subplots().plot([0, 1])
+    row = compared("P9", "speed", 325.0, 330.5, "rev/min", "two ways")
+    section = Section(
+        title="Speed",
+        text="Text.\n\n![What it\nshows.](curve.png)",
+        numbers={"speed": 330.5},
+        rows=(replace(row, key="P10"), row),
+        figures={"curve": figure},
+    )
+    page.keep(tmp_path, "frequency", section)
+    page.assemble(tmp_path)
+    text = (tmp_path / page.PAGE).read_text("utf-8")
+    assert "![What it shows.](figures/curve.png)\n\n*What it shows.*" in text
+    assert "| P9 | speed | 325 rev/min | 330.5 rev/min | +1.7 % | reproduced within 2 % | two ways |" in text
+    assert text.index("| P9 |") < text.index("| P10 |")
+    assert "Sections not computed yet: method, timedomain, damping, supports, filmlaws, unseen." in text
+    assert (tmp_path / page.FIGURES / "curve.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    "ours, verdict",
+    [
+        (100.9, "reproduced"),
+        (99.1, "reproduced"),
+        (101.1, "reproduced within 2 %"),
+        (95.1, "reproduced within 5 %"),
+        (105.1, "not reproduced"),
+        (-100.0, "not reproduced"),
+    ],
+)
+def test_verdicts(ours: float, verdict: str) -> None:
+    """Assert that the verdict on a number follows from its difference."""
+    assert compared("P1", "deflection", 100.0, ours, "um", "").verdict == verdict
+
+
+def test_verdict_without_a_number() -> None:
+    """Assert that a row says itself what a comparison without numbers shows, or that there is none."""
+    row = Row(key="P14", what="", paper="", ours="", check="")
+    assert row.verdict == "cannot be compared"
+    assert replace(row, given=Verdict.REPRODUCED).verdict == "reproduced"
