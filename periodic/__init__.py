@@ -1,6 +1,7 @@
 """What a periodic orbit is: collocation, continuation, stability. Knows only the `System` protocol."""
 
 from periodic.branch import Branch, BranchFileError
+from periodic.closure import PhaseCondition
 from periodic.continuation import Run
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
@@ -11,6 +12,7 @@ from periodic.sampling import sampled
 from periodic.scheme import Family, Scheme
 from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
+from periodic.switching import SwitchError, branched, doubled
 from periodic.system import System
 from periodic.tracing import trace
 
@@ -23,6 +25,7 @@ __all__ = [
     "MeshSettings",
     "NewtonSettings",
     "Orbit",
+    "PhaseCondition",
     "Point",
     "Reason",
     "Run",
@@ -30,7 +33,10 @@ __all__ = [
     "Settings",
     "StepSettings",
     "Stop",
+    "SwitchError",
     "System",
+    "branched",
+    "doubled",
     "extrema",
     "outputs",
     "plot",

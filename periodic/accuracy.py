@@ -6,11 +6,12 @@ mesh points, so its increment is the error of the orbit to first order (deferred
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.closure import Plane
+from periodic.closure import Condition, Plane
 from periodic.newton import Outcome, at_fixed_phase, linear_step
 from periodic.orbit import Orbit, bisect
 from periodic.scheme import Array
@@ -40,11 +41,17 @@ class ErrorEstimate:
         return max(self.orbit, self.multiplier / SLACK)
 
 
-def estimate(system: System, orbit: Orbit, monodromy: Array, plane: Plane | None) -> ErrorEstimate:
-    """Estimate the errors of a converged orbit (of a fixed parameter, or on a continuation plane)."""
+def estimate(
+    system: System,
+    orbit: Orbit,
+    monodromy: Array,
+    plane: Plane | None,
+    free: tuple[int, ...] = (),
+    conditions: Sequence[Condition] = (),
+) -> ErrorEstimate:
+    """Estimate the errors of a converged orbit: of fixed parameters, or of `free` ones on a plane."""
     fine = bisect(orbit)
-    closures = [] if plane is None else [_moved(plane, fine)]
-    free = () if plane is None else (plane.index,)
+    closures = [] if plane is None else [*(c.at(fine) for c in conditions), _moved(plane, fine)]
     step = linear_step(system, fine, free, closures)
     if isinstance(step, Outcome):
         return ErrorEstimate(np.inf, np.inf)

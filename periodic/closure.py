@@ -57,7 +57,8 @@ class Direction:
     """A direction along the solution set, of unit length in the metric of `Metric`.
 
     nodes, stages, algebraic, phases are rates at fixed sigma (they move with the mesh); profile (N+1, n)
-    is the rate of the mesh-point states at fixed tau; parameter the rate of the free parameter.
+    is the rate of the mesh-point states at fixed tau; parameter the rate of the continuation parameter,
+    others (k,) those of further free parameters.
     """
 
     nodes: Array
@@ -66,6 +67,7 @@ class Direction:
     phases: Array
     profile: Array
     parameter: float
+    others: Array
 
     def scaled(self, factor: float) -> Direction:
         """Return the direction times a factor."""
@@ -76,6 +78,7 @@ class Direction:
             phases=factor * self.phases,
             profile=factor * self.profile,
             parameter=factor * self.parameter,
+            others=factor * self.others,
         )
 
     def with_profile(self, profile: Array) -> Direction:
@@ -121,12 +124,48 @@ class Plane:
         """Return value and gradient; mesh points that move carry the origin's slope with them."""
         slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
         weighted = self.metric.weights(self.origin)[:, None] * self.direction.profile
-        outer = np.append(
-            -np.einsum("jn,jn,jk->k", weighted, slope, moving),
-            self.direction.parameter / self.metric.scale**2,
-        )
-        moved = np.append(
-            orbit.phases - self.origin.phases, orbit.parameter[self.index] - self.origin.parameter[self.index]
-        )
+        k = len(orbit.phases)
+        outer = np.zeros(k + len(free))
+        outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, moving)
+        outer[k + free.index(self.index)] = self.direction.parameter / self.metric.scale**2
+        shift = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
+        moved = np.append(orbit.phases - self.origin.phases, shift)
         value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
         return Row(float(value) - self.distance, weighted, outer)
+
+
+class Condition(Protocol):
+    """What determines a further free parameter: a closure that may refer to an earlier orbit."""
+
+    def at(self, origin: Orbit) -> Closure:
+        """Return the closure for orbits near `origin`, on the same mesh."""
+
+
+@dataclass(frozen=True)
+class PhaseCondition:
+    """The integral phase condition of autonomous orbits: mean over the period of <x - x_o, x_o'> = 0.
+
+    x_o is the orbit before (Doedel 1981). It holds the phase that the equations leave open, and determines
+    the angular frequency.
+    """
+
+    def at(self, origin: Orbit) -> Closure:
+        """Return the condition with respect to an orbit."""
+        return _Phase(origin)
+
+
+@dataclass(frozen=True)
+class _Phase:
+    """The phase condition with respect to one orbit."""
+
+    origin: Orbit
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return value and gradient; mesh points that move carry the origin's slope with them."""
+        slope, k = self.origin.node_rates, len(orbit.phases)
+        weighted = Metric.weights(self.origin)[:, None] * slope
+        outer = np.zeros(k + len(free))
+        outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
+        value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes)
+        value += outer[:k] @ (orbit.phases - self.origin.phases)
+        return Row(float(value), weighted, outer)

@@ -1,9 +1,9 @@
 """Special points inside one continuation step, located on planes between its two ends.
 
-A fold (LP) is where the tangent's parameter component vanishes, a period doubling (PD) where a multiplier
-passes -1, that is det(M + I) = 0. A branch of doubled orbits turns where it meets the orbits it came from:
-the same doubling, seen from the other branch. User points (UZ) and bounds (EP) are where the parameter takes
-a given value, looked for on each side of the turns, where the parameter is monotone.
+`periodic.events` has the test functions. A branch of doubled orbits turns where it meets the orbits it came
+from: the same doubling (PD), seen from the other branch. So does one that leaves a symmetric branch (BP).
+User points (UZ) and bounds (EP) are where the parameter takes a given value, looked for on each side of the
+turns, where the parameter is monotone.
 """
 
 from __future__ import annotations
@@ -14,22 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import optimize
 
+from periodic import events
 from periodic.closure import Plane
+from periodic.events import Test
 from periodic.newton import Outcome
 from periodic.point import Label
 from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, predict, settle
 
-FOLD_PRECISION = 1e-6
-"""Precision of a fold's place along the branch, in steps; its parameter is second order in it."""
-
-DOUBLING_PRECISION = 1e-10
-"""The same of a period doubling; its parameter is first order in it."""
-
 MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
-
-Test = Callable[[Solved], float]
-"""A function of an orbit that vanishes at a special point."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +52,13 @@ def special_points(
     `since` is the parameter up to which values have been looked for: that of the last point, from which the
     base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
     """
-    folds = _where(task, base, new, ds, _slope, FOLD_PRECISION, Label.FOLD)
-    doublings = _where(task, base, new, ds, _doubling, DOUBLING_PRECISION, Label.DOUBLING)
-    pieces = [Found(Label.NONE, 0.0, base), *folds, Found(Label.NONE, ds, new)]
+    turns = _where(task, base, new, ds, events.TURN)
+    pieces = [Found(Label.NONE, 0.0, base), *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = [*(_named(task, fold, base, new) for fold in folds), *doublings]
-    starts = [since, *(_value(task, fold.solved) for fold in folds)]
+    found = [_named(task, turn, base, new) for turn in turns]
+    for test in (*events.PASSAGES, *(() if turns else (events.BRANCHING,))):
+        found += _where(task, base, new, ds, test)
+    starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = _value(task, end.solved)
         bound = bounds[1] if last > first else bounds[0]
@@ -83,7 +77,7 @@ def _check_ways(task: Task, pieces: list[Found]) -> None:
     the branch.
     """
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
-        way = _slope(begin.solved) if begin.label is not Label.FOLD else _slope(end.solved)
+        way = (end if begin.label is Label.FOLD else begin).solved.tangent.parameter
         if (_value(task, end.solved) - _value(task, begin.solved)) * way < 0:
             raise RejectedError("the step ends on another part of the branch")
 
@@ -92,32 +86,39 @@ def _value(task: Task, solved: Solved) -> float:
     return float(solved.orbit.parameter[task.index])
 
 
-def _where(
-    task: Task, base: Solved, new: Solved, ds: float, test: Test, precision: float, label: Label
-) -> list[Found]:
-    """Locate where `test` changes sign within a step, if it does, on a mesh that is accurate there."""
-    if test(base) * test(new) >= 0:
+def _where(task: Task, base: Solved, new: Solved, ds: float, test: Test) -> list[Found]:
+    """Locate where a test function changes sign within a step, if it does, on an accurate mesh."""
+
+    def value(solved: Solved) -> float:
+        return test.value(task, solved)
+
+    if value(base) * value(new) >= 0:
         return []
-    distance, solved = _root(task, base, (0.0, ds), test, precision * ds)
+    distance, solved = _root(task, base, (0.0, ds), value, test.precision * ds)
+    if not test.genuine(task, solved):
+        return []
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
-        return [Found(label, distance, solved)]
+        return [Found(test.label, distance, solved)]
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
-        if test(ends[0]) * test(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), test, precision * ds)[1]
-            return [Found(label, distance, solved)]
+        if value(ends[0]) * value(ends[1]) < 0:
+            solved = _root(task, refined, (-reach, reach), value, test.precision * ds)[1]
+            return [Found(test.label, distance, solved)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
 
 def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
-    """A turn of the branch by its name: PD where its orbit takes fewer periods than those of the step's ends.
+    """A turn of the branch by its name.
 
-    There the orbit is as good as itself one or more excitation periods later.
+    PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
+    more excitation periods later. BP where a multiplier touches 1 without passing it: the branch leaves
+    another there, which goes on.
     """
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
-    repeats = apart[0] < MERGED * max(apart[1:]) < np.inf
-    return replace(turn, label=Label.DOUBLING) if repeats else turn
+    if apart[0] < MERGED * max(apart[1:]) < np.inf:
+        return replace(turn, label=Label.DOUBLING)
+    return replace(turn, label=Label.BRANCH) if events.touches(task, base, new) else turn
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
@@ -129,15 +130,6 @@ def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
     return solved
 
 
-def _slope(solved: Solved) -> float:
-    return solved.tangent.parameter
-
-
-def _doubling(solved: Solved) -> float:
-    monodromy = solved.correction.monodromy
-    return float(np.linalg.det(monodromy + np.eye(len(monodromy))))
-
-
 def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
     ends = (begin.distance, end.distance)
@@ -145,12 +137,12 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
     parameter = near.orbit.parameter.copy()
     parameter[task.index] = value
     guess = replace(near.orbit, parameter=parameter)
-    exact = settle(task, at_parameter(task, guess, float(np.sign(_slope(near))) or 1.0), fixed=True)
+    exact = settle(task, at_parameter(task, guess, float(np.sign(near.tangent.parameter)) or 1.0), fixed=True)
     return Found(label, distance, _accepted(task, exact))
 
 
 def _root(
-    task: Task, base: Solved, ends: tuple[float, float], test: Test, precision: float
+    task: Task, base: Solved, ends: tuple[float, float], test: Callable[[Solved], float], precision: float
 ) -> tuple[float, Solved]:
     """Return distance and solution where `test` changes sign between two distances from the base."""
     solutions: dict[float, Solved] = {}

@@ -217,7 +217,7 @@ def _direction(
     nodes, outer = solution.kernel_nodes, solution.kernel_outer
     stages, algebraic = collocation.recover(orbit, condensed, nodes, outer, 0.0)
     profile = at_fixed_phase(orbit, nodes, outer[:k])
-    return Direction(nodes, stages, algebraic, outer[:k], profile, float(outer[k]))
+    return Direction(nodes, stages, algebraic, outer[:k], profile, float(outer[k]), outer[k + 1 :])
 
 
 def at_fixed_phase(orbit: Orbit, nodes: Array, phases: Array) -> Array:

@@ -22,8 +22,15 @@ class Label(Enum):
     END = "EP"
     FOLD = "LP"
     DOUBLING = "PD"
+    TORUS = "NS"
+    BRANCH = "BP"
     USER = "UZ"
     FAILED = "MX"
+
+    @property
+    def critical(self) -> bool:
+        """Whether a multiplier is on the unit circle there."""
+        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +38,9 @@ class Point:
     """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
 
     minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
-    arclength. A point is stable when all multipliers lie inside the unit circle; a fold or a period doubling,
-    where one is on it, is not.
+    arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there, which tells how
+    accurate the multipliers are; None for a forced orbit. A point is stable when all other multipliers lie
+    inside the unit circle; a special point where one is on it is not.
     """
 
     orbit: Orbit
@@ -45,11 +53,19 @@ class Point:
     residual: float
     iterations: int
     slope: float
+    trivial: float | None = None
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return self.label not in (Label.FOLD, Label.DOUBLING) and bool(np.abs(self.multipliers).max() < 1)
+        """Whether all multipliers lie inside the unit circle, the trivial one apart."""
+        return not self.label.critical and bool((np.abs(self.nontrivial) < 1).all())
+
+    @property
+    def nontrivial(self) -> NDArray[np.complex128]:
+        """The multipliers without the trivial one of an autonomous orbit, largest first."""
+        if self.trivial is None:
+            return self.multipliers
+        return np.delete(self.multipliers, np.abs(self.multipliers - 1).argmin())
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output."""
@@ -72,4 +88,5 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
         residual=largest_residual(task.system, solved.orbit),
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
+        trivial=float(np.abs(multipliers - 1).min()) if task.autonomous else None,
     )

@@ -11,7 +11,7 @@ from periodic import anchors
 from periodic.accuracy import LEAST_SPAN, ErrorEstimate, estimate
 from periodic.adapt import redistribute
 from periodic.anchors import Crossing
-from periodic.closure import Direction, Metric, Plane
+from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
 from periodic.mesh import Mesh
 from periodic.newton import Correction, Outcome, correct, moved
 from periodic.orbit import FORCED, Orbit, transfer
@@ -47,13 +47,28 @@ class Work:
 
 @dataclass(frozen=True)
 class Task:
-    """What is solved: a system, the continuation parameter's index, the metric and the settings."""
+    """What is solved: a system, the continuation parameter's index, the metric and the settings.
+
+    `others` are the indices of further free parameters, `conditions` what determines them, one for each.
+    """
 
     system: System
     index: int
     metric: Metric
     settings: Settings
     work: Work = field(default_factory=Work)
+    others: tuple[int, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Indices of all free parameters, the continuation parameter first."""
+        return (self.index, *self.others)
+
+    @property
+    def autonomous(self) -> bool:
+        """Whether the orbits have a multiplier that is 1 whatever the parameters."""
+        return any(isinstance(condition, PhaseCondition) for condition in self.conditions)
 
 
 @dataclass(frozen=True)
@@ -76,7 +91,7 @@ class Solved:
         return anchors.fits(self.wanted, self.orbit)
 
 
-def parameter_direction(orbit: Orbit, metric: Metric) -> Direction:
+def parameter_direction(orbit: Orbit, metric: Metric, others: int = 0) -> Direction:
     """The direction in which only the parameter changes; a plane across it fixes the parameter."""
     zero = np.zeros_like(orbit.nodes)
     return Direction(
@@ -86,12 +101,14 @@ def parameter_direction(orbit: Orbit, metric: Metric) -> Direction:
         np.zeros_like(orbit.phases),
         zero,
         metric.scale,
+        np.zeros(others),
     )
 
 
 def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
-    result = correct(task.system, guess, (task.index,), [plane], task.settings.newton)
+    closures = [*(condition.at(plane.origin) for condition in task.conditions), plane]
+    result = correct(task.system, guess, task.free, closures, task.settings.newton)
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
@@ -103,7 +120,7 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
     tangent = tangent.scaled(sign / length)
     origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
-    error = estimate(task.system, result.orbit, result.monodromy, origin)
+    error = estimate(task.system, result.orbit, result.monodromy, origin, task.free, task.conditions)
     return Solved(result, tangent, error, _wanted(task, result.orbit, error))
 
 
@@ -119,7 +136,9 @@ def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
     solved = on_plane(task, guess, Plane(guess, across, 0.0, task.metric, task.index))
     if isinstance(solved, Outcome):
         return solved
-    exact = replace(solved.orbit, parameter=guess.parameter)  # Newton leaves it within rounding
+    parameter = solved.orbit.parameter.copy()
+    parameter[task.index] = guess.parameter[task.index]  # Newton leaves it within rounding
+    exact = replace(solved.orbit, parameter=parameter)
     return replace(solved, correction=replace(solved.correction, orbit=exact))
 
 
@@ -258,18 +277,23 @@ def on_mesh(direction: Direction, old: Orbit, new: Orbit) -> Direction:
     wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
     profile = np.stack([np.interp(wrapped, at, column) for column in direction.profile.T], axis=1)
     base = parameter_direction(new, Metric(1.0))
-    return Direction(base.nodes, base.stages, base.algebraic, base.phases, profile, direction.parameter)
+    return replace(base, profile=profile, parameter=direction.parameter)
 
 
 def predict(task: Task, orbit: Orbit, direction: Direction, ds: float) -> Orbit:
     """Return the orbit moved by ds along a direction."""
+    return along(task.system, task.free, orbit, direction, ds)
+
+
+def along(system: System, free: tuple[int, ...], orbit: Orbit, direction: Direction, ds: float) -> Orbit:
+    """Return an orbit and its free parameters moved by ds along a direction."""
     parameter = orbit.parameter.copy()
-    parameter[task.index] += ds * direction.parameter
+    parameter[list(free)] += ds * np.append(direction.parameter, direction.others)
     return replace(
         orbit,
         nodes=orbit.nodes + ds * direction.nodes,
         stages=orbit.stages + ds * direction.stages,
-        algebraic=moved(task.system, orbit.algebraic, ds * direction.algebraic),
+        algebraic=moved(system, orbit.algebraic, ds * direction.algebraic),
         phases=orbit.phases + ds * direction.phases,
         parameter=parameter,
     )

@@ -72,6 +72,7 @@ def dataset(branch: Branch) -> xr.Dataset:
         "residual": [p.residual for p in points],
         "newton_iterations": [p.iterations for p in points],
         "slope": [p.slope for p in points],
+        "trivial": [np.nan if p.trivial is None else p.trivial for p in points],
     }
     data = xr.Dataset({name: ("point", np.array(column)) for name, column in per_point.items()})
     outputs = [q.name for q in branch.layout.outputs]
@@ -178,6 +179,7 @@ def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
         residual=number("residual"),
         iterations=int(number("newton_iterations")),
         slope=number("slope"),
+        trivial=None if np.isnan(number("trivial")) else number("trivial"),
     )
 
 

@@ -106,3 +106,11 @@ class System(Protocol):
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """States (n,) and unknowns (m,) from which the search for a first orbit starts."""
+
+
+def index_of(system: System, parameter: str) -> int:
+    """Return the index of a parameter. Raises ValueError for a name that is none."""
+    names = [p.name for p in system.parameters]
+    if parameter not in names:
+        raise ValueError(f"parameter is {parameter!r}; it must be one of {', '.join(names)}")
+    return names.index(parameter)

@@ -12,7 +12,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from periodic.branch import Branch, Layout, Quantity
-from periodic.closure import Metric
+from periodic.closure import Condition, Metric
 from periodic.continuation import Run
 from periodic.mesh import Mesh, uniform
 from periodic.orbit import Orbit, at_rest, transfer
@@ -22,7 +22,7 @@ from periodic.scheme import Array
 from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
 from periodic.stop import Reason, Stop
-from periodic.system import System, VariableLike
+from periodic.system import System, VariableLike, index_of
 
 Progress = Callable[[Point], None]
 
@@ -37,6 +37,7 @@ def trace(
     accuracy: Accuracy = Accuracy.STANDARD,
     settings: Settings | None = None,
     values: Mapping[str, float] | None = None,
+    determined: Mapping[str, Condition] | None = None,
     guess: Orbit | None = None,
     progress: Progress | None = None,
 ) -> Branch:
@@ -45,11 +46,13 @@ def trace(
     From a start at a bound the branch is followed towards the other, from one inside both ways. `at`
     are values that get a point of their own (UZ) on every sheet. `values` (SI, by name) replace the nominal
     ones of other parameters. `guess` is an orbit to start from (default: rest): one of an earlier branch, or
-    `sampled` from a simulation, of one excitation period or several. An interrupt (Ctrl-C) returns the
-    branch so far. A numerical failure is the branch's `stop`. Raises ValueError, in one sentence, for a
-    parameter, bound or value that is not allowed.
+    `sampled` from a simulation, of one excitation period or several. `determined` are further free
+    parameters with the conditions that determine them: {"omega": PhaseCondition()} for an autonomous system
+    with a parameter omega = 2 pi / period; they start from the guess's values. An interrupt (Ctrl-C)
+    returns the branch so far. A numerical failure is the branch's `stop`. Raises ValueError, in one
+    sentence, for a parameter, bound or value that is not allowed.
     """
-    index = _index(system, parameter)
+    index = index_of(system, parameter)
     low, high = _range(parameter, bounds)
     begin = bounds[0] if start is None else start
     if not low <= begin <= high:
@@ -57,10 +60,21 @@ def trace(
     for value in at:
         if not low <= value <= high:
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
-    task = Task(system, index, Metric(high - low), settings or accuracy.settings())
+    determined = determined or {}
+    task = Task(
+        system,
+        index,
+        Metric(high - low),
+        settings or accuracy.settings(),
+        others=tuple(index_of(system, name) for name in determined),
+        conditions=tuple(determined.values()),
+    )
     clock = time.perf_counter()
     fixed = _parameters(system, {**(values or {}), parameter: begin})
     orbit = _rest(task, fixed) if guess is None else _adopted(task, guess, fixed)
+    orbit.parameter[list(task.others)] = (
+        guess.parameter[list(task.others)] if guess else fixed[list(task.others)]
+    )
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), tuple(sorted(set(map(float, at))))) for _ in signs]
     halves: list[list[Point]] = []
@@ -135,13 +149,6 @@ def layout_of(system: System) -> Layout:
     )
 
 
-def _index(system: System, parameter: str) -> int:
-    names = [p.name for p in system.parameters]
-    if parameter not in names:
-        raise ValueError(f"parameter is {parameter!r}; it must be one of {', '.join(names)}")
-    return names.index(parameter)
-
-
 def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
     low, high = sorted(float(b) for b in bounds)
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
@@ -155,13 +162,14 @@ def _parameters(system: System, values: Mapping[str, float]) -> Array:
     for name, value in values.items():
         if not math.isfinite(value):
             raise ValueError(f"value of {name} is {value}; it must be a finite number")
-        parameter[_index(system, name)] = value
+        parameter[index_of(system, name)] = value
     return parameter
 
 
 def _adopted(task: Task, guess: Orbit, parameter: Array) -> Orbit:
-    """A guess in the settings' scheme, at the given parameters."""
-    old = guess.mesh
+    """A guess in the settings' scheme, at the given parameters but for those that are determined."""
+    old, others = guess.mesh, list(task.others)
+    parameter[others] = guess.parameter[others]
     mesh = Mesh(task.settings.mesh.scheme, old.breaks, old.anchors, old.period)
     return relax(task.system, replace(transfer(guess, mesh, guess.phases), parameter=parameter))
 

@@ -13,6 +13,7 @@ from numpy_systems import Array, LinearOscillator
 from traces import RPM, disc_system
 
 import periodic as per
+from periodic.system import index_of
 from symbolic.flow import Flow, Trajectory
 from symbolic.linear import modes, with_values
 
@@ -160,3 +161,15 @@ def test_refused_samples(phase: Array, rows: int, sentence: str) -> None:
     """Assert that samples that make no orbit are refused in one sentence."""
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}"):
         per.sampled(phase, np.zeros((rows, 2)), np.zeros((rows, 0)), np.zeros(3))
+
+
+def test_doubled_orbits_from_the_doubling() -> None:
+    """Assert that the doubled orbits reached from either doubling are those found by simulation."""
+    system, expected = disc_system(SCENE), doubled_orbits()[0].peak_to_peak("x")
+    upper, lower = small_orbits().labelled(per.Label.DOUBLING)
+    for point in (upper, lower):
+        guess = per.doubled(system, point.orbit, "speed")
+        begin = float(guess.parameter[index_of(system, "speed")])
+        branch = per.trace(system, "speed", (440 * RPM, begin), start=begin, guess=guess, at=[500 * RPM])
+        sheets = [p.peak_to_peak("x") for p in branch.labelled(per.Label.USER)]
+        assert min(abs(swing / expected - 1) for swing in sheets) < 1e-7

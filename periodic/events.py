@@ -1,0 +1,107 @@
+"""Test functions: what vanishes at a special point of a branch.
+
+With the Floquet multipliers mu (an autonomous orbit's trivial one left out), each factor divided by its size
+so that none overflows:
+
+    LP  d parameter / d arclength        PD  prod (mu + 1)
+    BP  prod (mu - 1), not at an LP      NS  prod over pairs (mu_i mu_j - 1), of a complex pair only
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.point import Label
+from periodic.solve import Solved, Task
+
+Complex = NDArray[np.complex128]
+
+CONSERVED = 100.0
+"""What lies within so many errors of the multipliers from 1 cannot be told from it,"""
+
+ROUNDING = 1e-10
+"""... or within this."""
+
+
+@dataclass(frozen=True)
+class Test:
+    """A function of an orbit that changes sign at special points of one kind.
+
+    precision: of its place along the branch, in steps. genuine: whether the zero found is of that kind.
+    """
+
+    label: Label
+    value: Callable[[Task, Solved], float]
+    precision: float
+    genuine: Callable[[Task, Solved], bool] = lambda task, solved: True
+
+
+def multipliers(task: Task, solved: Solved) -> Complex:
+    """Return the multipliers of an orbit, without the trivial one if it is autonomous."""
+    found = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
+    return np.delete(found, np.abs(found - 1).argmin()) if task.autonomous else found
+
+
+def slope(task: Task, solved: Solved) -> float:
+    """d parameter / d arclength."""
+    return solved.tangent.parameter
+
+
+def doubling(task: Task, solved: Solved) -> float:
+    """prod (mu + 1) / (1 + |mu|)."""
+    found = multipliers(task, solved)
+    return float(np.prod((found + 1) / (1 + np.abs(found))).real)
+
+
+def branching(task: Task, solved: Solved) -> float:
+    """prod (mu - 1) / (1 + |mu|)."""
+    found = multipliers(task, solved)
+    return float(np.prod((found - 1) / (1 + np.abs(found))).real)
+
+
+def touches(task: Task, base: Solved, new: Solved) -> bool:
+    """Whether a multiplier comes to 1 between two orbits and goes back, as far as it can be told."""
+    if branching(task, base) * branching(task, new) < 0:
+        return False
+    ends = [(np.abs(multipliers(task, end) - 1).min(), _noise(end)) for end in (base, new)]
+    return all(distance > noise for distance, noise in ends)
+
+
+def _noise(solved: Solved) -> float:
+    return CONSERVED * solved.error.multiplier + ROUNDING
+
+
+def torus(task: Task, solved: Solved) -> float:
+    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error."""
+    products = _products(multipliers(task, solved))
+    if (np.abs(products - 1) < _noise(solved)).any():
+        return 0.0
+    return float(np.prod((products - 1) / (1 + np.abs(products))).real)
+
+
+def _products(found: Complex) -> Complex:
+    first, second = np.triu_indices(len(found), 1)
+    return found[first] * found[second]
+
+
+def _complex(task: Task, solved: Solved) -> bool:
+    """Whether the pair whose product is nearest 1 is complex: else it is a neutral saddle."""
+    found = multipliers(task, solved)
+    first, second = np.triu_indices(len(found), 1)
+    nearest = np.abs(found[first] * found[second] - 1).argmin()
+    return bool(found[first[nearest]].imag != 0)
+
+
+TURN = Test(Label.FOLD, slope, 1e-6)
+"""Its parameter is second order in its place; those of the others are first order."""
+
+PASSAGES = (
+    Test(Label.DOUBLING, doubling, 1e-10),
+    Test(Label.TORUS, torus, 1e-10, _complex),
+)
+
+BRANCHING = Test(Label.BRANCH, branching, 1e-10)

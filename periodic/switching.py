@@ -1,0 +1,128 @@
+"""From a special point to the branch that begins there: doubled orbits at a PD, another branch at a BP.
+
+With M v = mu v, mu = -1 or 1, the new branch leaves along x(tau) + s Phi(tau) v, Phi the fundamental matrix.
+Where mu = -1 this perturbation has the opposite sign in the second period.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from periodic import bordered, collocation
+from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
+from periodic.mesh import Mesh
+from periodic.newton import Outcome, correct
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.solve import along
+from periodic.system import System, index_of
+
+FAR = 0.02
+"""Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
+
+
+class SwitchError(ArithmeticError):
+    """No orbit of the new branch was found; the message says why."""
+
+
+def doubled(
+    system: System,
+    orbit: Orbit,
+    parameter: str,
+    *,
+    determined: Mapping[str, Condition] | None = None,
+    distance: float | None = None,
+) -> Orbit:
+    """Return an orbit of twice the period near one that is about to double (PD): a guess for `trace`.
+
+    `parameter` is that of the branch, `determined` as in `trace`; the new orbit lies `distance` (root mean
+    square of the scaled states; default: FAR times the largest peak to peak) away, at a parameter of its own.
+    Raises SwitchError.
+    """
+    away = _away(system, orbit, -1, autonomous=False)
+    twice = _twice(orbit)
+    nodes = np.concatenate([away.nodes[:-1], -away.nodes])
+    away = Direction(
+        nodes=nodes,
+        stages=np.concatenate([away.stages, -away.stages]),
+        algebraic=np.concatenate([away.algebraic, -away.algebraic]),
+        phases=np.zeros(2 * len(orbit.phases)),
+        profile=nodes,
+        parameter=0.0,
+        others=np.zeros(0),
+    )
+    return _switched(system, twice, away, parameter, determined or {}, distance)
+
+
+def branched(
+    system: System,
+    orbit: Orbit,
+    parameter: str,
+    *,
+    determined: Mapping[str, Condition] | None = None,
+    distance: float | None = None,
+) -> Orbit:
+    """Return an orbit of the branch that crosses another at a branch point (BP): a guess for `trace`.
+
+    Arguments as in `doubled`; a negative distance gives the orbit on the other side. Raises SwitchError.
+    """
+    autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
+    away = _away(system, orbit, 1, autonomous)
+    return _switched(system, orbit, away, parameter, determined or {}, distance)
+
+
+def _switched(
+    system: System,
+    origin: Orbit,
+    away: Direction,
+    parameter: str,
+    determined: Mapping[str, Condition],
+    distance: float | None,
+) -> Orbit:
+    """Solve on the plane across `away`, some way along it."""
+    free = tuple(index_of(system, name) for name in (parameter, *determined))
+    length = FAR * origin.span() if distance is None else distance
+    metric = Metric(1.0)
+    away = replace(away, others=np.zeros(len(determined)))
+    away = away.scaled(1 / float(np.sqrt(metric.dot(origin, away, away))))
+    plane = Plane(origin, away, length, metric, free[0])
+    closures = [*(condition.at(origin) for condition in determined.values()), plane]
+    found = correct(system, along(system, free, origin, away, length), free, closures)
+    if found.outcome is not Outcome.CONVERGED:
+        raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
+    return found.orbit
+
+
+def _twice(orbit: Orbit) -> Orbit:
+    """The same orbit gone through twice."""
+    mesh = orbit.mesh
+    both = mesh.breaks * 2
+    breaks = both if mesh.anchors else (np.concatenate([both[0] / 2, (1 + both[1][1:]) / 2]),)
+    return replace(
+        orbit,
+        mesh=Mesh(mesh.scheme, breaks, mesh.anchors * 2, 2 * mesh.period),
+        nodes=np.concatenate([orbit.nodes[:-1], orbit.nodes]),
+        stages=np.concatenate([orbit.stages] * 2),
+        algebraic=np.concatenate([orbit.algebraic] * 2),
+        phases=np.concatenate([orbit.phases, orbit.phases + mesh.period]),
+    )
+
+
+def _away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Direction:
+    """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
+    condensed = collocation.condense(system, orbit, ())
+    fundamental = bordered.chain(condensed)[:, :, 1 : 1 + orbit.nodes.shape[1]]
+    flow = orbit.node_rates[0] if autonomous and multiplier == 1 else None
+    nodes = fundamental @ _kept(fundamental[-1] - multiplier * np.eye(len(fundamental[-1])), flow)
+    stages, algebraic = collocation.recover(orbit, condensed, nodes, np.zeros(len(orbit.phases)), 0.0)
+    return Direction(nodes, stages, algebraic, np.zeros(len(orbit.phases)), nodes, 0.0, np.zeros(0))
+
+
+def _kept(matrix: Array, flow: Array | None) -> Array:
+    """The vector nearest to the kernel of a matrix, across the flow if there is one."""
+    if flow is not None:
+        matrix = np.concatenate([matrix, flow[None, :] / np.linalg.norm(flow)])
+    return np.linalg.svd(matrix)[2][-1]
