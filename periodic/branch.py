@@ -36,7 +36,7 @@ class Layout:
     parameters: tuple[Quantity, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branch:
     """Points in order along the branch; `parameter` names the one that was continued in.
 
@@ -52,6 +52,9 @@ class Branch:
     newton_iterations: int = 0
     elapsed: float = 0.0
     versions: dict[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"Branch({self.parameter}, {len(self)} points, {self.stop})"
 
     def __len__(self) -> int:
         return len(self.points)

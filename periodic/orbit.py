@@ -15,7 +15,7 @@ FORCED = 2 * np.pi
 """Period of the excitation in tau."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit:
     """States at mesh points (N+1, n) and collocation points (N, ncol, n), unknowns (N, ncol, m).
 
@@ -28,6 +28,9 @@ class Orbit:
     algebraic: Array
     phases: Array
     parameter: Array
+
+    def __repr__(self) -> str:
+        return f"Orbit({self.mesh.ntst} intervals, {self.nodes.shape[1]} states, {self.periods} periods)"
 
     @cached_property
     def grid(self) -> Grid:

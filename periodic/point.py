@@ -33,7 +33,7 @@ class Label(Enum):
         return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Point:
     """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
 
@@ -54,6 +54,10 @@ class Point:
     iterations: int
     slope: float
     trivial: float | None = None
+
+    def __repr__(self) -> str:
+        kind = " ".join(filter(None, [self.label.value, "stable" if self.stable else "unstable"]))
+        return f"Point({self.parameter:.12g}, {kind})"
 
     @property
     def stable(self) -> bool:

@@ -6,6 +6,7 @@ shares per point are in the variables `*_count`. Loading reads numbers and strin
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import os
@@ -23,7 +24,7 @@ from periodic.point import Label, Point
 from periodic.scheme import Family, Scheme
 from periodic.stop import Reason, Stop
 
-FORMAT = "orbitrace branch 1"
+FORMAT = "orbitrace branch 2"
 
 
 def save(branch: Branch, path: Path) -> None:
@@ -31,8 +32,13 @@ def save(branch: Branch, path: Path) -> None:
 
     The file is made in memory first: the HDF5 library does not survive a disk that fills up under it.
     """
+    path = path.resolve()  # a link stays a link
+    if path.exists() and not path.is_file():
+        raise BranchFileError(f"branch file is {str(path)!r}, which is no ordinary file; choose another")
     memory = io.BytesIO()
-    dataset(branch).to_netcdf(memory, engine="h5netcdf")
+    data = dataset(branch)
+    data.attrs["checksum"] = checksum(data)
+    data.to_netcdf(memory, engine="h5netcdf")
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         part.write_bytes(memory.getvalue())
@@ -51,13 +57,24 @@ def load(path: Path) -> Branch:
                 raise BranchFileError(
                     f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}"
                 )
-            return _branch(data.load())
+            if data.attrs.pop("checksum", None) != checksum(data.load()):
+                raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
+            return _branch(data)
     except BranchFileError:
         raise
     except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
-        raise BranchFileError(
-            f"branch file {str(path)!r} is damaged or not a branch ({type(error).__name__})"
-        ) from error
+        raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch") from error
+
+
+def checksum(data: xr.Dataset) -> str:
+    """Return the SHA-256 of all variables and attributes, by name."""
+    found = hashlib.sha256(json.dumps({k: str(v) for k, v in sorted(data.attrs.items())}).encode())
+    for name in sorted(map(str, data.variables)):
+        values = data[name].values
+        found.update(f"{name} {values.shape}".encode())
+        numeric = values.dtype.kind in "biuf"
+        found.update(values.astype(float).tobytes() if numeric else repr(values.tolist()).encode())
+    return found.hexdigest()
 
 
 def dataset(branch: Branch) -> xr.Dataset:

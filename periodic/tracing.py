@@ -33,7 +33,7 @@ def trace(
     bounds: tuple[float, float],
     *,
     start: float | None = None,
-    at: Sequence[float] = (),
+    at: float | Sequence[float] = (),
     accuracy: Accuracy = Accuracy.STANDARD,
     settings: Settings | None = None,
     values: Mapping[str, float] | None = None,
@@ -52,12 +52,14 @@ def trace(
     returns the branch so far. A numerical failure is the branch's `stop`. Raises ValueError, in one
     sentence, for a parameter, bound or value that is not allowed.
     """
+    _checked(system, accuracy)
     index = index_of(system, parameter)
     low, high = _range(parameter, bounds)
     begin = bounds[0] if start is None else start
     if not low <= begin <= high:
         raise ValueError(f"start is {begin}; it must lie within the bounds {low} to {high}")
-    for value in at:
+    user = tuple(sorted({float(value) for value in np.atleast_1d(np.asarray(at, dtype=float))}))
+    for value in user:
         if not low <= value <= high:
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     determined = determined or {}
@@ -76,7 +78,7 @@ def trace(
         guess.parameter[list(task.others)] if guess else fixed[list(task.others)]
     )
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
-    runs = [Run(task, (low, high), tuple(sorted(set(map(float, at))))) for _ in signs]
+    runs = [Run(task, (low, high), user) for _ in signs]
     halves: list[list[Point]] = []
     with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
         for run, sign in zip(runs, signs, strict=True):
@@ -149,9 +151,22 @@ def layout_of(system: System) -> Layout:
     )
 
 
+def _checked(system: System, accuracy: Accuracy) -> None:
+    """Refuse what Python's types do not: a model that is not compiled, an accuracy by its name."""
+    missing = [name for name in ("states", "parameters", "linearise", "rest") if not hasattr(system, name)]
+    if missing:
+        raise ValueError(
+            f"system is a {type(system).__name__} without {', '.join(missing)}; it must be a System "
+            f"(symbolic.compile makes one of a model)"
+        )
+    if not isinstance(accuracy, Accuracy):
+        raise ValueError(f"accuracy is {accuracy!r}; it must be Accuracy.DRAFT, .STANDARD or .FINE")
+
+
 def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
-    low, high = sorted(float(b) for b in bounds)
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+    ends = np.sort(np.atleast_1d(np.asarray(bounds, dtype=float)))
+    low, high = float(ends[0]), float(ends[-1])
+    if len(ends) != 2 or not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise ValueError(f"bounds of {parameter} are {bounds}; they must be two different finite numbers")
     return low, high
 

@@ -5,6 +5,7 @@ What is imported here is small; each command imports what it needs, so that --he
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from enum import Enum
@@ -48,9 +49,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # A terminal that cannot show a letter is no reason to stop.
         sys.stdout.reconfigure(errors="replace")
     try:
-        return app(args=given, prog_name="orbitrace", standalone_mode=False) or DONE
+        code = app(args=given, prog_name="orbitrace", standalone_mode=False) or DONE
+        sys.stdout.flush()
+        return code
     except InputError as error:
         sentence = str(error)
+    except OSError as error:
+        # Everything else that writes names its file in an InputError.
+        sentence = f"standard output cannot be written to ({error.strerror})"
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - Python flushes it once more at its end
     except ClickException as error:
         sentence = " ".join(error.format_message().replace("Value error, ", "").split())
     _say(sentence)
@@ -164,6 +171,7 @@ def trace(
         except KeyboardInterrupt:
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
+        folder = _place(branch, folder)
         _report(name, task, branch, integrated, folder, as_json)
     return _verdict(branch, folder)
 
@@ -253,16 +261,33 @@ def _interrupted(branch: Branch) -> bool:
     return branch.stop.reason is Reason.INTERRUPTED
 
 
+def _place(branch: Branch, folder: Path) -> Path:
+    """Return where a branch goes: one that is cut short never in place of an earlier one."""
+    from periodic import Reason
+
+    cut = branch.stop.reason.numerical or branch.stop.reason is Reason.INTERRUPTED
+    if not (cut and (folder / "branch.nc").exists()):
+        return folder
+    from reports.files import writable
+
+    return writable(folder / "incomplete")
+
+
 def _swept(name: str, task: run.Task) -> run.Settlements | None:
     """Integrate in time; None where that is interrupted, so that the branch is still saved."""
     from reports import console, run
 
     with console.counting(f"integrating {name} in time", 2 * run.SPEEDS) as counted:
         try:
-            return run.swept(task, counted)
+            found = run.swept(task, counted)
         except KeyboardInterrupt:
             _say("the integration in time was interrupted; the picture goes without it")
             return None
+    if left_out := 2 * run.SPEEDS - sum(map(len, found)):
+        _say(
+            f"the motion did not settle in time at {left_out} of {2 * run.SPEEDS} values; they are not drawn"
+        )
+    return found
 
 
 def _report(

@@ -1,4 +1,4 @@
-"""What Ctrl-C may stop and when: the tracing, once, and never the writing of results."""
+"""What Ctrl-C and SIGTERM may stop and when: the tracing, once, and never the writing of results."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 
+ENDING = (signal.SIGINT, signal.SIGTERM)
+
 
 def _once(number: int, frame: FrameType | None) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for each in ENDING:
+        signal.signal(each, signal.SIG_IGN)
     raise KeyboardInterrupt
 
 
@@ -20,11 +23,12 @@ def _handled(handler: Callable[[int, FrameType | None], object] | signal.Handler
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, handler)
+    before = {each: signal.signal(each, handler) for each in ENDING}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for each, old in before.items():
+            signal.signal(each, old)
 
 
 def heard_once() -> AbstractContextManager[None]:

@@ -42,7 +42,7 @@ def draw(
         _integrated(axes, *integrated)
     _marks(axes, view, branch)
     axes.set(xlabel=view.axes[0], ylabel=view.axes[1])
-    axes.set_title(scene.title, fontsize="medium")
+    axes.set_title(scene.title, fontsize="medium", parse_math=False)
     axes.grid(alpha=0.25)
     axes.set_ylim(bottom=0)
     axes.margins(x=0.02)

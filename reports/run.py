@@ -52,7 +52,13 @@ def validated(request: Request) -> Task:
             scene = load(request.source, (*request.overrides, *given.items()))
         except InputError as error:
             raise error.renamed({key: options[key] for key in given}) from None
-    return Task(scene=scene, at=_points(scene, request.at))
+    return Task(scene=_titled(scene, request.overrides), at=_points(scene, request.at))
+
+
+def _titled(scene: Scene, overrides: tuple[Override, ...]) -> Scene:
+    """Return the scene with what was changed in its title."""
+    changes = [f"{key} = {value or 'none'}" for key, value in overrides if key != "title"]
+    return scene.model_copy(update={"title": ", ".join([scene.title, *changes])})
 
 
 def _points(scene: Scene, text: str | None) -> tuple[float, ...]:
@@ -97,7 +103,10 @@ Settlements = tuple[list[tuple[float, float]], list[tuple[float, float]]]
 
 
 def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Settlements:
-    """Return what time integration settles to over the scene's range, rising and falling, as shown."""
+    """Return what time integration settles to over the scene's range, rising and falling, as shown.
+
+    Where it has not settled there is no point.
+    """
     import numpy as np
 
     from reports.build import build
@@ -107,7 +116,7 @@ def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Sett
     low, high = sorted(value * view.unit for value in task.scene.trace.ends)
     values = list(np.linspace(low, high, SPEEDS))
     ways = [sweep(system, view.parameter, way, progress=progress) for way in (values, values[::-1])]
-    below, above = ([(m.parameter / view.unit, view.settled(m)) for m in way] for way in ways)
+    below, above = ([(m.parameter / view.unit, view.settled(m)) for m in way if m.steady] for way in ways)
     return below, above
 
 
@@ -118,11 +127,10 @@ def save(
     from reports.picture import draw
 
     writers: dict[str, Callable[[Path], object]] = {
+        "branch.nc": branch.save,
         "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
         "branch.png": lambda path: draw(path, scene, branch, integrated),
-        # Last: on a full disk the HDF5 library may take the whole process down.
-        "branch.nc": branch.save,
     }
     with unheard():
         try:

@@ -19,16 +19,24 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class Settled:
-    """A parameter value and the extremes of the first output, a displacement, once settled (SI)."""
+    """A parameter value and the extremes of the first output, a displacement (SI), over the last period.
+
+    steady: whether the motion had settled by then.
+    """
 
     parameter: float
     minimum: float
     maximum: float
+    steady: bool
 
 
 @dataclass(frozen=True, kw_only=True)
 class SweepSettings:
-    """Blocks of `block` periods are run until the state changes by less than `change` over one of them."""
+    """Blocks of `block` periods are run until what the state still has to change by is less than `change`.
+
+    That is estimated from how far the states at the ends of the periods lie apart, in this block and the one
+    before.
+    """
 
     tolerance: float = 1e-7
     block: int = 20
@@ -58,13 +66,13 @@ def sweep(
     settled: list[Settled] = []
     for value in values:
         try:
-            last = _settle(flow, state, algebraic, with_values(system, {parameter: value}), settings)
+            last, steady = _settle(flow, state, algebraic, with_values(system, {parameter: value}), settings)
         except IntegrationError as error:
             log.warning("the sweep ends before %s = %g: %s", parameter, value, error)
             break
         state, algebraic = last.state[-1], last.algebraic[-1]
         low, high = _extremes(system, last, with_values(system, {parameter: value}))
-        settled.append(Settled(parameter=value, minimum=low, maximum=high))
+        settled.append(Settled(parameter=value, minimum=low, maximum=high, steady=steady))
         if progress is not None:
             progress(settled[-1])
     return settled
@@ -77,14 +85,22 @@ def _extremes(system: CompiledSystem, motion: Trajectory, values: Array) -> tupl
     return float(first.min()), float(first.max())
 
 
-def _settle(flow: Flow, state: Array, algebraic: Array, values: Array, settings: SweepSettings) -> Trajectory:
-    """Run until nothing changes from block to block; return one period more."""
+def _settle(
+    flow: Flow, state: Array, algebraic: Array, values: Array, settings: SweepSettings
+) -> tuple[Trajectory, bool]:
+    """Run until the motion has settled; return one period more, and whether it has."""
     period = 2 * np.pi * np.array([0.0, 1.0])
+    last, steady = np.inf, False
     for _ in range(settings.most_blocks):
-        before = state
+        seen = [state]
         for _ in range(settings.block):
             end = flow.run(state, algebraic, values, period)
             state, algebraic = end.state[-1], end.algebraic[-1]
-        if float(np.abs(state - before).max()) < settings.change:
+            seen.append(state)
+        spread = float(np.ptp(seen, axis=0).max())
+        # What falls from block to block by a ratio r has r / (1 - r) times as far to go.
+        left = spread * max(1.0, spread / (last - spread)) if spread < last else np.inf
+        if steady := left < settings.change:
             break
-    return flow.run(state, algebraic, values, np.linspace(0, 2 * np.pi, settings.samples))
+        last = spread
+    return flow.run(state, algebraic, values, np.linspace(0, 2 * np.pi, settings.samples)), steady

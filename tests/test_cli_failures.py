@@ -1,6 +1,10 @@
 """The command line where things go wrong: sentences, exit codes and what is saved."""
 
 import json
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -126,3 +130,50 @@ def test_failed_write_keeps_the_old_file(tmp_path: Path) -> None:
         part.write_text("ne", "utf-8")
         raise OSError("full")
     assert file.read_text("utf-8") == "old" and list(tmp_path.iterdir()) == [file]
+
+
+def test_cut_short_never_replaces(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that a branch cut short goes beside an earlier result, which stays as it was."""
+    assert main(["trace", "duffing", "--to", "0.4", "--out", str(tmp_path)]) == 0
+    before = (tmp_path / "branch.nc").read_bytes()
+    stop = per.Stop(per.Reason.SMALL_STEP, "for a test")
+    changed(monkeypatch, lambda trace, *args, **kwargs: replace(trace(*args, **kwargs), stop=stop))
+    assert main(["trace", "duffing", "--to", "0.5", "--out", str(tmp_path)]) == 3
+    assert (tmp_path / "branch.nc").read_bytes() == before
+    assert len(list((tmp_path / "incomplete").iterdir())) == 4
+    assert str(tmp_path / "incomplete") in capsys.readouterr().err
+
+
+def test_title_that_is_no_formula(tmp_path: Path, capsys: Capture) -> None:
+    """Assert that dollars and braces in a title are drawn as they are, and that changes stand beside it."""
+    title = r"a $x_{ \\frac"
+    arguments = ["trace", "duffing", "--to", "0.4", "--out", str(tmp_path), "--set", "force=0.4"]
+    assert main([*arguments, "--set", f"title={title}"]) == 0
+    assert capsys.readouterr().out.startswith(f"{title}, force = 0.4\n")
+
+
+def command(*arguments: str, **options: Any) -> subprocess.Popen[str]:
+    """The command line in a process of its own."""
+    program = "import sys; from reports.cli import main; sys.exit(main())"
+    pipes = {"stderr": subprocess.PIPE, "text": True, **options}
+    return subprocess.Popen([sys.executable, "-c", program, *arguments], **pipes)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this machine has no device that is always full")
+def test_full_standard_output(tmp_path: Path) -> None:
+    """Assert that a standard output that takes nothing more is said in a sentence; the files are there."""
+    with open("/dev/full", "w") as full:
+        process = command("trace", "duffing", "--to", "0.4", "--out", str(tmp_path), stdout=full)
+        said = process.communicate()[1]
+    assert process.returncode == 2
+    assert said == "orbitrace: standard output cannot be written to (No space left on device)\n"
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+def test_request_to_end(tmp_path: Path) -> None:
+    """Assert that SIGTERM, like Ctrl-C, saves the points so far."""
+    process = command("trace", "turbo33-2100N", "--accuracy", "fine", "--out", str(tmp_path))
+    time.sleep(4)
+    process.send_signal(signal.SIGTERM)
+    assert "interrupted" in process.communicate()[1]
+    assert process.returncode == 130

@@ -12,6 +12,7 @@ import xarray as xr
 from traces import disc, duffing
 
 import periodic as per
+from periodic import storage
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +72,13 @@ def changed(saved: bytes, path: Path) -> xr.Dataset:
         return data.load()
 
 
+def rewrite(data: xr.Dataset, path: Path) -> None:
+    """Write a dataset as one that was saved like this, with a checksum of its own."""
+    data.attrs.pop("checksum", None)
+    data.attrs["checksum"] = storage.checksum(data)
+    data.to_netcdf(path, engine="h5netcdf")
+
+
 NAMES = [
     "value",
     "label",
@@ -87,7 +95,7 @@ NAMES = [
 def test_missing_variable(saved: bytes, name: str, tmp_path: Path) -> None:
     """Assert that a file without one of its variables is refused."""
     data = changed(saved, tmp_path / "branch.nc").drop_vars(name)
-    data.to_netcdf(tmp_path / "spoilt.nc", engine="h5netcdf")
+    rewrite(data, tmp_path / "spoilt.nc")
     complaint(tmp_path / "spoilt.nc")
 
 
@@ -99,7 +107,7 @@ def test_spoilt_attribute(saved: bytes, name: str, tmp_path: Path) -> None:
         data.attrs = {k: v for k, v in data.attrs.items() if k != name}
         if value is not None and name != "parameter":
             data.attrs[name] = value
-        data.to_netcdf(tmp_path / "spoilt.nc", engine="h5netcdf")
+        rewrite(data, tmp_path / "spoilt.nc")
         complaint(tmp_path / "spoilt.nc")
 
 
@@ -108,7 +116,7 @@ def test_counts_that_do_not_add_up(saved: bytes, name: str, tmp_path: Path) -> N
     """Assert that orbits whose shares of the arrays do not add up are refused."""
     data = changed(saved, tmp_path / "branch.nc")
     data[name][-1] = int(data[name][-1]) + 1
-    data.to_netcdf(tmp_path / "spoilt.nc", engine="h5netcdf")
+    rewrite(data, tmp_path / "spoilt.nc")
     complaint(tmp_path / "spoilt.nc")
 
 
@@ -116,7 +124,7 @@ def test_another_version_of_the_format(saved: bytes, tmp_path: Path) -> None:
     """Assert that a format of the future is refused by name."""
     data = changed(saved, tmp_path / "branch.nc")
     data.attrs["format"] = "orbitrace branch 99"
-    data.to_netcdf(tmp_path / "future.nc", engine="h5netcdf")
+    rewrite(data, tmp_path / "future.nc")
     assert "orbitrace branch 99" in complaint(tmp_path / "future.nc")
 
 
@@ -163,3 +171,37 @@ def test_file_is_portable_text_and_numbers(saved: bytes, tmp_path: Path) -> None
     for name in ("layout", "stop", "stop_backwards", "versions"):
         json.loads(data.attrs[name])
     assert b"pickle" not in saved and b"\x80\x04\x95" not in saved
+
+
+@pytest.mark.parametrize("place", np.linspace(0.02, 0.98, 13))
+def test_flipped_bit(saved: bytes, place: float, tmp_path: Path) -> None:
+    """Assert that a single flipped bit never loads as another branch."""
+    path, spoilt = tmp_path / "branch.nc", bytearray(saved)
+    spoilt[int(place * len(saved))] ^= 0x10
+    path.write_bytes(bytes(spoilt))
+    sound = tmp_path / "sound.nc"
+    sound.write_bytes(saved)
+    try:
+        again = per.Branch.load(path)
+    except per.BranchFileError:
+        return
+    # The bit lay where the file format keeps no data of ours.
+    assert storage.checksum(storage.dataset(again)) == storage.checksum(
+        storage.dataset(per.Branch.load(sound))
+    )
+
+
+def test_missing_variable_is_noticed(saved: bytes, tmp_path: Path) -> None:
+    """Assert that a variable which loading could do without is missed as well."""
+    data = changed(saved, tmp_path / "branch.nc").drop_vars("residual")
+    data.to_netcdf(tmp_path / "spoilt.nc", engine="h5netcdf")
+    assert "checksum" in complaint(tmp_path / "spoilt.nc")
+
+
+def test_saving_through_a_link(tmp_path: Path) -> None:
+    """Assert that a link stays one, and that what is no ordinary file is refused."""
+    (tmp_path / "link.nc").symlink_to(tmp_path / "branch.nc")
+    duffing().save(tmp_path / "link.nc")
+    assert (tmp_path / "link.nc").is_symlink() and (tmp_path / "branch.nc").is_file()
+    with pytest.raises(per.BranchFileError, match="^branch file is '/dev/null', which is no ordinary file"):
+        duffing().save("/dev/null")

@@ -9,11 +9,16 @@ import pytest
 from numpy_systems import LinearOscillator
 
 import periodic as per
+import symbolic as sym
 
 NAN, INFINITE = math.nan, math.inf
 REFUSED_TRACES = [
     ({"parameter": "speed"}, "parameter is 'speed'; it must be one of Omega, zeta, F"),
     ({"parameter": ""}, "parameter is ''; it must be one of Omega, zeta, F"),
+    ({"bounds": (1.0,)}, "bounds of Omega are (1.0,); they must be two different finite numbers"),
+    ({"bounds": 1.0}, "bounds of Omega are 1.0; they must be two different finite numbers"),
+    ({"at": 0.2}, "at is 0.2; it must lie within the bounds 0.4 to 1.6"),
+    ({"accuracy": "fine"}, "accuracy is 'fine'; it must be Accuracy.DRAFT, .STANDARD or .FINE"),
     ({"bounds": (1.0, 1.0)}, "bounds of Omega are (1.0, 1.0); they must be two different finite numbers"),
     ({"bounds": (0.4, NAN)}, "bounds of Omega are (0.4, nan); they must be two different finite numbers"),
     (
@@ -71,3 +76,24 @@ def test_accuracies_differ_in_tolerance() -> None:
     meshes = [accuracy.settings().mesh for accuracy in per.Accuracy]
     assert [a.tolerance > b.tolerance for a, b in zip(meshes, meshes[1:], strict=False)] == [True, True]
     assert [a.scheme.ncol <= b.scheme.ncol for a, b in zip(meshes, meshes[1:], strict=False)] == [True, True]
+
+
+def test_refused_system() -> None:
+    """Assert that a model which was not compiled is refused in one sentence."""
+    x = sym.coordinate("x")
+    with pytest.raises(ValueError, match="^system is a Model without states, .*symbolic.compile makes one"):
+        per.trace(sym.Mass(x, 1.0) + sym.Spring(x, 1.0), "Omega", (0.5, 1.0))  # type: ignore[arg-type]
+
+
+def test_one_value_at() -> None:
+    """Assert that a single value needs no list."""
+    branch = per.trace(LinearOscillator(), "Omega", (0.4, 0.6), at=0.5)  # type: ignore[arg-type]
+    assert [p.parameter for p in branch.labelled(per.Label.USER)] == [0.5]
+
+
+def test_short_names_of_results() -> None:
+    """Assert that branches, points and orbits tell what they are in a line."""
+    branch = per.trace(LinearOscillator(), "Omega", (0.4, 0.6))
+    assert repr(branch) == f"Branch(Omega, {len(branch)} points, bound reached: upper end of the range)"
+    assert repr(branch[0]) == "Point(0.4, EP stable)"
+    assert re.fullmatch(r"Orbit\(\d+ intervals, 2 states, 1 periods\)", repr(branch[0].orbit))
