@@ -32,10 +32,13 @@ from periodic.solve import (
     parameter_direction,
     predict,
     remesh,
+    repeats,
+    same,
     settle,
     wanted_ntst,
 )
 from periodic.stop import Stop
+from periodic.switching import away
 
 WINDOW = 1 / 60
 """The mesh is made anew where the error estimate falls below this part of the tolerance."""
@@ -80,11 +83,16 @@ class Run:
         if base.error.orbit > task.settings.mesh.tolerance:
             self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
             return
+        if repeats(task, base):
+            raise ValueError(
+                f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
+                f"it must be sampled over as many as it takes"
+            )
         yield describe(task, base, Label.END)
         if _value(task, base) in self.user:
             yield describe(task, base, Label.USER)
         ds, count, since = step.ds, 1, _value(task, base)
-        begun, sought = base, self._sought(since)
+        begun, left, sought = base, False, self._sought(since)
         while count < step.max_points:
             try:
                 base, new = self._step(base, ds)
@@ -97,7 +105,7 @@ class Run:
                     return
                 continue
             for special in specials:
-                if special.label is Label.USER and closes(task, begun, special.solved):
+                if left and special.label is Label.USER and closes(task, begun, special.solved):
                     self.stop = Stop.closed(count)
                     yield describe(task, special.solved, Label.END)
                     return
@@ -107,7 +115,7 @@ class Run:
                 self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
                 return
             yield describe(task, new, Label.NONE)
-            count, since = count + 1, _value(task, new)
+            count, since, left = count + 1, _value(task, new), left or not same(task, begun, new)
             ds = self._next_size(ds, new)
             base = self._prepared(new)
         self.stop = Stop.max_points(step.max_points)
@@ -121,13 +129,25 @@ class Run:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
         task = self.task
         first = settle(task, at_parameter(task, start, sign), fixed=True)
-        if isinstance(first, Solved) or start.mesh.anchors or not self.search:
+        if isinstance(first, Solved):
             return first
+        if not self.search:
+            return self._at_turn(start, sign, first)
         for factor in ELSEWHERE:
             orbit = self._approached(start, factor)
             if orbit is not None:
                 return settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
+
+    def _at_turn(self, start: Orbit, sign: float, failed: Outcome) -> Solved | Outcome:
+        """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+        try:
+            across = away(self.task.system, start, 1, self.task.autonomous).scaled(sign)
+        except (FloatingPointError, np.linalg.LinAlgError):
+            return failed
+        plane = Plane(start, across, 0.0, self.task.metric, self.task.index)
+        found = settle(self.task, on_plane(self.task, start, plane))
+        return found if isinstance(found, Solved) else failed
 
     def _approached(self, start: Orbit, factor: float) -> Orbit | None:
         """Trace from `factor` times the wanted parameter to it; None where the branch does not get there."""

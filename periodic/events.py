@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic import rotation
 from periodic.point import Label
 from periodic.solve import Solved, Task
 
@@ -22,6 +23,9 @@ Complex = NDArray[np.complex128]
 
 CONSERVED = 100.0
 """What lies within so many errors of the multipliers from 1 cannot be told from it,"""
+
+NEGATIVE = 1e-3
+"""Real multipliers nearer to 0 than this are too far from -1."""
 
 ROUNDING = 1e-10
 """... or within this."""
@@ -32,12 +36,14 @@ class Test:
     """A function of an orbit that changes sign at special points of one kind.
 
     precision: of its place along the branch, in steps. genuine: whether the zero found is of that kind.
+    twice: whether it may change sign twice between two orbits at which it has the same.
     """
 
     label: Label
     value: Callable[[Task, Solved], float]
     precision: float
     genuine: Callable[[Task, Solved], bool] = lambda task, solved: True
+    twice: Callable[[Solved, Solved], bool] = lambda base, new: False
 
 
 def multipliers(task: Task, solved: Solved) -> Complex:
@@ -96,12 +102,27 @@ def _complex(task: Task, solved: Solved) -> bool:
     return bool(found[first[nearest]].imag != 0)
 
 
+def doubles_twice(base: Solved, new: Solved) -> bool:
+    """Whether the orbits may double between two orbits and be single again at the second.
+
+    A pair of multipliers turns past -1, or is real and negative at one end, on its way out or back.
+    """
+    ends = [np.linalg.eigvals(end.correction.monodromy) for end in (base, new)]
+    negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
+    return max(negative) > 1 or rotation.passes(base.correction.fundamental, new.correction.fundamental, -1)
+
+
+def branches_twice(base: Solved, new: Solved) -> bool:
+    """Whether a pair of multipliers turns past +1 between two orbits."""
+    return rotation.passes(base.correction.fundamental, new.correction.fundamental, 1)
+
+
 TURN = Test(Label.FOLD, slope, 1e-6)
 """Its parameter is second order in its place; those of the others are first order."""
 
 PASSAGES = (
-    Test(Label.DOUBLING, doubling, 1e-10),
+    Test(Label.DOUBLING, doubling, 1e-10, twice=doubles_twice),
     Test(Label.TORUS, torus, 1e-10, _complex),
 )
 
-BRANCHING = Test(Label.BRANCH, branching, 1e-10)
+BRANCHING = Test(Label.BRANCH, branching, 1e-10, twice=branches_twice)

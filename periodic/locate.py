@@ -8,6 +8,7 @@ turns, where the parameter is monotone.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -23,6 +24,13 @@ from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, pr
 
 MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
+
+
+STANDING = 1e-5
+"""A branch that begins with so small a part of its later slope begins at a turn."""
+
+TRIALS = 15
+"""Most orbits solved for within a step to find a second change of sign."""
 
 
 @dataclass(frozen=True)
@@ -52,11 +60,13 @@ def special_points(
     `since` is the parameter up to which values have been looked for: that of the last point, from which the
     base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
     """
-    turns = _where(task, base, new, ds, events.TURN)
-    pieces = [Found(Label.NONE, 0.0, base), *turns, Found(Label.NONE, ds, new)]
+    from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
+    turns = [] if from_turn else _where(task, base, new, ds, events.TURN)
+    begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
+    pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
     found = [_named(task, turn, base, new) for turn in turns]
-    for test in (*events.PASSAGES, *(() if turns else (events.BRANCHING,))):
+    for test in (*events.PASSAGES, *(() if turns or from_turn else (events.BRANCHING,))):
         found += _where(task, base, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
@@ -87,14 +97,44 @@ def _value(task: Task, solved: Solved) -> float:
 
 
 def _where(task: Task, base: Solved, new: Solved, ds: float, test: Test) -> list[Found]:
-    """Locate where a test function changes sign within a step, if it does, on an accurate mesh."""
+    """Locate where a test function changes sign within a step, if it does."""
+    ends = [test.value(task, solved) for solved in (base, new)]
+    if ends[0] * ends[1] < 0:
+        return _located(task, base, (0.0, ds), ds, test)
+    if ends[0] * ends[1] == 0 or not test.twice(base, new):
+        return []
+    between = _change(task, base, ds, lambda solved: np.sign(ends[0]) * test.value(task, solved))
+    if between is None:
+        return []
+    spans = ((0.0, between), (between, ds))
+    return [found for span in spans for found in _located(task, base, span, ds, test)]
+
+
+def _change(task: Task, base: Solved, ds: float, value: Callable[[Solved], float]) -> float | None:
+    """Return a distance within a step at which a function, positive at both ends, is negative, if any."""
+    found: list[float] = []
+
+    def positive(distance: float) -> float:
+        result = value(_at_distance(task, base, distance))
+        if result < 0:
+            found.append(distance)
+            raise StopIteration
+        return result
+
+    with contextlib.suppress(StopIteration):
+        optimize.minimize_scalar(
+            positive, bounds=(0.0, ds), method="bounded", options={"maxiter": TRIALS, "xatol": 0.0}
+        )
+    return found[0] if found else None
+
+
+def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, test: Test) -> list[Found]:
+    """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
 
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    if value(base) * value(new) >= 0:
-        return []
-    distance, solved = _root(task, base, (0.0, ds), value, test.precision * ds)
+    distance, solved = _root(task, base, span, value, test.precision * ds)
     if not test.genuine(task, solved):
         return []
     refined = _accepted(task, settle(task, solved))

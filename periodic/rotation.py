@@ -2,12 +2,14 @@
 
 Where a complex pair of multipliers passes near +1 the free vibration is in tune with a harmonic of the
 excitation (a superharmonic resonance): the branch may leave its course for a peak far narrower than a step
-and return to it. Near -1 it may double its period and undouble it again. The response to the parameter goes
-with (I - M)^-1 or (I + M)^-1, so the pair may not turn by more than a part of its distance from these points.
-Its angle is followed over the whole period, so that full turns count.
+and return to it. The response to the parameter goes with (I - M)^-1, so the pair may not turn by more than
+a part of its distance from +1. Where it passes -1 or +1 it may also leave the unit circle and come back. Its
+angle is followed over the whole period, so that full turns count.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,9 +17,6 @@ from periodic.scheme import Array
 
 PART = 0.7
 """Largest turn of a multiplier (rad), as a part of its distance from +1."""
-
-DOUBLED = 1.5
-"""The same for -1, where a peak that is passed unseen has both its doublings within the step."""
 
 LEAST = 0.002
 """Turns as small as this are always allowed."""
@@ -27,31 +26,56 @@ LIGHT = 0.8
 """Pairs of smaller modulus are damped too well for a narrow peak."""
 
 
+@dataclass(frozen=True)
+class Pair:
+    """A complex pair of multipliers: the angle turned over the period, its modulus, its distance from +1."""
+
+    angle: float
+    modulus: float
+    distance: float
+
+
 def is_resolved(before: Array, after: Array) -> bool:
-    """Whether two orbits' complex multipliers are close enough, seen from +1 and -1.
+    """Whether two orbits' lightly damped pairs of multipliers are close enough, seen from +1.
 
     before, after: fundamental matrices at the mesh points, shape (N+1, n, n); the last is the monodromy.
     """
-    # A pair may be born of two real multipliers or end in them.
-    fewer, more = sorted((turns(before), turns(after)), key=len)
-    for angle, allowed in fewer:
-        other, other_allowed = min(more, key=lambda pair: abs(pair[0] - angle))
-        if abs(angle - other) > max(min(allowed, other_allowed), LEAST):
+    for a, b in _matched(before, after):
+        light = min(a.modulus, b.modulus) > LIGHT
+        if light and abs(a.angle - b.angle) > max(PART * min(a.distance, b.distance), LEAST):
             return False
     return True
 
 
-def turns(fundamental: Array) -> list[tuple[float, float]]:
-    """Angle turned over the period by each lightly damped pair of multipliers, and how far it may turn on.
+def passes(before: Array, after: Array, sign: int) -> bool:
+    """Whether a pair turns past `sign` (+1 or -1) between two orbits."""
+    offset = 0.0 if sign > 0 else np.pi
+    return any(
+        np.floor((a.angle - offset) / (2 * np.pi)) != np.floor((b.angle - offset) / (2 * np.pi))
+        for a, b in _matched(before, after)
+    )
+
+
+def _matched(before: Array, after: Array) -> list[tuple[Pair, Pair]]:
+    """The pairs of two orbits, each of the side that has fewer with the nearest of the other.
+
+    A pair may be born of two real multipliers or end in them.
+    """
+    fewer, more = sorted((pairs(before), pairs(after)), key=len)
+    return [(a, min(more, key=lambda b: abs(b.angle - a.angle))) for a in fewer]
+
+
+def pairs(fundamental: Array) -> list[Pair]:
+    """Return the complex pairs of multipliers.
 
     The angle is that of the largest component of the eigenvector's solution, followed along the mesh.
     """
     multipliers, vectors = np.linalg.eig(fundamental[-1])
-    result = []
-    for k in np.flatnonzero((multipliers.imag > 0) & (np.abs(multipliers) > LIGHT)):
+    found = []
+    for k in np.flatnonzero(multipliers.imag > 0):
         solution = fundamental @ vectors[:, k]
         component = int(np.abs(solution).mean(axis=0).argmax())
         angle = np.unwrap(np.angle(solution[:, component]))
-        allowed = min(PART * abs(1 - multipliers[k]), DOUBLED * abs(1 + multipliers[k]))
-        result.append((abs(float(angle[-1] - angle[0])), float(allowed)))
-    return result
+        turned = abs(float(angle[-1] - angle[0]))
+        found.append(Pair(turned, float(abs(multipliers[k])), float(abs(1 - multipliers[k]))))
+    return found

@@ -206,7 +206,7 @@ def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Di
 
 def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome:
     """Return the new solution if it is the old orbit within its error."""
-    if isinstance(new, Solved) and not _same(task, old, new):
+    if isinstance(new, Solved) and not same(task, old, new):
         return Outcome.MOVED
     return new
 
@@ -238,8 +238,16 @@ def closes(task: Task, start: Solved, new: Solved) -> bool:
     The same orbit a whole number of excitation periods later counts as the start again. A branch that comes
     back the other way has passed through an orbit of fewer periods and goes on.
     """
-    onward = start.tangent.parameter * new.tangent.parameter > 0
-    return onward and any(_same(task, start, new, later) for later in range(start.orbit.periods))
+    for later in range(start.orbit.periods):
+        if same(task, start, new, later):
+            onward = on_mesh(new.tangent, new.orbit, start.orbit, FORCED * later)
+            return task.metric.dot(start.orbit, start.tangent, onward) > 0
+    return False
+
+
+def repeats(task: Task, solved: Solved) -> bool:
+    """Whether an orbit of several excitation periods comes back to itself after fewer."""
+    return any(same(task, solved, solved, later) for later in range(1, solved.orbit.periods))
 
 
 def from_itself(task: Task, solved: Solved) -> float:
@@ -248,7 +256,7 @@ def from_itself(task: Task, solved: Solved) -> float:
     return min((distance(task, orbit, orbit, FORCED * k) for k in range(1, orbit.periods)), default=np.inf)
 
 
-def _same(task: Task, a: Solved, b: Solved, later: int = 0) -> bool:
+def same(task: Task, a: Solved, b: Solved, later: int = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
     allowed = KEPT * max(a.error.worst, task.settings.mesh.tolerance) * max(a.orbit.span(), LEAST_SPAN)
     return distance(task, a.orbit, b.orbit, FORCED * later) <= allowed
@@ -271,9 +279,9 @@ def wanted_ntst(task: Task, solved: Solved) -> int:
     return int(np.clip(np.ceil(factor * solved.orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))
 
 
-def on_mesh(direction: Direction, old: Orbit, new: Orbit) -> Direction:
-    """The direction's profile at the mesh points of another mesh: all that a plane needs."""
-    at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases)
+def on_mesh(direction: Direction, old: Orbit, new: Orbit, later: float = 0.0) -> Direction:
+    """The direction's profile `later` (rad) than the mesh points of another mesh: all that a plane needs."""
+    at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later
     wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
     profile = np.stack([np.interp(wrapped, at, column) for column in direction.profile.T], axis=1)
     base = parameter_direction(new, Metric(1.0))

@@ -42,19 +42,19 @@ def doubled(
     square of the scaled states; default: FAR times the largest peak to peak) away, at a parameter of its own.
     Raises SwitchError.
     """
-    away = _away(system, orbit, -1, autonomous=False)
+    once = away(system, orbit, -1, autonomous=False)
     twice = _twice(orbit)
-    nodes = np.concatenate([away.nodes[:-1], -away.nodes])
-    away = Direction(
+    nodes = np.concatenate([once.nodes[:-1], -once.nodes])
+    direction = Direction(
         nodes=nodes,
-        stages=np.concatenate([away.stages, -away.stages]),
-        algebraic=np.concatenate([away.algebraic, -away.algebraic]),
+        stages=np.concatenate([once.stages, -once.stages]),
+        algebraic=np.concatenate([once.algebraic, -once.algebraic]),
         phases=np.zeros(2 * len(orbit.phases)),
         profile=nodes,
         parameter=0.0,
         others=np.zeros(0),
     )
-    return _switched(system, twice, away, parameter, determined or {}, distance)
+    return _switched(system, twice, direction, parameter, determined or {}, distance)
 
 
 def branched(
@@ -70,27 +70,27 @@ def branched(
     Arguments as in `doubled`; a negative distance gives the orbit on the other side. Raises SwitchError.
     """
     autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
-    away = _away(system, orbit, 1, autonomous)
-    return _switched(system, orbit, away, parameter, determined or {}, distance)
+    direction = away(system, orbit, 1, autonomous)
+    return _switched(system, orbit, direction, parameter, determined or {}, distance)
 
 
 def _switched(
     system: System,
     origin: Orbit,
-    away: Direction,
+    direction: Direction,
     parameter: str,
     determined: Mapping[str, Condition],
     distance: float | None,
 ) -> Orbit:
-    """Solve on the plane across `away`, some way along it."""
+    """Solve on the plane across a direction, some way along it."""
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     length = FAR * origin.span() if distance is None else distance
     metric = Metric(1.0)
-    away = replace(away, others=np.zeros(len(determined)))
-    away = away.scaled(1 / float(np.sqrt(metric.dot(origin, away, away))))
-    plane = Plane(origin, away, length, metric, free[0])
+    direction = replace(direction, others=np.zeros(len(determined)))
+    direction = direction.scaled(1 / float(np.sqrt(metric.dot(origin, direction, direction))))
+    plane = Plane(origin, direction, length, metric, free[0])
     closures = [*(condition.at(origin) for condition in determined.values()), plane]
-    found = correct(system, along(system, free, origin, away, length), free, closures)
+    found = correct(system, along(system, free, origin, direction, length), free, closures)
     if found.outcome is not Outcome.CONVERGED:
         raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
     return found.orbit
@@ -111,7 +111,7 @@ def _twice(orbit: Orbit) -> Orbit:
     )
 
 
-def _away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Direction:
+def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Direction:
     """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
     condensed = collocation.condense(system, orbit, ())
     fundamental = bordered.chain(condensed)[:, :, 1 : 1 + orbit.nodes.shape[1]]

@@ -41,21 +41,23 @@ def trace(
     guess: Orbit | None = None,
     progress: Progress | None = None,
 ) -> Branch:
-    """Trace the branch of forced periodic orbits through `start` (default bounds[0]) within `bounds`.
+    """Trace the branch of periodic orbits through `start` within `bounds`.
 
     From a start at a bound the branch is followed towards the other, from one inside both ways. `at`
-    are values that get a point of their own (UZ) on every sheet. `values` (SI, by name) replace the nominal
-    ones of other parameters. `guess` is an orbit to start from (default: rest): one of an earlier branch, or
-    `sampled` from a simulation, of one excitation period or several. `determined` are further free
-    parameters with the conditions that determine them: {"omega": PhaseCondition()} for an autonomous system
-    with a parameter omega = 2 pi / period; they start from the guess's values. An interrupt (Ctrl-C)
-    returns the branch so far. A numerical failure is the branch's `stop`. Raises ValueError, in one
-    sentence, for a parameter, bound or value that is not allowed.
+    are values that get a point of their own (UZ) on every sheet. `guess` is an orbit to start from (default:
+    rest): one of an earlier branch, `sampled` from a simulation, or from `doubled` or `branched`, of one
+    excitation period or several; it brings its parameters and a start of its own (default: the system's
+    nominal ones and bounds[0]), which `values` (SI, by name) and `start` replace. `determined` are further
+    free parameters with the conditions that determine them: {"omega": PhaseCondition()} for an autonomous
+    system with a parameter omega = 2 pi / period. An interrupt (Ctrl-C) returns the branch so far. A
+    numerical failure is the branch's `stop`. Raises ValueError, in one sentence, for a parameter, bound or
+    value that is not allowed.
     """
     _checked(system, accuracy)
     index = index_of(system, parameter)
     low, high = _range(parameter, bounds)
-    begin = bounds[0] if start is None else start
+    base = _base(system, guess)
+    begin = _begin(bounds, start, None if guess is None else float(base[index]))
     if not low <= begin <= high:
         raise ValueError(f"start is {begin}; it must lie within the bounds {low} to {high}")
     user = tuple(sorted({float(value) for value in np.atleast_1d(np.asarray(at, dtype=float))}))
@@ -72,13 +74,13 @@ def trace(
         conditions=tuple(determined.values()),
     )
     clock = time.perf_counter()
-    fixed = _parameters(system, {**(values or {}), parameter: begin})
+    fixed = _parameters(system, base, {**(values or {}), parameter: begin})
     orbit = _rest(task, fixed) if guess is None else _adopted(task, guess, fixed)
     orbit.parameter[list(task.others)] = (
         guess.parameter[list(task.others)] if guess else fixed[list(task.others)]
     )
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
-    runs = [Run(task, (low, high), user) for _ in signs]
+    runs = [Run(task, (low, high), user, search=guess is None) for _ in signs]
     halves: list[list[Point]] = []
     with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
         for run, sign in zip(runs, signs, strict=True):
@@ -171,9 +173,25 @@ def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-def _parameters(system: System, values: Mapping[str, float]) -> Array:
-    """The nominal parameters with some values replaced, by name."""
-    parameter = np.array(system.nominal, dtype=float)
+def _base(system: System, guess: Orbit | None) -> Array:
+    """The parameters that values are put into: the guess's, else the nominal ones."""
+    nominal = np.array(system.nominal, dtype=float)
+    if guess is None:
+        return nominal
+    if guess.parameter.shape != nominal.shape:
+        given, wanted = len(guess.parameter), len(nominal)
+        raise ValueError(f"guess has {given} parameters; it must have the {wanted} of the system")
+    return guess.parameter.copy()
+
+
+def _begin(bounds: tuple[float, float], start: float | None, own: float | None) -> float:
+    """Where to start: as asked for, else at the guess's own value, else at the first bound."""
+    return next(float(value) for value in (start, own, bounds[0]) if value is not None)
+
+
+def _parameters(system: System, base: Array, values: Mapping[str, float]) -> Array:
+    """Parameters with some values replaced, by name."""
+    parameter = base.copy()
     for name, value in values.items():
         if not math.isfinite(value):
             raise ValueError(f"value of {name} is {value}; it must be a finite number")

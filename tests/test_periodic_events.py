@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from numpy_systems import Array, LinearOscillator
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 from test_periodic_doubling import Mathieu
-from traces import FINE, disc_system, duffing
+from traces import DUFFING_A, FINE, disc_system, duffing, duffing_system
 
 import periodic as per
 
@@ -137,3 +139,91 @@ def pendulum_after_a_period(start: Array, force: float) -> Array:
     return np.asarray(
         solve_ivp(rhs, (0, 2 * math.pi), start, method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
     )
+
+
+class Parametric(LinearOscillator):
+    """Omega^2 x'' + 2 zeta Omega x' + (1 + depth cos tau) x = 0: a damped tongue about Omega = 2."""
+
+    def __init__(self, depth: float, zeta: float) -> None:
+        super().__init__(Omega=2.0, zeta=zeta, F=0.0)
+        self.depth = depth
+
+    def restoring(self, x: Array, phase: Array) -> tuple[Array, Array, Array]:
+        """r, dr/dx, dr/dtau."""
+        stiffness = 1 + self.depth * np.cos(phase)
+        return stiffness * x, stiffness, -self.depth * np.sin(phase) * x
+
+    def doubling(self, Omega: float) -> float:
+        """det(M + I), the monodromy matrix M by DOP853."""
+
+        def rhs(tau: float, y: Array) -> Array:
+            matrix = y.reshape(2, 2)
+            slope = -(1 + self.depth * math.cos(tau)) / Omega**2 * matrix[0]
+            return np.concatenate([matrix[1], slope - 2 * self.parameters[1].value / Omega * matrix[1]])
+
+        run = solve_ivp(rhs, (0, 2 * math.pi), np.eye(2).ravel(), method="DOP853", rtol=1e-12, atol=1e-13)
+        return float(np.linalg.det(run.y[:, -1].reshape(2, 2) + np.eye(2)))
+
+
+@pytest.mark.parametrize("upper", [3.0, 6.0])
+@pytest.mark.parametrize("zeta, depth", [(0.005, 0.03), (0.02, 0.09), (0.05, 0.22), (0.1, 0.42), (0.15, 0.7)])
+def test_doubling_and_back_within_a_step(zeta: float, depth: float, upper: float) -> None:
+    """Assert that a narrow unstable tongue is not stepped over, whatever the damping."""
+    system = Parametric(depth, zeta)
+    found = per.trace(system, "Omega", (0.9, upper), start=upper).labelled(per.Label.DOUBLING)
+    ends = [brentq(system.doubling, 2.0, far, xtol=1e-13) for far in (2.3, 1.7)]
+    assert [p.parameter for p in found] == pytest.approx(ends, rel=1e-8)
+
+
+class BiasedUeda(LinearOscillator):
+    """x'' + 0.05 x' + x^3 - 1 = F cos tau (Omega = 1)."""
+
+    def restoring(self, x: Array, phase: Array) -> tuple[Array, Array, Array]:
+        """r, dr/dx, dr/dtau."""
+        return x**3 - 1, 3 * x**2, np.zeros_like(x)
+
+
+UEDA = (0.848421, 0.972998, 1.039922, 1.622543, 3.219008, 3.711320, 4.485519)
+"""Period doublings between F = 0.2 and 5, by steps of 0.003 of the range."""
+
+
+@pytest.mark.parametrize("factor", STEPS)
+@pytest.mark.parametrize("lowest", [0.2, 0.4])
+def test_ueda(lowest: float, factor: float) -> None:
+    """Assert that none of Ueda's doublings is missed or found twice, from either start and any step."""
+    branch = per.trace(BiasedUeda(Omega=1.0, zeta=0.025), "F", (lowest, 5.0), settings=steps(factor))
+    found = [p.parameter for p in branch.labelled(per.Label.DOUBLING)]
+    assert found == pytest.approx(list(UEDA), abs=1e-6)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_start_at_a_fold(which: int) -> None:
+    """Assert that a branch started at one of its folds goes on both ways to its ends."""
+    whole = duffing()
+    fold = whole.labelled(per.Label.FOLD)[which]
+    branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 3.0), guess=fold.orbit)
+    assert {branch[0].parameter, branch[-1].parameter} == {0.3, 3.0}
+    assert branch.labelled(per.Label.BRANCH) == ()
+    other = [p.parameter for p in branch.labelled(per.Label.FOLD)]
+    assert min(abs(p - whole.labelled(per.Label.FOLD)[1 - which].parameter) for p in other) < 1e-9
+
+
+def test_guess_over_too_many_periods() -> None:
+    """Assert that a motion sampled over two periods which takes one is refused, not traced as doubled."""
+    tau = np.linspace(0, 4 * np.pi, 401)
+    system = LinearOscillator()
+    guess = per.sampled(tau, system.exact_state(tau), np.zeros((401, 0)), system.nominal)
+    with pytest.raises(ValueError, match="^guess takes 2 excitation periods, but its orbit repeats itself"):
+        per.trace(system, "Omega", (0.5, 0.9), guess=guess)
+
+
+def test_guess_brings_its_parameters() -> None:
+    """Assert that a branch goes on at the parameters of the orbit that it is started from."""
+    first = per.trace(LinearOscillator(), "Omega", (0.5, 0.9), values={"zeta": 0.2})
+    point = first[3]
+    second = per.trace(LinearOscillator(), "F", (0.5, 2.0), guess=point.orbit)
+    (start,) = [p for p in second if p.parameter == 1.0]
+    assert start.peak_to_peak("x") == pytest.approx(point.peak_to_peak("x"), rel=1e-9)
+    with pytest.raises(ValueError, match="^guess has 2 parameters; it must have the 3 of the system$"):
+        wrong = replace(point.orbit, parameter=np.ones(2))
+        per.trace(LinearOscillator(), "F", (0.5, 2.0), guess=wrong)

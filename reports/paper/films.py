@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
 
 import periodic
+from reports.paper import causes
+from reports.paper.resonance import natural_speed
 from reports.paper.scenes import branch, system
 from reports.view import MICRO, RPM
 from symbolic import CompiledSystem
-from symbolic.linear import modes, resonance, with_values
+from symbolic.linear import modes, with_values
 
-SCENE, FLOORED, OIL_B = "vitrea79-810N", "cavitating-film-810N", "turbo33-810N"
+SCENE, FLOORED = "vitrea79-810N", "cavitating-film-810N"
 
 POINT = 360.0
 """Speed in rev/min of the paper's own film thickness."""
@@ -52,11 +55,9 @@ def film_at_rest(disc: CompiledSystem, **values: float) -> float:
 def reading_numbers(name: str) -> dict[str, float]:
     """Return h0, linear resonance and damping ratio of a reading, without tracing (um, rev/min)."""
     disc = reading(name)
-    found = resonance(disc, "speed", (100 * RPM, 500 * RPM))
-    assert found is not None
     return {
         f"{name} film um": film_at_rest(disc, speed=POINT * RPM) / MICRO,
-        f"{name} resonance rpm": found / RPM,
+        f"{name} resonance rpm": natural_speed(disc),
         f"{name} damping ratio": float(modes(disc, {"speed": POINT * RPM}).damping_ratios[0]),
     }
 
@@ -88,19 +89,13 @@ def material_number() -> float:
     return values["piezoviscosity"] / e_x
 
 
-def film_for_damping(ratio: float = 0.0018) -> dict[str, float]:
-    """Return the steady film (um) with which oil B would have a damping ratio at 360 rev/min, and its own."""
-    disc = system(OIL_B)
-
-    def excess(viscosity: float) -> float:
-        found = modes(disc, {"speed": POINT * RPM, "viscosity": viscosity}).damping_ratios[0]
-        return float(found) - ratio
-
-    viscosity = brentq(excess, 0.034, 0.89, xtol=1e-14)
+def film_for_damping() -> dict[str, float]:
+    """Return the steady film (um) with which oil B would have the paper's damping ratio, and its own."""
+    found = causes.film_needed()
     return {
-        "oil B film um": film_at_rest(disc, speed=POINT * RPM) / MICRO,
-        "oil B damping ratio": excess(0.034) + ratio,
-        "oil B film for 0.0018 um": film_at_rest(disc, speed=POINT * RPM, viscosity=viscosity) / MICRO,
+        "oil B film um": found.given / MICRO,
+        "oil B damping ratio": causes.jacobian_ratio(causes.OIL_B),
+        f"oil B film for {causes.PAPER_B:g} um": found.needed / MICRO,
     }
 
 
@@ -124,7 +119,8 @@ def tuned_orbits() -> tuple[periodic.Point, periodic.Point]:
     other = system(SCENE, ("film.thickness", "hamrock-dowson"), ("film.viscosity", viscosity))
     bounds = (0.999 * speed, speed)
     # Only the states are taken over as a guess: the parameters are the other system's own.
-    second = periodic.trace(other, "speed", bounds, start=speed, guess=first.orbit)[0]
+    guess = replace(first.orbit, parameter=with_values(other, {"speed": speed}))
+    second = periodic.trace(other, "speed", bounds, guess=guess)[0]
     return first, second
 
 
