@@ -16,6 +16,16 @@ CANDIDATES = 3
 ZOOMS = 2
 SAMPLES = 9
 
+SHORT = 1e-5
+"""Width (rad) of intervals whose points do not count, unless all are as short.
+
+Next to a kink the collocation polynomials overshoot, and a load that falls by twenty powers of ten there
+would be read off the overshoot.
+"""
+
+OUT = -1e300
+"""Stands for samples that do not count."""
+
 
 def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
     """Return the outputs (SI) at phases tau, shape (len(tau), outputs).
@@ -39,6 +49,7 @@ def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
     )
     count = values.shape[1]
     both = np.concatenate([-values, values], axis=1)
+    both[np.repeat(_short(orbit), orbit.mesh.scheme.ncol)] = OUT
     index = _candidates(both)
     row = np.repeat(np.arange(2 * count), CANDIDATES)
     signs = np.where(row < count, -1.0, 1.0)
@@ -84,7 +95,14 @@ def _zoom(
 def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_], grid: Array) -> Array:
     """signs * output at the phases of each row's own output, shape of `grid`."""
     values = outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
-    return signs[:, None] * values[np.arange(len(signs)), :, column]
+    chosen = signs[:, None] * values[np.arange(len(signs)), :, column]
+    return np.where(_short(orbit)[orbit.locate(grid.ravel())[0]].reshape(grid.shape), OUT, chosen)
+
+
+def _short(orbit: Orbit) -> NDArray[np.bool_]:
+    """Which intervals do not count, shape (N,)."""
+    short = orbit.grid.width < SHORT
+    return short & ~short.all()
 
 
 def _offset(values: Array, peak: Array) -> Array:

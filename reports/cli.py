@@ -217,8 +217,7 @@ def report(name: Page, only: Only = None, out: PageOut = None) -> int:
     2: bad input; 130: interrupted.
     """
     from reports import console
-    from reports.files import writable
-    from reports.interrupts import heard_once
+    from reports.interrupts import Ended, heard_at_once
 
     if name != "paper":
         raise refused("NAME", name, '"paper"')
@@ -226,11 +225,11 @@ def report(name: Page, only: Only = None, out: PageOut = None) -> int:
 
     if only is not None and only not in page.SECTIONS:
         raise refused("--only", only, f"one of {', '.join(page.SECTIONS)}")
-    folder = writable(out or Path("reports", name))
-    with heard_once(), console.telling("computing") as tell:
+    folder = page.ready(out or Path("reports", name))
+    with heard_at_once(), console.telling("computing") as tell:
         try:
             written = page.make(folder, (only,) if only else page.SECTIONS, tell)
-        except KeyboardInterrupt:
+        except (Ended, KeyboardInterrupt):
             _say(f"interrupted; the sections computed so far are in {folder}")
             return INTERRUPTED
     typer.echo(f"written: {written}")

@@ -178,15 +178,15 @@ def verdict(found: Study) -> list[str]:
     view = view_of(found.scene)
     low, high = sorted(found.scene.trace.ends)
     if found.resonance is None:
-        return [f"resonance: none from {low:g} to {high:g} {view.unit_name}"]
-    lines = [f"resonance: {shown(view, found.resonance):.8g} {view.unit_name} (excitation meets the natural"]
-    lines[0] += " frequency)"
+        return [f"resonance of the lowest mode: none from {low:g} to {high:g} {view.unit_name}"]
+    where = f"{shown(view, found.resonance):.8g} {view.unit_name}"
+    lines = [f"resonance of the lowest mode: {where} (excitation meets the natural frequency)"]
     if found.peak is None:
         return [*lines, "peak of the linear response: unbounded"]
     unit, scale = units(found.system)[0][1:]
-    where, height = shown(view, found.peak[0]), found.peak[1] / scale
+    peak, height = shown(view, found.peak[0]), found.peak[1] / scale
     letter = "µm" if unit == "um" else unit
     return [
         *lines,
-        f"peak of the linear response: x p-p {height:.6g} {letter} at {where:.8g} {view.unit_name}",
+        f"peak of the linear response: x p-p {height:.6g} {letter} at {peak:.8g} {view.unit_name}",
     ]

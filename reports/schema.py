@@ -170,6 +170,16 @@ class DiscScene(Table):
             raise InputError("support", "is given", 'film.law = "third-order" must have none')
         return self
 
+    @model_validator(mode="after")
+    def _elastic(self) -> DiscScene:
+        """Refuse elastic constants that nothing in the scene depends on."""
+        if self.film is None or self.film.thickness == "calibrated":
+            for key in ("crown", "modulus", "poisson"):
+                if (value := getattr(self.discs, key)) is not None:
+                    allowed = "only a film whose thickness is not calibrated may have one"
+                    raise InputError(f"discs.{key}", f"is {value:g}", allowed)
+        return self
+
 
 class Oscillator(Table):
     """mass x'' + damping x' + stiffness x + cubic x^3 = force cos(Omega t)."""

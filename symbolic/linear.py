@@ -27,6 +27,9 @@ Complex = NDArray[np.complex128]
 BALANCED = 1e-12
 """Scaled residual up to which a point with a singular stiffness counts as an equilibrium."""
 
+MET = 1e-9
+"""Relative difference of the two frequencies up to which they count as met."""
+
 ROUNDING = 1e-7
 """Imaginary parts up to this, of the largest eigenvalue, are rounding: of a double zero its square root."""
 
@@ -151,17 +154,21 @@ def resonance(
     """Return where the excitation frequency meets the lowest natural frequency, omega(p) = |lambda(p)|.
 
     The natural frequency is that at the same value p (SI) of `parameter`. None where they do not meet
-    between the bounds, or nothing oscillates at one of them. Raises ValueError and NoRestError as `modes`.
+    between the bounds, nothing oscillates at one of them, or the lowest frequency jumps past the excitation's
+    because a mode ceases to oscillate. Raises ValueError and NoRestError as `modes`.
     """
     finder, fixed = RestFinder(system), dict(values or {})
 
     def excess(value: float) -> float:
         found = finder.modes(with_values(system, {**fixed, parameter: value}))
-        return found.omega / found.frequencies[0] - 1 if len(found.frequencies) else math.nan
+        return found.omega / float(found.frequencies[0]) - 1 if len(found.frequencies) else math.inf
 
-    if not excess(bounds[0]) * excess(bounds[1]) < 0:
+    ends = [excess(bound) for bound in bounds]
+    if not all(map(math.isfinite, ends)) or not ends[0] * ends[1] < 0:
         return None
-    return float(brentq(excess, *bounds, xtol=1e-13 * max(map(abs, bounds)), rtol=1e-13))
+    # An infinite excess inside has a sign to bisect by; what is found then may be a jump.
+    root = float(brentq(excess, *bounds, xtol=1e-13 * max(map(abs, bounds)), rtol=1e-13))
+    return root if abs(excess(root)) < MET else None
 
 
 def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:

@@ -20,7 +20,7 @@ from symbolic.compile import Array, CompiledSystem
 from symbolic.linear import Complex, Modes, RestFinder, with_values
 
 SINGULAR = 1e14
-"""Condition number from which the excitation counts as on an undamped resonance."""
+"""Condition number, rows and columns equilibrated, from which there is an undamped resonance."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,10 +84,18 @@ class Excited:
         dynamic = unknown.astype(np.complex128)
         dynamic[:, :n] += 1j * rate
         forced = waves @ np.array([-1j, 1])
-        if np.linalg.cond(dynamic[:size]) > SINGULAR:
+        if np.linalg.cond(equilibrated(dynamic[:size])) > SINGULAR:
             return np.full(len(value) - size, complex(np.inf)), value[size:, 0]
         motion = np.linalg.solve(dynamic[:size], -forced[:size])
         return dynamic[size:] @ motion + forced[size:], value[size:, 0]
+
+
+def equilibrated(matrix: Complex) -> Complex:
+    """Return a matrix with rows, then columns, divided by their largest modulus; zero ones are left."""
+    for axis in (1, 0):
+        largest = np.abs(matrix).max(axis=axis, keepdims=True)
+        matrix = matrix / np.where(largest > 0, largest, 1.0)
+    return matrix
 
 
 def response(

@@ -119,13 +119,6 @@ def state_from_xvh(scene: Scene, xvh: npt.ArrayLike, tau: float = 0.0) -> Array:
     return np.array([x, v, math.log(gap) if gap > 1e-9 else min(free, math.log(1e-9))])
 
 
-def xvh_from_state(scene: Scene, state: npt.ArrayLike, tau: float = 0.0) -> Array:
-    """(X, dX/dtau, h)/delta0 from (x, v, lam): H = H0 + exp(lam) - 1 - A sin(tau) + x."""
-    x, v, lam = (float(z) for z in np.asarray(state, dtype=np.float64))
-    amp, h0, *_ = scene.scaled
-    return np.array([x, v, h0 + math.expm1(lam) - amp * math.sin(tau) + x])
-
-
 def _equations(scene: Scene) -> tuple[Callable[[float, Array], Array], Callable[[float, Array], Array]]:
     """Right-hand side and Jacobian of (x, v, lam) and, if 12 long, of (dx, dv, dD) of 3 perturbations."""
     amp, h0, beta, g, c = scene.scaled
@@ -173,14 +166,6 @@ def _integrate(scene: Scene, y0: Array, rtol: float, method: str) -> tuple[Array
     if not sol.success or not np.all(np.isfinite(sol.y)):
         raise ArithmeticError(f"integration at {scene.speed_rpm} rpm: {sol.message}")
     return sol.t, sol.y
-
-
-def simulate(scene: Scene, state0: npt.ArrayLike, periods: int, rtol: float = 1e-8) -> Array:
-    """States (x, v, lam) at the ends of 0, 1, ..., ``periods`` periods, one a row."""
-    states = [np.asarray(state0, dtype=np.float64)]
-    for _ in range(periods):
-        states.append(_integrate(scene, states[-1], rtol, "Radau")[1][:, -1])
-    return np.array(states)
 
 
 def _extrema(t: Array, derivatives: Array) -> tuple[float, float]:

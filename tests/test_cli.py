@@ -4,8 +4,10 @@ import csv
 import io
 import json
 import re
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -238,3 +240,42 @@ def test_report_keeps_what_is_done(tmp_path: Path, capsys: Capture, monkeypatch:
     assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out == f"written: {tmp_path / 'README.md'}\n"
     assert list(page.kept(tmp_path)) == ["method", "unseen"]
+
+
+@pytest.mark.parametrize("spoilt", ["README.md", "figures", "sections"])
+def test_report_folder_of_something_else(spoilt: str, tmp_path: Path, capsys: Capture) -> None:
+    """Assert that a report refuses, before it computes, a folder that holds something else by its names."""
+    file = tmp_path / spoilt
+    if spoilt == "sections":
+        file.mkdir()
+        file = file / "unseen.json"
+    file.write_text("{ my own notes", "utf-8")
+    assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("orbitrace: --out is ") and told.count("\n") == 1
+    assert file.read_text("utf-8") == "{ my own notes"
+
+
+def test_interrupted_report_is_no_report(tmp_path: Path) -> None:
+    """Assert that Ctrl-C in the middle of a section ends the report at once and writes nothing of it."""
+    program = "import sys; from reports.cli import main; sys.exit(main())"
+    command = [
+        sys.executable,
+        "-c",
+        program,
+        "report",
+        "paper",
+        "--only",
+        "frequency",
+        "--out",
+        str(tmp_path),
+    ]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        assert "traces in speed" in process.stderr.readline()
+        time.sleep(2)
+        process.send_signal(signal.SIGINT)
+        said = process.stderr.read()
+    assert process.returncode == 130
+    assert f"interrupted; the sections computed so far are in {tmp_path}" in said
+    assert list((tmp_path / "sections").iterdir()) == []

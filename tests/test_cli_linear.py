@@ -72,7 +72,7 @@ def test_table_of_the_disc(tmp_path: Path, capsys: Capture) -> None:
     assert float(lines["damping ratio"]) == pytest.approx(0.0067633, abs=1e-7)
     assert float(lines["linear x p-p (µm)"]) == pytest.approx(3.97266, abs=1e-5)
     assert lines["eigenvalues (1/s)"] == "-23.8579 ± 3527.46i"
-    assert "resonance: 281.18146 rev/min" in told
+    assert "resonance of the lowest mode: 281.18146 rev/min" in told
     assert "x p-p 217.962 µm at 281.16624 rev/min" in told
 
 
@@ -134,7 +134,7 @@ def test_undamped_oscillator(tmp_path: Path, capsys: Capture) -> None:
 def test_no_resonance(tmp_path: Path, capsys: Capture) -> None:
     """Assert that a range without resonance is said to have none, and its first end is shown."""
     told = ran(capsys, tmp_path, "dry-810N", "--set", "trace.to_rpm=400")
-    assert "resonance: none from 400 to 500 rev/min" in told
+    assert "resonance of the lowest mode: none from 400 to 500 rev/min" in told
     assert summary_of(tmp_path)["resonance"] is None
     assert [point["speed_rpm"] for point in summary_of(tmp_path)["at"]] == [500]
 

@@ -218,3 +218,20 @@ def test_mean_load_is_the_preload() -> None:
         ]
         mean = (load.reshape(len(half), -1) @ weights) @ half / (2 * np.pi)
         assert mean == pytest.approx(810.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("rpm, load", [(260.0, 5.84853e-21), (250.0, 7.66597e-25), (245.0, 3.14430e-26)])
+@pytest.mark.parametrize("accuracy", [per.Accuracy.STANDARD, per.Accuracy.FINE])
+def test_least_load_where_contact_is_lost(rpm: float, load: float, accuracy: per.Accuracy) -> None:
+    """Assert the least load on the upper sheet, by dense sampling of the orbit; CVODES gives the same."""
+    system = disc_system("vitrea79-810N")
+    bounds = (238 * RPM, 300 * RPM)
+    branch = per.trace(system, "speed", bounds, start=bounds[1], at=[rpm * RPM], accuracy=accuracy)
+    point = branch.labelled(per.Label.USER)[0]
+    loads = per.outputs(system, point.orbit, np.linspace(0, 2 * np.pi, 20001))[:, _column(system, "load")]
+    assert point.minimum["load"] == pytest.approx(loads.min(), rel=1e-5)
+    assert point.minimum["load"] == pytest.approx(load, rel=1e-4)
+
+
+def _column(system: per.System, output: str) -> int:
+    return [variable.name for variable in system.outputs].index(output)

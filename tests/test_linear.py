@@ -149,6 +149,51 @@ def test_no_resonance_in_range() -> None:
     assert resonance(duffing_system(2.5, 0.0, 0.5), "Omega", (0.3, 3.0)) is None
 
 
+def pair(damping: float) -> sym.CompiledSystem:
+    """x'' + c x' + x = 0.5 cos(Omega t) beside y'' + 0.1 y' + 9 y = 0."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    first = sym.Mass(x, 1.0) + sym.Damper(x, sym.parameter("c", damping, "N s/m")) + sym.Spring(x, 1.0)
+    second = sym.Mass(y, sym.parameter("M", 1.0, "kg")) + sym.Damper(y, sym.parameter("d", 0.1, "N s/m"))
+    second += sym.Spring(y, sym.parameter("K", 9.0, "N/m"))
+    return sym.compile(first + second + sym.HarmonicForce(x, 0.5))
+
+
+def test_jump_is_no_resonance() -> None:
+    """Assert that the lowest frequency's jump from 1 to 3, where x is overdamped, is not met at Omega = 2."""
+    system = pair(0.5)
+    ends = [modes(system, {"c": c, "Omega": 2.0}).frequencies[0] for c in (1.0, 3.0)]
+    assert ends[0] == pytest.approx(1.0) and ends[1] == pytest.approx(3.0)
+    assert resonance(system, "c", (1.0, 3.0), {"Omega": 2.0}) is None
+
+
+class Bump(sym.Part):
+    """A damper that is overcritical in the middle of the range of Omega: 10 exp(-(Omega - 1)^2/0.01)."""
+
+    def __init__(self, q: sym.Coordinate) -> None:
+        self.q = q
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the force."""
+        damping = 10 * ca.exp(-((assembly.omega - 1) ** 2) / 0.01)
+        assembly.motion(self.q).force -= damping * assembly.speed_of(self.q)
+
+
+def test_nothing_oscillates_inside_the_range() -> None:
+    """Assert that a root is not made up where the motion does not oscillate between the bounds."""
+    x = sym.coordinate("x")
+    system = sym.compile(sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + Bump(x) + sym.HarmonicForce(x, 0.5))
+    assert [len(modes(system, {"Omega": w}).frequencies) for w in (0.5, 1.0, 1.6)] == [1, 0, 1]
+    assert resonance(system, "Omega", (0.5, 1.6)) is None
+
+
+def test_scale_of_a_part_is_no_resonance() -> None:
+    """Assert that a part on a scale of its own, 2e-15 of the rest, does not make the response infinite."""
+    small, omega = {"M": 2e-15, "K": 1.8e-14, "d": 2e-16}, np.array([2.0, 2.5])
+    found = response(pair(0.1), "Omega", omega, small)
+    exact = 0.5 / (1 - omega**2 + 0.1j * omega)
+    np.testing.assert_allclose(found.complex_amplitude("x"), exact, rtol=1e-12)
+
+
 def test_oscillator_response() -> None:
     """Assert the complex response F / (k - m Omega^2 + i c Omega) of a linear oscillator."""
     omegas = np.linspace(0.1, 3, 30)

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
+import disc_reference
+import numpy as np
 import pytest
+from traces import RPM
 
+import periodic as per
 from reports.paper import unseen
+from reports.paper.scenes import branch, system
 
 FOLDS = {
     "vitrea79-810N": (237.486586, 252.035057),
@@ -31,10 +37,53 @@ def numbers() -> dict[str, float]:
 
 @pytest.mark.parametrize("name", FOLDS)
 def test_folds(name: str) -> None:
-    """Assert the folds of each disc; see test_disc_*.py for their independent checks."""
+    """Assert the folds of each disc; `test_upper_folds_by_shooting` checks three of them independently."""
     found = [numbers()[f"{name} fold {k} rpm"] for k in range(1, len(FOLDS[name]) + 1)]
     assert found == pytest.approx(list(FOLDS[name]), abs=2e-6)
     assert f"{name} fold {len(found) + 1} rpm" not in numbers()
+
+
+REFERENCE = {
+    "vitrea79-810N": disc_reference.VITREA79,
+    "vitrea79-2100N": replace(disc_reference.VITREA79, preload=2100.0),
+    "turbo33-810N": disc_reference.TURBO33,
+}
+
+
+def determinants(name: str, near: tuple[float, ...]) -> np.ndarray:
+    """det(I - M) of shot orbits at speeds (rev/min) beside the upper fold: a row for each, sheet by sheet.
+
+    Shooting starts from the traced orbits, found on a short branch round the fold.
+    """
+    points = list(branch(name))
+    turn = next(k for k, point in enumerate(points) if point.label is per.Label.FOLD)
+    fold = points[turn].parameter
+    begin = [point for point in points[:turn] if point.parameter > 1.005 * fold][-1]
+    bounds, at = (0.99 * fold, begin.parameter), [rpm * RPM for rpm in near]
+    traced = per.trace(system(name), "speed", bounds, at=at, guess=begin.orbit)
+    found = np.full((len(near), 2), np.nan)
+    for row, rpm in enumerate(near):
+        both = [p for p in traced.labelled(per.Label.USER) if p.parameter == rpm * RPM]
+        for column, point in enumerate(both):
+            scene = REFERENCE[name].at(rpm)
+            start = disc_reference.state_from_xvh(scene, point.orbit.state(np.zeros(1))[0])
+            shot = disc_reference.periodic_orbit(scene, start)
+            found[row, column] = np.linalg.det(np.eye(3) - shot.monodromy)
+    return found
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+def test_upper_folds_by_shooting(name: str) -> None:
+    """Assert that det(I - M) of shot orbits vanishes, with another sign on each sheet, at the upper fold.
+
+    Its square (half the difference of the sheets) grows linearly with the distance from the fold.
+    """
+    near = (FOLDS[name][0] * (1 + 1e-5), FOLDS[name][0] * (1 + 2e-5))
+    found = determinants(name, near)
+    assert (found[:, 0] > 1e-3).all() and (found[:, 1] < -1e-3).all()
+    squares = (found[:, 0] - found[:, 1]) ** 2
+    zero = near[0] - squares[0] * (near[1] - near[0]) / (squares[1] - squares[0])
+    assert zero * RPM == pytest.approx(branch(name).labelled(per.Label.FOLD)[0].parameter, rel=1e-8)
 
 
 @pytest.mark.parametrize("name", DOUBLINGS)
@@ -66,6 +115,17 @@ def test_labelled_orbits() -> None:
     assert [point.stable for point in orbits.values()] == [True, True, True, False, False, True]
     lost = [point.minimum["load"] < 1e-3 * 810 for point in orbits.values()]
     assert lost == [False, False, True, True, True, False]
+
+
+def test_load_comes_back() -> None:
+    """Assert how fast the load rises to the preload after a loss of contact, on a finer sampling by hand."""
+    point = unseen.labelled()["D"]
+    tau, values = unseen.along(point, 100001)
+    load = values[:, list(point.maximum).index("load")] / 810
+    (risen,) = np.flatnonzero((load[1:] >= 1) & (load[:-1] < 1))
+    left = np.flatnonzero(load[:risen] < 1e-3)[-1]
+    assert unseen.return_phase(point) == pytest.approx(tau[risen] - tau[left], abs=6e-4)
+    assert numbers()["load back within rad"] == pytest.approx(1.559, abs=1e-3)
 
 
 def test_damping_grows_with_loss_of_contact() -> None:

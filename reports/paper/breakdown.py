@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from periodic import Branch, Point
+from reports.paper.contact import LOST
 from reports.paper.rungekutta import Marched, growth, march, stages
 from reports.paper.scenes import system
 from reports.paper.started import Form, Runs, runs
@@ -27,18 +28,14 @@ SETTLED = 0.01
 """Relative difference up to which a run counts as settled, and as settled to an orbit of the branch."""
 
 
-LOST = 1e-3
-"""Load, relative to the preload, below which the contact counts as lost."""
-
-
 class Outcome(Enum):
     """What becomes of a run."""
 
     SETTLED = "settles to the branch"
     UNSETTLED = "not settled after 1 s"
     WRONG = "settles more than 1 % off the branch"
-    OVERFLOW = "fails, contact lost: exp(γ dh/dt) overflows"
-    DEFLECTION = "fails, contact lost: deflection not positive"
+    UNLOADED = "fails: load below 0.001 Q in the last steps"
+    DEFLECTION = "fails: deflection not positive"
     FILM = "fails: film thickness not positive"
     LOAD = "fails: load overflows"
     UNSTABLE = "step unstable at rest"
@@ -225,7 +222,7 @@ def _amiss(part: Runs, f: Rates, phase: Array, state: Array) -> list[Outcome | N
         conditions: dict[Outcome, NDArray[np.bool_]] = {
             Outcome.FILM: ~(out["film"] > 0),
             Outcome.DEFLECTION: out["deflection"] < 0,
-            Outcome.OVERFLOW: np.logical_and(out["load"] < LOST * preload, part.form is Form.THIRD_ORDER),
+            Outcome.UNLOADED: np.logical_and(out["load"] < LOST * preload, part.form is Form.THIRD_ORDER),
             Outcome.LOAD: ~np.asarray(np.isfinite(f(state, phase, part.parameter)).all(axis=1)),
         }
     return [next((o for o, holds in conditions.items() if holds[k]), None) for k in range(len(phase))]

@@ -24,11 +24,11 @@ from reports.paper.equivalent import (
     ratio,
     stepped_ratio,
 )
+from reports.paper.resonance import natural_speed
 from reports.paper.scenes import system
 from reports.paper.section import Row, Section, Tell, compared
 from reports.paper.transients import Decay, Window, decay, level, read_off, record, stepped_decay
 from reports.view import MICRO, RPM
-from symbolic.linear import resonance
 from symbolic.response import response
 
 OILS = {OIL_A: "oil A (Vitrea 79)", OIL_B: "oil B (Turbo 33)"}
@@ -142,7 +142,7 @@ def left_at_the_end(value: float) -> float:
 @cache
 def tension(name: str) -> tuple[float, float]:
     """Return the speeds (rad/s) between which the linear load would be negative in a part of each period."""
-    chosen, meeting = system(name), _resonance(name)
+    chosen, meeting = system(name), natural_speed(system(name)) * RPM
 
     def excess(speed: float) -> float:
         found = response(chosen, "speed", [speed])
@@ -194,7 +194,7 @@ def key_numbers() -> dict[str, float]:
             f"{short}_zeta_rk4": stepped_ratio(name, 4, STEP),
             f"{short}_film_growth_rk4": film_growth(name, 4, STEP),
             f"{short}_film_growth_rk3": film_growth(name, 3, STEP),
-            f"{short}_resonance_rpm": _resonance(name) / RPM,
+            f"{short}_resonance_rpm": natural_speed(system(name)),
             f"{short}_tension_begin_rpm": tension(name)[0] / RPM,
             f"{short}_tension_end_rpm": tension(name)[1] / RPM,
             f"{short}_x_linear_um": _linear_swing(name) / MICRO,
@@ -241,38 +241,29 @@ def _cause_numbers() -> dict[str, float]:
     }
 
 
-def _resonance(name: str) -> float:
-    found = resonance(system(name), "speed", SPEEDS)
-    if found is None:
-        raise ArithmeticError(f"{name} has no resonance from 100 to 500 rev/min")
-    return found
-
-
 def _linear_swing(name: str) -> float:
     return float(response(system(name), "speed", [360 * RPM]).peak_to_peak("x")[0])
 
 
 def rows() -> tuple[Row, ...]:
-    """Return the rows P10 and P11 of the first table."""
-    thick, thin = ratios(OIL_A), ratios(OIL_B)
-    first = compared(
-        "P10",
-        "equivalent linear damping factor, oil A",
-        PAPER_A,
-        thick.jacobian,
-        "",
+    """Return the rows P10 and P11 of the first table; ours is the Jacobian's damping ratio in both."""
+    thin = ratios(OIL_B)
+    remark = f"causes of the factor of {PAPER_B / thin.jacobian:.0f} in the section on linear damping"
+    return _row("P10", "oil A", PAPER_A, ratios(OIL_A)), _row("P11", "oil B", PAPER_B, thin, remark)
+
+
+def _row(key: str, oil: str, paper: float, found: Ratios, *remarks: str) -> Row:
+    """Return the row of an oil; the check names what other measures give and how far from the paper."""
+
+    def away(value: float) -> str:
+        return f"{value:.3g} ({100 * (value / paper - 1):+.1f} %)"
+
+    checks = (
         f"from the Jacobian; the multipliers at vanishing waviness differ by "
-        f"{abs(thick.vanishing / thick.jacobian - 1):.0e} of it; {thick.transient[ONE]:.4f} from the "
-        f"transient and {thick.orbit[ONE]:.4f} about the orbit of the paper's size",
+        f"{abs(found.vanishing / found.jacobian - 1):.0e} of it",
+        f"about the orbit of the paper's size they give {away(found.orbit[ONE])}",
+        f"read off the transient it is {away(found.transient[ONE])}",
+        *remarks,
     )
-    second = compared(
-        "P11",
-        "equivalent linear damping factor, oil B",
-        PAPER_B,
-        thin.transient[ONE],
-        "",
-        f"Jacobian {thin.jacobian:.2g}, multipliers of the orbit {thin.orbit[ONE]:.2g}; causes of the "
-        f"factor of {PAPER_B / thin.transient[ONE]:.0f} in the section on linear damping",
-        form=".3g",
-    )
-    return first, second
+    what = f"equivalent linear damping factor, {oil}"
+    return compared(key, what, paper, found.jacobian, "", "; ".join(checks))

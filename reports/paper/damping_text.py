@@ -76,14 +76,17 @@ def _ratios(n: Numbers) -> str:
     pairs = [(n[f"{oil}_zeta_orbit_vanishing"], n[f"{oil}_zeta_jacobian"]) for oil in ("oil_a", "oil_b")]
     apart = max(abs(orbit / linear - 1) for orbit, linear in pairs)
     more = n["oil_a_zeta_transient"] / n["oil_a_zeta_jacobian"] - 1
+    linear, read = (100 * (n[f"oil_a_zeta_{key}"] / PAPER_A - 1) for key in ("jacobian", "transient"))
     return (
         "\n".join(lines)
         + f"""
 
 The multipliers tend to the Jacobian's ratio: at a/1000 they differ from it by {apart:.0e} of its value.
-For oil A the paper's factor is reproduced to the one digit that it prints; the transient of the paper's
-size has {more:.0%} more damping than the linear motion. For oil B it is not reproduced: we read
-{n["oil_b_zeta_transient"]:.3g} off the first 90 ms and {n["oil_b_zeta_second"]:.3g} off the whole second.
+Rows P10 and P11 compare the Jacobian's ratio, the equivalent of linear damping. For oil A it gives the one
+digit that the paper prints ({linear:+.1f} %); the transient of the paper's size has {more:.0%} more damping
+than the linear motion, and read off it the factor would differ by {read:+.1f} %. For oil B it is not
+reproduced by any of the three: off the transient we read {n["oil_b_zeta_transient"]:.3g} in the first 90 ms
+and {n["oil_b_zeta_second"]:.3g} in the whole second.
 
 {_figure("damping-transients")}"""
     )

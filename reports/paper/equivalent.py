@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 import periodic
+from reports.paper.rungekutta import factor
 from reports.paper.scenes import system
 from symbolic.linear import Modes, modes
 
@@ -72,17 +74,25 @@ def orbit_at(name: str, part: float) -> periodic.Point:
 
 
 def orbit_exponents(name: str) -> list[tuple[periodic.Point, complex]]:
-    """Return the stable orbits with an oscillating pair and its exponent, from the smallest waviness on.
-
-    The imaginary part is continued from orbit to orbit, beginning with the linear frequency.
-    """
+    """Return the exponents of the orbits at 360 rev/min, from the smallest waviness on; see `exponents`."""
     rest = at_paper_speed(name)
-    period, frequency = 2 * math.pi / rest.omega, float(rest.damped_frequencies[0])
+    return exponents(waviness_branch(name), rest, lambda point: 2 * math.pi / rest.omega)
+
+
+def exponents(
+    branch: periodic.Branch, rest: Modes, period: Callable[[periodic.Point], float]
+) -> list[tuple[periodic.Point, complex]]:
+    """Return the orbits of a branch with their exponents (1/s), as long as stable with an oscillating pair.
+
+    The imaginary part is continued from orbit to orbit, beginning with the linear frequency of `rest`.
+    period: that of the excitation at a point, in s.
+    """
+    frequency = float(rest.damped_frequencies[0])
     found: list[tuple[periodic.Point, complex]] = []
-    for point in waviness_branch(name):
+    for point in branch:
         if not point.stable or point.multipliers[0].imag == 0:
             break
-        found.append((point, exponent(complex(point.multipliers[0]), period, frequency)))
+        found.append((point, exponent(complex(point.multipliers[0]), period(point), frequency)))
         frequency = found[-1][1].imag
     return found
 
@@ -93,24 +103,20 @@ def orbit_ratio(name: str, part: float) -> float:
     return next(ratio(value) for point, value in orbit_exponents(name) if point is chosen)
 
 
-def runge_kutta(order: int, z: complex) -> complex:
-    """Return the growth factor of an explicit Runge-Kutta step of p = `order` stages, p <= 4.
-
-    R(z) = 1 + z + ... + z^p/p!, z = lambda dt.
-    """
-    return complex(sum(z**k / math.factorial(k) for k in range(order + 1)))
+def _step(order: int, z: complex) -> complex:
+    return complex(factor(np.array([z]), order)[0])
 
 
 def stepped_ratio(name: str, order: int, step: float) -> float:
     """Return the damping ratio that the linear motion of a scene has in Runge-Kutta steps (s)."""
     slow = complex(at_paper_speed(name).oscillating[0])
-    return ratio(exponent(runge_kutta(order, slow * step), step, slow.imag))
+    return ratio(exponent(_step(order, slow * step), step, slow.imag))
 
 
 def film_growth(name: str, order: int, step: float) -> float:
     """Return the growth per Runge-Kutta step of the film's own, fastest motion; above 1 it is unstable."""
     fastest = at_paper_speed(name).eigenvalues[-1]
-    return abs(runge_kutta(order, complex(fastest) * step))
+    return abs(_step(order, complex(fastest) * step))
 
 
 def linear_acceleration(eigenvalues: NDArray[np.complex128], step: float, weight: float) -> np.ndarray:

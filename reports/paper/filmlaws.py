@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 import periodic
 from reports.curve import draw_curve, solid
 from reports.paper import films
+from reports.paper.causes import PAPER_B
 from reports.paper.figures import panels
 from reports.paper.scenes import branch
 from reports.paper.section import Section, Tell
@@ -119,8 +120,8 @@ change h0 with speed; the lower fold, where the contact is not lost, hardly noti
 
 def _oil_b(n: Numbers) -> str:
     return f"""**Oil B.** The calibrated law gives Shell Turbo 33 a film of {n["oil B film um"]:.3f} µm at
-360 rev/min and 810 N, and with it a damping ratio of {n["oil B damping ratio"]:.2g}. The paper's 0.0018
-(P11) would need a film of {n["oil B film for 0.0018 um"]:.2f} µm."""
+360 rev/min and 810 N, and with it a damping ratio of {n["oil B damping ratio"]:.2g}. The paper's
+{PAPER_B:g} (P11) would need a film of {n[f"oil B film for {PAPER_B:g} um"]:.2f} µm."""
 
 
 def _floor(n: Numbers) -> str:
@@ -143,6 +144,8 @@ def _floor(n: Numbers) -> str:
         f"| {_squeezed_at_250():.2f} | no such orbit |"
     )
     table = "\n".join(rows)
+    folded = [floor for floor in films.FLOORS if f"floor {floor:g} fold 1 rpm" in n]
+    open_ended = min(set(films.FLOORS) - set(folded))
     return f"""**A film that cavitates.** On the upper sheet the squeeze film must fill whatever gap the
 discs open. As the load that it carries falls it separates ever faster without bound; at the upper fold W
 falls to exp({n["least log load at the upper fold"]:.0f}) Q. No liquid does that: ambient pressure over
@@ -159,15 +162,16 @@ known.
 
 ![Response with floors on the film's load; circles: upper folds. Dashed: unstable.](filmlaws-floor.png)
 
-The upper fold of the squeeze film does not survive. With a floor of 1e-4 or more the upper sheet goes on
-below 100 rev/min, stable all the way, the discs leaping by {n["floor 0.0001 at 100 rpm um"]:.0f} µm
-there. With φ of 1e-6 and less there is a fold above 100 rev/min, and it moves towards the squeeze film's,
-slowly, since φ enters by its logarithm. Floors smaller than 1e-8 were not traced in this form, which
-becomes too stiff. So the fold at {n["calibrated fold 1 rpm"]:.1f} rev/min rests on a film that fills the
+The upper fold of the squeeze film does not survive. With a floor of {open_ended:g} or more the upper
+sheet goes on below 100 rev/min, stable all the way, the discs leaping by
+{n["floor 0.0001 at 100 rpm um"]:.0f} µm there with φ = 0.0001. With φ of {max(folded):g} and less there is a
+fold above 100 rev/min, and it moves towards the squeeze film's, slowly, since φ enters by its logarithm.
+Floors smaller than {min(films.FLOORS):g} were not traced in this form, which becomes too stiff. So
+the fold at {n["calibrated fold 1 rpm"]:.1f} rev/min rests on a film that fills the
 gap at such loads, and a film that ruptures earlier does not have it there: the paper's law cannot be
 relied on for how far the upper sheet goes. What limits the leaps then (supports, air, the bearings'
 travel) is not in this scene. The lower fold stays where it was, at {n["floor 0.0001 lower fold rpm"]:.3f}
-rev/min with φ = 1e-4, since contact is not lost there; and on the upper sheet x at 250 rev/min changes
+rev/min with φ = 0.0001, since contact is not lost there; and on the upper sheet x at 250 rev/min changes
 little with φ."""
 
 

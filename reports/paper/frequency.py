@@ -72,7 +72,7 @@ def section(tell: Tell) -> Section:
 
 
 def _in_speed(names: tuple[str, ...], reported: float, swings: tuple[float, ...]) -> Figure:
-    figure, axes = panels(1, 1, height=3.6)
+    figure, axes = panels(1, 1, height=4.4)
     for name, color in zip(names, (TRUSTED, SECOND), strict=False):
         found = branch(name)
         across, up = found.values / RPM, found.peak_to_peak("x") / MICRO
@@ -85,7 +85,7 @@ def _in_speed(names: tuple[str, ...], reported: float, swings: tuple[float, ...]
     axes.axvline(reported, color=PAPER, linewidth=1.0, label=f"paper's resonance, about {reported:g} rev/min")
     axes.plot([360] * len(swings), swings, "x", color=PAPER, markersize=8, label="paper at 360 rev/min")
     axes.set(xlabel="speed (rev/min)", ylabel="x peak to peak (µm)", xlim=(100, 500), ylim=(0, None))
-    axes.legend(loc="upper right")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 
@@ -121,7 +121,7 @@ def _mark(axes: Any, found: periodic.Branch, unit: float, color: str) -> None:
 
 
 def _rows(n: dict[str, float]) -> tuple[Row, ...]:
-    folds = "branch traced in both directions; natural speed from the Jacobian"
+    folds = "natural speed from the Jacobian; peak of the linear response; both in section 4"
     trends = {-1: "falls", 1: "rises", 0: "both rises and falls"}
 
     def trend(key: str, speed: float, wanted: int) -> Row:
@@ -183,7 +183,8 @@ The paper says that the oil does not change the natural frequency and that the t
 larger amplitudes. Oil B's natural speed is {oils:+.2f} rev/min from oil A's; at 360 rev/min x is
 {swing[OIL_B]:.3f} µm with oil B against {swing[OIL_A]:.3f} µm with oil A. Both statements hold away from the
 resonance. On it they do not: oil B's branch goes on to {n[f"{OIL_B} branch peak um"]:.1f} µm,
-oil A's ends at {n[f"{OIL_A} branch peak um"]:.1f} µm, because only the film of oil A damps large motion.
+oil A's ends at {n[f"{OIL_A} branch peak um"]:.1f} µm, because the film of oil A damps large motion more
+(section 7).
 
 **Preload** (Figs. 12a and 12b). Continuation in preload at a fixed speed:
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -11,8 +10,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from periodic import Branch, Label, Point
+from reports.paper.beginnings import Beginning, beginnings
 from reports.paper.breakdown import (
-    LOST,
     Band,
     Outcome,
     bands,
@@ -23,6 +22,7 @@ from reports.paper.breakdown import (
     rest_growth,
     step_limit,
 )
+from reports.paper.contact import lost_from
 from reports.paper.equivalence import (
     SPEEDS,
     THIRD,
@@ -182,23 +182,21 @@ def _survivors(found: Computed) -> dict[str, float]:
         "orbit_high_rpm": max(left_orbits(THREE, PAPER_STEP)),
         "orbit_fine_low_rpm": min(left_orbits(THREE, STEPS[-1])),
         "orbit_fine_high_rpm": max(left_orbits(THREE, STEPS[-1])),
-        "contact_lost_rpm": contact_lost(THREE),
+        "contact_lost_rpm": lost_from(THREE),
     }
 
 
 def _reasons(found: Sequence[Band]) -> dict[str, float]:
-    """How many failures with a step stable at rest begin with loss of contact, and how near the limit the
-    steps of the others are."""
-    lost = (Outcome.OVERFLOW, Outcome.DEFLECTION)
-    cases = [
-        (o, band.step / step_limit(band.name, rpm))
-        for band in found
-        for rpm, o in zip(band.speeds, band.outcome, strict=True)
-        if o.failure and o is not Outcome.UNSTABLE
-    ]
-    others = [ratio for o, ratio in cases if o not in lost]
-    numbers = {"failures": float(len(cases)), "failures_contact_lost": float(len(cases) - len(others))}
-    return numbers | ({"others_step_percent": 100 * min(others)} if others else {})
+    """How many failures with a step stable at rest begin with what, and how many early ones at STEPS[0]."""
+    begun = [(band.step, way) for band in found for way in beginnings(band)]
+    early = [step for step, way in begun if way is Beginning.EARLY]
+    return {
+        "failures": float(len(begun)),
+        "failures_contact_lost": float(sum(way is Beginning.CONTACT for _, way in begun)),
+        "failures_step_unstable": float(sum(way is Beginning.STEP for _, way in begun)),
+        "failures_early": float(len(early)),
+        "failures_early_coarse": float(early.count(STEPS[0])),
+    }
 
 
 @cache
@@ -207,16 +205,6 @@ def left_orbits(name: str, step: float) -> tuple[float, ...]:
     points = stable_points(name)
     kept = on_orbits(name, points, step)
     return tuple(p.parameter / RPM for p, o in zip(points, kept, strict=True) if o is not Outcome.SETTLED)
-
-
-def contact_lost(name: str) -> float:
-    """Return the speed (rev/min), coming down, at which an orbit's load first falls below 0.001 Q."""
-    preload = {p.name: p.value for p in system(name).parameters}["preload"]
-    points = list(branch(name, at=GRID))
-    depth = [math.log(p.minimum["load"] / preload / LOST) for p in points]
-    last = next(k for k, value in enumerate(depth) if value < 0)
-    speeds = [points[k].parameter / RPM for k in (last, last - 1)]
-    return float(np.interp(0.0, [depth[last], depth[last - 1]], speeds))
 
 
 def rest_film(name: str, rpm: float = RPM_SHOWN) -> float:

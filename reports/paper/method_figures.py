@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from periodic import Branch
-from reports.paper.breakdown import LOST, Band, Outcome, film_rate, real_limit, step_limit
+from reports.paper.breakdown import Band, Outcome, film_rate, real_limit, step_limit
+from reports.paper.contact import LOST
 from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.histories import PAPER_STEP, History, stepped, trusted
 from reports.paper.scenes import LUBRICATED, system
@@ -29,7 +30,7 @@ COLOURS = {
     Outcome.SETTLED: "#7fb77e",
     Outcome.UNSETTLED: "#cfe3a4",
     Outcome.WRONG: "#f2c879",
-    Outcome.OVERFLOW: "#c0392b",
+    Outcome.UNLOADED: "#c0392b",
     Outcome.DEFLECTION: "#c0392b",
     Outcome.FILM: "#8e44ad",
     Outcome.LOAD: "#34495e",

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+from reports.paper.breakdown import real_limit
+from reports.paper.contact import LOST
+from reports.paper.equivalence import SPEEDS
 
 
 def text(n: Mapping[str, float]) -> str:
@@ -18,8 +22,9 @@ deflection as a function of h and dh/dt, geometry gives x = δ0 + h - h0 + a sin
 differentiated twice in time (symbolically) and put into m x'' = 2 (W - Q), and the result is solved for
 the third derivative of h. It is the scene `third-order-810N`. It is the same system as three states x,
 dx/dt and h: the eigenvalues at rest differ by {n["eigenvalue_difference"]:.0e} of their size, the
-periodic orbits from 500 to 290 rev/min by {n["orbit_difference"]:.0e}, and x over 20 ms from the paper's
-start by {n["motion_difference_coarse_um"]:.3f} µm with the paper's step of 0.1 ms and by
+periodic orbits at {_listed(sorted(SPEEDS[1:], reverse=True))} rev/min by
+{n["orbit_difference"]:.0e}, and x over 20 ms from the paper's start by
+{n["motion_difference_coarse_um"]:.3f} µm with the paper's step of 0.1 ms and by
 {n["motion_difference_um"]:.0e} µm with 0.01 ms.
 
 It is a poor form where contact is lost. The coefficient of the third derivative is γδ/n and vanishes with
@@ -51,12 +56,16 @@ than 1 %.
 
 ![What becomes of the calculation, over speed and step](method-map.png)
 
-**Why.** Of {n["failures"]:.0f} failures with a step that is stable at rest,
-{n["failures_contact_lost"]:.0f} begin with the loss of contact (load below 0.001 Q), as the paper says:
-dh/dt grows, exp(γ dh/dt) overflows in the third-order form; in the three-state form, which fails at
-nearly the same speeds, a step ends at a negative deflection{_others(n)}. The cause is numerical. At fixed
-x the film empties or fills at the rate (β/h + n/δ)/γ, and an explicit step must be shorter than 2.785
-over that rate. As δ falls by many powers of ten, so does the step that is allowed.
+**Why.** At fixed x the film empties or fills at the rate (β/h + n/δ)/γ, and an explicit step must be
+shorter than {real_limit():.3f} over that rate. As δ falls by many powers of ten, so does the step that is
+allowed. So of {n["failures"]:.0f} failures with a step that is stable at rest we asked what came first.
+{n["failures_contact_lost"]:.0f} begin with the loss of contact, as the paper says: all steps until the load
+fell below {LOST:g} Q began within that limit, and the exact motion from the same start (CVODES) has lost
+contact by the end of the step after the failing one. Then dh/dt grows and exp(γ dh/dt) overflows in the
+third-order form; in the three-state form, which fails at nearly the same speeds, a step ends at a negative
+deflection. {n["failures_step_unstable"]:.0f} had a step beyond the limit while there was contact, and
+{n["failures_early"]:.0f} failed before the exact motion loses contact, {n["failures_early_coarse"]:.0f} of
+them with steps of 0.2 ms.
 
 ![The first loss of contact at 270 rev/min](method-breakdown.png)
 
@@ -77,8 +86,8 @@ throughout; the largest x is {n["largest_um"]:.1f} µm peak to peak.
 def _oil_b(n: Mapping[str, float]) -> str:
     return f"""\
 **The thin oil.** With Shell Turbo 33 the step of 0.1 ms is too long from the start: at 360 rev/min λΔt =
-{n["oil_b_lambda_dt"]:.2f} (limit 2.785) and any disturbance grows {n["oil_b_growth"]:.1f} times per step.
-It is unstable at rest from {n["oil_b_unstable_rpm"]:.0f} rev/min (810 N) and
+{n["oil_b_lambda_dt"]:.2f} (limit {real_limit():.3f}) and any disturbance grows {n["oil_b_growth"]:.1f}
+times per step. It is unstable at rest from {n["oil_b_unstable_rpm"]:.0f} rev/min (810 N) and
 {n["oil_b_heavy_unstable_rpm"]:.0f} rev/min (2100 N) on, and {n["unstable_lasting"]:.0f} of the
 {n["unstable_runs"]:.0f} runs there last. For the paper's Fig. 7, with 10 000 steps in 1 s at 360 rev/min,
 this says that its film, its step or its method was another one (its section 4 speaks of Runge-Kutta, its
@@ -92,8 +101,6 @@ s.
 """
 
 
-def _others(n: Mapping[str, float]) -> str:
-    """The failures without loss of contact, if there are any."""
-    if "others_step_percent" not in n:
-        return ""
-    return f" (the rest had steps of at least {n['others_step_percent']:.1f} % of the limit at rest)"
+def _listed(values: Sequence[float]) -> str:
+    """Name values one by one."""
+    return ", ".join(f"{value:g}" for value in values[:-1]) + f" and {values[-1]:g}"

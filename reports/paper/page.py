@@ -13,7 +13,8 @@ from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from reports.files import replacing
+from reports.errors import InputError
+from reports.files import replacing, writable
 from reports.paper.section import Section, Tell
 
 SECTIONS = ("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen")
@@ -25,6 +26,21 @@ PAGE, FIGURES, KEPT = "README.md", "figures", "sections"
 DPI = 150
 
 COLUMNS = ("", "quantity", "paper", "ours", "difference", "verdict", "how ours was checked")
+
+
+def ready(folder: Path) -> Path:
+    """Make the folders of a page and return the first. Raises InputError where a page cannot go there."""
+    for place in (folder, folder / FIGURES, folder / KEPT):
+        writable(place)
+    allowed = "it must be a directory for this report alone"
+    page = folder / PAGE
+    if page.exists() and not (page.is_file() and page.read_text("utf-8").startswith(_introduction()[:40])):
+        raise InputError("--out", f'is "{folder}", whose {PAGE} is not a page of this report', allowed)
+    try:
+        assemble_text(folder)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError("--out", f'is "{folder}", whose {KEPT} are damaged', allowed) from error
+    return folder
 
 
 def make(folder: Path, names: Sequence[str], tell: Tell) -> Path:
@@ -69,17 +85,25 @@ def kept(folder: Path) -> dict[str, dict[str, Any]]:
 
 def assemble(folder: Path) -> None:
     """Write the page from what its sections said."""
+    text = assemble_text(folder)
+    with replacing(folder / PAGE) as part:
+        part.write_text(text, "utf-8")
+
+
+def assemble_text(folder: Path) -> str:
+    """Return the page from what its sections said."""
     said = kept(folder)
     rows = [row for section in said.values() for row in section["rows"]]
-    introduction = resources.files("reports.paper").joinpath("introduction.md").read_text("utf-8")
-    parts = [introduction, _table(rows), _contents(said)]
-    parts += [f"## {k}. {s['title']}\n\n{_with_figures(s['text'])}" for k, s in enumerate(said.values(), 1)]
+    parts = [_introduction(), _table(rows), _contents(said)]
+    parts += [f"## {_number(name)}. {s['title']}\n\n{_with_figures(s['text'])}" for name, s in said.items()]
     if missing := [name for name in SECTIONS if name not in said]:
         parts.append(f"Sections not computed yet: {', '.join(missing)}.")
     parts.append("*`orbitrace report paper` computes this page, `--only SECTION` one section of it.*")
-    text = "\n\n".join(part.strip() for part in parts) + "\n"
-    with replacing(folder / PAGE) as part:
-        part.write_text(text, "utf-8")
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def _introduction() -> str:
+    return resources.files("reports.paper").joinpath("introduction.md").read_text("utf-8")
 
 
 def _table(rows: list[dict[str, Any]]) -> str:
@@ -95,7 +119,12 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 
 def _contents(said: dict[str, dict[str, Any]]) -> str:
-    return "\n".join(f"{k}. {section['title']}" for k, section in enumerate(said.values(), 1))
+    return "\n".join(f"{_number(name)}. {section['title']}" for name, section in said.items())
+
+
+def _number(name: str) -> int:
+    """The number of a section on the whole page, whichever others are there."""
+    return SECTIONS.index(name) + 1
 
 
 def _with_figures(text: str) -> str:

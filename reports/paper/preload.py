@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 import periodic
+from reports.paper.contact import LOST
 from reports.paper.scenes import system
 from reports.view import RPM
 
@@ -19,9 +20,6 @@ RANGE = (100.0, 2500.0)
 
 COMMON = {810.0: "vitrea79-810N", 2100.0: "vitrea79-2100N"}
 """Preloads at which a scene of its own is continued in speed."""
-
-KEPT = 1e-3
-"""Contact is kept where the load never falls below this part of the preload."""
 
 
 @cache
@@ -60,7 +58,7 @@ def trend(speed: float) -> tuple[float, float, int]:
     """
     preload, swing = [], []
     for point in branch(speed):
-        if point.minimum["load"] <= KEPT * point.parameter:
+        if point.minimum["load"] <= LOST * point.parameter:
             break
         preload.append(point.parameter)
         swing.append(point.peak_to_peak("x"))

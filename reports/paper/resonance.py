@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 import periodic
 from reports.paper.scenes import branch, system
 from reports.view import RPM
+from symbolic import CompiledSystem
 from symbolic.linear import resonance
 from symbolic.response import peak
 
@@ -31,15 +32,22 @@ class Resonance:
     highest: tuple[float, float]
 
 
+def natural_speed(disc: CompiledSystem) -> float:
+    """Return where in RANGE (rev/min) the corrugations meet the natural frequency at rest.
+
+    Raises ArithmeticError where they do not.
+    """
+    found = resonance(disc, "speed", (RANGE[0] * RPM, RANGE[1] * RPM))
+    if found is None:
+        raise ArithmeticError(f"the disc has no linear resonance from {RANGE[0]:g} to {RANGE[1]:g} rev/min")
+    return found / RPM
+
+
 @cache
 def of(name: str) -> Resonance:
     """Return the resonance of a built-in disc."""
     disc = system(name)
-    natural = resonance(disc, "speed", (RANGE[0] * RPM, RANGE[1] * RPM))
-    if natural is None:
-        raise ArithmeticError(
-            f"scene {name} has no linear resonance from {RANGE[0]:g} to {RANGE[1]:g} rev/min"
-        )
+    natural = natural_speed(disc) * RPM
     speed, swing = peak(disc, "x", "speed", (0.97 * natural, 1.03 * natural))
     return Resonance(natural=natural / RPM, linear=(speed / RPM, float(swing)), highest=highest(branch(name)))
 

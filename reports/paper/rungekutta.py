@@ -25,9 +25,20 @@ class Marched:
     last: Array
 
 
+def factor(z: NDArray[np.complex128], order: int = 4) -> NDArray[np.complex128]:
+    """Return R(z) = 1 + z + ... + z^p/p!, z = lambda dt: what a step of p = `order` stages makes of a mode.
+
+    Of explicit Runge-Kutta methods whose order is their number of stages, p <= 4.
+    """
+    value = np.ones_like(z)
+    for k in range(order, 0, -1):
+        value = 1 + z / k * value
+    return value
+
+
 def growth(z: NDArray[np.complex128]) -> Array:
-    """Return |R(z)|, z = lambda dt, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: what a step makes of a mode."""
-    return np.asarray(np.abs(1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))))
+    """Return |R(z)| of the classical method; above 1 a mode grows."""
+    return np.asarray(np.abs(factor(z)))
 
 
 def stages(rates: Rates, state: Array, phase: Array, parameter: Array, size: Array) -> list[Array]:

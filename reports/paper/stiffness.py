@@ -77,13 +77,18 @@ def second_speed(stiffness: float, share: float) -> float:
     return float(brentq(excess, SLOWEST, 100 * FASTEST, rtol=1e-12))
 
 
+def nominal(name: str) -> dict[str, float]:
+    """Return the parameters (SI) of a built-in scene by name."""
+    disc = system(name)
+    return dict(zip([p.name for p in disc.parameters], disc.nominal.tolist(), strict=True))
+
+
 def antiresonance_speed() -> float:
     """Return the speed in rev/min at which housing and bearing of the scene absorb the discs' motion.
 
     There omega^2 = k/((1 - f) m), without damping: the housing's own frequency on the bearing.
     """
-    disc = system(SCENE)
-    values = dict(zip([p.name for p in disc.parameters], disc.nominal, strict=True))
+    values = nominal(SCENE)
     return math.sqrt(values["bearing_stiffness"] / values["housing_mass"]) / (WAVES * RPM)
 
 
@@ -112,10 +117,9 @@ def stiffness_for(rpm: float, share: float) -> float:
 
 def contact_stiffness() -> float:
     """Return the linear stiffness n Q/delta0 of the dry Hertz contact under the preload, in N/m."""
-    disc = system(RIGID)
-    values = dict(zip([p.name for p in disc.parameters], disc.nominal, strict=True))
+    values = nominal(RIGID)
     delta0 = (values["preload"] / values["stiffness"]) ** (1 / values["exponent"])
-    return float(values["exponent"] * values["preload"] / delta0)
+    return values["exponent"] * values["preload"] / delta0
 
 
 def with_leaf_springs(stiffness: float) -> float:

@@ -17,6 +17,7 @@ from reports.paper.stiffness import (
     SCENE,
     antiresonance_speed,
     contact_stiffness,
+    nominal,
     resonance_speed,
     rigid_resonance,
     second_speed,
@@ -55,11 +56,13 @@ Override = tuple[str, str]
 
 def numbers() -> dict[str, float]:
     """Return the key numbers of the linear system and of the two branches (rev/min, um, N/m)."""
-    contact = contact_stiffness()
+    contact, bearing = contact_stiffness(), nominal(SCENE)["bearing_stiffness"]
     found = {
+        "scene bearing stiffness N/m": bearing,
+        "scene bearing damping N s/m": nominal(SCENE)["bearing_damping"],
         "rigid resonance rpm": rigid_resonance(),
-        "scene resonance rpm": resonance_speed(513e6, SHARE),
-        "scene second resonance rpm": second_speed(513e6, SHARE),
+        "scene resonance rpm": resonance_speed(bearing, SHARE),
+        "scene second resonance rpm": second_speed(bearing, SHARE),
         "scene antiresonance rpm": antiresonance_speed(),
         "contact stiffness N/m": contact,
         "resonance with bearings of 10 contacts rpm": resonance_speed(10 * contact, SHARE),
@@ -173,8 +176,14 @@ def _map(n: dict[str, float]) -> Figure:
     left.axhline(n["rigid resonance rpm"], color="black", linestyle=":", label="rigid supports")
     left.axvline(n["contact stiffness N/m"], color="grey", linestyle="--", label="contact's stiffness")
     right.axhspan(100, 500, color="grey", alpha=0.15, label="the paper's speeds")
-    left.plot(513e6, n["scene resonance rpm"], "ko", markersize=4, label="scene supports-810N")
-    right.plot(513e6, n["scene second resonance rpm"], "ko", markersize=4)
+    left.plot(
+        n["scene bearing stiffness N/m"],
+        n["scene resonance rpm"],
+        "ko",
+        markersize=4,
+        label="scene supports-810N",
+    )
+    right.plot(n["scene bearing stiffness N/m"], n["scene second resonance rpm"], "ko", markersize=4)
     left.set(ylabel="first resonance (rev/min)", ylim=(100, 290))
     right.set(ylabel="second resonance (rev/min)", ylim=(100, 2e4))
     for axes in (left, right):
@@ -188,7 +197,9 @@ def _branches() -> Figure:
     _curve(left, rigid_branch(), "black", "rigid supports")
     for rpm, color in zip((270.0, 260.0, 250.0), _colours(), strict=False):
         name = f"resonance at {rpm:g} rev/min"
-        _curve(left, scene_branch() if rpm == EXAMPLE else supported_branch(rpm, SHARE, 5000.0), color, name)
+        _curve(
+            left, scene_branch() if rpm == EXAMPLE else supported_branch(rpm, SHARE, DAMPINGS[0]), color, name
+        )
     cases = [(share, DAMPINGS[0]) for share in SHARES[:3]] + [(SHARE, DAMPINGS[1])]
     for (share, damping), color in zip(cases, _colours(), strict=True):
         name = f"share {share:g}, {damping / 1000:g} kN s/m"

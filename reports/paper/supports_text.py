@@ -70,16 +70,18 @@ if nothing else shifted it. Leaf springs act the other way, and little: 1 MN/m u
 the scene's {n["scene resonance rpm"]:.2f} to {n["resonance with leaf springs rpm"]:.2f} rev/min.
 
 A compliant bearing also brings a second mode, in which disc and housing move against each other: at
-{n["scene second resonance rpm"]:.0f} rev/min in the scene `supports-810N` (f = 0.3, 513 MN/m). With large
-shares and soft bearings it comes down into the paper's range of speeds. At
+{n["scene second resonance rpm"]:.0f} rev/min in the scene `supports-810N` (f = 0.3,
+{n["scene bearing stiffness N/m"] / 1e6:.0f} MN/m). With large shares and soft bearings it comes down into
+the paper's range of speeds. At
 {n["scene antiresonance rpm"]:.0f} rev/min the scene's discs hardly move: there each housing and its
 bearing are tuned to the corrugations and take up the motion."""
 
 
 def _nonlinear(n: Numbers) -> str:
     worst = max(value for key, value in n.items() if key.startswith("return error"))
-    return f"""**Nonlinear response.** Bearing damping is not in the text either; 5 kN s/m per bearing is
-an example. At 250 rev/min it makes the damping ratio of the first mode {n["scene damping ratio"]:.4f}
+    return f"""**Nonlinear response.** Bearing damping is not in the text either;
+{n["scene bearing damping N s/m"] / 1e3:g} kN s/m per bearing is an example. At 250 rev/min it makes the
+damping ratio of the first mode {n["scene damping ratio"]:.4f}
 (rigid supports: {n["rigid damping ratio"]:.4f}), that of the second
 {n["scene second damping ratio"]:.3f}.
 

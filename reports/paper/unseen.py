@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +10,14 @@ from numpy.typing import NDArray
 import periodic
 from periodic import Label, Point
 from reports.paper import unseen_figures, unseen_text
+from reports.paper.contact import LOST, lost_from, preload_of
 from reports.paper.doubled import KNOCKED, SCENE, doubled, knocked, small, speeds
-from reports.paper.equivalent import exponent, ratio
+from reports.paper.equivalent import exponents, ratio
 from reports.paper.scenes import LUBRICATED, branch, system
 from reports.paper.section import Section, Tell
+from reports.paper.stiffness import WAVES
 from reports.view import MICRO, RPM
 from symbolic.linear import modes
-
-LOST = 1e-3
-"""Contact counts as lost where the load falls below this part of the preload."""
 
 AT = (360.0, 288.0, 260.0, 245.0)
 """Speeds of the labelled orbits, rev/min, beside the upper fold."""
@@ -44,32 +42,17 @@ def along(point: Point, count: int = 2001) -> tuple[NDArray[np.float64], NDArray
     return tau, periodic.outputs(system(SCENE), point.orbit, tau)
 
 
-def lost_from(name: str) -> float:
-    """Return the speed (rev/min) below which the upper sheet loses contact in every cycle.
+def return_phase(point: Point) -> float:
+    """Return the phase (rad) in which the load rises from LOST of the preload to the preload itself.
 
-    It is interpolated in the logarithm of the least load, on a closer trace of the step that passes it.
+    Of the rise that follows the least load; the orbit must lose contact. To 3e-4 rad.
     """
-    return _lost_within(name, _passing(name, branch(name)))
-
-
-def _lost_within(name: str, step: tuple[Point, Point]) -> float:
-    ends = [point.parameter / RPM for point in step]
-    before, after = _passing(name, branch(name, *ends))
-    threshold = np.log(LOST * _preload(name))
-    loads = [np.log(point.minimum["load"]) for point in (after, before)]
-    return float(np.interp(threshold, loads, [after.parameter / RPM, before.parameter / RPM]))
-
-
-def _passing(name: str, found: periodic.Branch) -> tuple[Point, Point]:
-    """Return the first neighbours of a branch between which contact is lost."""
-    for before, after in pairwise(found):
-        if after.minimum["load"] < LOST * _preload(name) <= before.minimum["load"]:
-            return before, after
-    raise ArithmeticError(f"scene {name} does not lose contact from {found[0].parameter / RPM:g} rev/min on")
-
-
-def _preload(name: str) -> float:
-    return next(p.value for p in system(name).parameters if p.name == "preload")
+    tau, values = along(point, 20001)
+    load = values[:-1, [output.name for output in system(SCENE).outputs].index("load")]
+    load = np.roll(load, -int(np.argmin(load))) / preload_of(SCENE)
+    risen = int(np.argmax(load >= 1))
+    left = int(np.flatnonzero(load[:risen] < LOST)[-1])
+    return float((risen - left) * tau[1])
 
 
 def damping(name: str) -> list[tuple[float, float]]:
@@ -78,15 +61,9 @@ def damping(name: str) -> list[tuple[float, float]]:
     It is that of small free motion about the orbit, mu = exp(lambda T), zeta = -Re(lambda)/|lambda|, with the
     imaginary part continued from the linear one. It ends where the multipliers become real or unstable.
     """
-    found: list[tuple[float, float]] = []
-    frequency = float(modes(system(name), {"speed": 500 * RPM}).damped_frequencies[0])
-    for point in branch(name):
-        if not point.stable or point.multipliers[0].imag == 0:
-            break
-        value = exponent(complex(point.multipliers[0]), 2 * np.pi / (120 * point.parameter), frequency)
-        frequency = value.imag
-        found.append((point.peak_to_peak("x"), ratio(value)))
-    return found
+    rest = modes(system(name), {"speed": 500 * RPM})
+    found = exponents(branch(name), rest, lambda point: 2 * np.pi / (WAVES * point.parameter))
+    return [(point.peak_to_peak("x"), ratio(value)) for point, value in found]
 
 
 def numbers() -> dict[str, float]:
@@ -102,6 +79,7 @@ def numbers() -> dict[str, float]:
     (fold_speed,) = speeds(doubled(), Label.FOLD)
     x = knocked().state[:, 0] * system(SCENE).states[0].scale
     return found | {
+        "load back within rad": max(return_phase(labelled()[letter]) for letter in "CDE"),
         "doubled orbits fold rpm": fold_speed,
         f"doubled orbit at {KNOCKED:g} rpm x um": doubled()[0].peak_to_peak("x") / MICRO,
         f"simulated motion at {KNOCKED:g} rpm x um": float(np.ptp(x)) / MICRO,

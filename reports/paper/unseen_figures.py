@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from periodic import Branch, Label, Point
 from reports.curve import draw_curve, solid
+from reports.paper.contact import LOST
 from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.view import MICRO, RPM
 
 Array = NDArray[np.float64]
-LIFTED = 1e-3
 COLORS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")
 TITLES = {
     "vitrea79-810N": "Vitrea 79, 810 N",
@@ -35,7 +35,7 @@ def branches(found: Mapping[str, Branch]) -> Figure:
         speed, swing = _xy(branch)
         draw_curve(panel, speed, swing, solid(branch), color=TRUSTED)
         preload = float(name.rpartition("-")[2].removesuffix("N"))
-        lost = np.array([p.minimum["load"] < LIFTED * preload for p in branch])
+        lost = np.array([p.minimum["load"] < LOST * preload for p in branch])
         panel.plot(speed[lost], swing[lost], ".", color=PAPER, markersize=3, label="contact lost")
         for fold in branch.labelled(Label.FOLD):
             at = fold.parameter / RPM, fold.peak_to_peak("x") / MICRO
