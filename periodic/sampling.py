@@ -29,6 +29,8 @@ def sampled(phase: Array, state: Array, algebraic: Array, parameter: Array) -> O
             f"states and unknowns have shapes {state.shape} and {algebraic.shape}; "
             f"each must have one row for each of the {len(phase)} phases"
         )
+    if not (np.isfinite(state).all() and np.isfinite(algebraic).all()):
+        raise ValueError("the samples have values that are not finite; all of them must be")
     mesh = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     left, width = mesh.grid(np.zeros(0)).left, mesh.grid(np.zeros(0)).width
     stages = left[:, None] + width[:, None] * mesh.scheme.points

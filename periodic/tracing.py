@@ -56,6 +56,8 @@ def trace(
     _checked(system, accuracy)
     index = index_of(system, parameter)
     low, high = _range(parameter, bounds)
+    if values and parameter in values:
+        raise ValueError(f"values has {parameter!r}, which is continued in; give it as start")
     base = _base(system, guess)
     begin = _begin(bounds, start, None if guess is None else float(base[index]))
     if not low <= begin <= high:
@@ -178,9 +180,16 @@ def _base(system: System, guess: Orbit | None) -> Array:
     nominal = np.array(system.nominal, dtype=float)
     if guess is None:
         return nominal
-    if guess.parameter.shape != nominal.shape:
-        given, wanted = len(guess.parameter), len(nominal)
-        raise ValueError(f"guess has {given} parameters; it must have the {wanted} of the system")
+    counts = {
+        "states": (guess.nodes.shape[1], len(system.states)),
+        "algebraic unknowns": (guess.algebraic.shape[2], len(system.algebraics)),
+        "parameters": (len(guess.parameter), len(nominal)),
+    }
+    for kind, (given, wanted) in counts.items():
+        if given != wanted:
+            raise ValueError(f"guess has {given} {kind}; it must have the {wanted} of the system")
+    if not all(np.isfinite(a).all() for a in (guess.nodes, guess.stages, guess.algebraic, guess.parameter)):
+        raise ValueError("guess has values that are not finite; all of its numbers must be")
     return guess.parameter.copy()
 
 
@@ -193,8 +202,8 @@ def _parameters(system: System, base: Array, values: Mapping[str, float]) -> Arr
     """Parameters with some values replaced, by name."""
     parameter = base.copy()
     for name, value in values.items():
-        if not math.isfinite(value):
-            raise ValueError(f"value of {name} is {value}; it must be a finite number")
+        if not (isinstance(value, int | float | np.number) and math.isfinite(value)):
+            raise ValueError(f"value of {name} is {value!r}; it must be a finite number")
         parameter[index_of(system, name)] = value
     return parameter
 

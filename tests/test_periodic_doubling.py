@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
+from typing import Any
 
 import disc_reference as reference
 import numpy as np
@@ -133,9 +134,11 @@ def test_values_replace_nominal_ones() -> None:
     [
         ({"mass": 1.0}, "parameter is 'mass'; it must be one of Omega, zeta, F"),
         ({"F": math.nan}, "value of F is nan; it must be a finite number"),
+        ({"F": "strong"}, "value of F is 'strong'; it must be a finite number"),
+        ({"Omega": 0.7}, "values has 'Omega', which is continued in; give it as start"),
     ],
 )
-def test_refused_values(values: dict[str, float], sentence: str) -> None:
+def test_refused_values(values: dict[str, Any], sentence: str) -> None:
     """Assert that values that make no sense are refused in one sentence."""
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
         per.trace(LinearOscillator(), "Omega", (0.5, 0.9), values=values)

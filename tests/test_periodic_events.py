@@ -227,3 +227,24 @@ def test_guess_brings_its_parameters() -> None:
     with pytest.raises(ValueError, match="^guess has 2 parameters; it must have the 3 of the system$"):
         wrong = replace(point.orbit, parameter=np.ones(2))
         per.trace(LinearOscillator(), "F", (0.5, 2.0), guess=wrong)
+
+
+@pytest.mark.parametrize(
+    "change, sentence",
+    [
+        ({"nodes": np.zeros((9, 3))}, "guess has 3 states; it must have the 2 of the system"),
+        (
+            {"algebraic": np.zeros((8, 4, 1))},
+            "guess has 1 algebraic unknowns; it must have the 0 of",
+        ),
+        (
+            {"nodes": np.full((9, 2), np.nan)},
+            "guess has values that are not finite; all of its numbers",
+        ),
+    ],
+)
+def test_refused_guess(change: dict[str, Array], sentence: str) -> None:
+    """Assert that a guess of another system is refused in one sentence."""
+    orbit = per.trace(LinearOscillator(), "Omega", (0.5, 0.6))[0].orbit
+    with pytest.raises(ValueError, match=f"^{sentence}"):
+        per.trace(LinearOscillator(), "Omega", (0.5, 0.6), guess=replace(orbit, **change))
