@@ -55,7 +55,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         sentence = str(error)
     except OSError as error:
-        # Everything else that writes names its file in an InputError.
+        # What writes files says so in an InputError of its own; an error that names a file is a defect.
+        if error.filename is not None:
+            raise
         sentence = f"standard output cannot be written to ({error.strerror})"
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - Python flushes it once more at its end
     except ClickException as error:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 from reports.errors import InputError
+from reports.interrupts import unheard
 
 
 def writable(folder: Path) -> Path:
@@ -25,6 +26,21 @@ def unwritable(folder: Path, error: OSError | ValueError) -> InputError:
     """Return the error of a directory that does not take files."""
     reason = getattr(error, "strerror", None) or str(error)
     return InputError("--out", f'is "{folder}" ({reason})', "it must be a directory that can be written to")
+
+
+def write(folder: Path, writers: Mapping[str, Callable[[Path], object]]) -> list[Path]:
+    """Write files by name, none of them by halves, and return them; no Ctrl-C is heard meanwhile.
+
+    Raises InputError if one cannot be written.
+    """
+    with unheard():
+        try:
+            for name, writer in writers.items():
+                with replacing(folder / name) as part:
+                    writer(part)
+        except OSError as error:
+            raise unwritable(folder, error) from error
+    return [folder / name for name in writers]
 
 
 @contextmanager

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reports.build import build
-from reports.files import replacing, unwritable
-from reports.interrupts import unheard
+from reports.files import write
 from reports.run import Task
 from reports.schema import Scene
 from reports.view import View, view_of
@@ -105,14 +104,7 @@ def save(folder: Path, name: str, found: Study) -> list[Path]:
         "linear.json": lambda path: path.write_text(json_text(name, found), "utf-8"),
         "linear.png": lambda path: draw(path, found),
     }
-    with unheard():
-        try:
-            for file, write in writers.items():
-                with replacing(folder / file) as part:
-                    write(part)
-        except OSError as error:
-            raise unwritable(folder, error) from error
-    return [folder / file for file in writers]
+    return write(folder, writers)
 
 
 def show(found: Study, files: Sequence[Path]) -> None:

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.errors import InputError, refused
-from reports.files import replacing, unwritable
-from reports.interrupts import unheard
+from reports.files import write
 from reports.scene import Override, ends, load
 from reports.schema import Scene
 from reports.summary import csv_text, json_text
@@ -132,11 +131,4 @@ def save(
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
         "branch.png": lambda path: draw(path, scene, branch, integrated),
     }
-    with unheard():
-        try:
-            for file, write in writers.items():
-                with replacing(folder / file) as part:
-                    write(part)
-        except OSError as error:
-            raise unwritable(folder, error) from error
-    return [folder / file for file in writers]
+    return write(folder, writers)

@@ -279,3 +279,17 @@ def test_interrupted_report_is_no_report(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert f"interrupted; the sections computed so far are in {tmp_path}" in said
     assert list((tmp_path / "sections").iterdir()) == []
+
+
+def test_report_on_a_full_disk(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
+    """Assert that a report that cannot be written is said to be so, and not the standard output."""
+    from reports.paper import page
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(page, "computed", lambda name, tell: Section(title="Done", text="", numbers={}))
+    monkeypatch.setattr(Path, "write_text", full)
+    assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 2
+    told = capsys.readouterr().err
+    assert f'--out is "{tmp_path / "sections"}" (No space left on device)' in told

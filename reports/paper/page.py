@@ -7,14 +7,16 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from reports.errors import InputError
-from reports.files import replacing, writable
+from reports.files import writable, write
 from reports.paper.section import Section, Tell
 
 SECTIONS = ("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen")
@@ -64,17 +66,20 @@ def computed(name: str, tell: Tell) -> Section:
 
 def keep(folder: Path, name: str, section: Section) -> None:
     """Write the figures of a section and what it says."""
-    for place in (FIGURES, KEPT):
-        (folder / place).mkdir(parents=True, exist_ok=True)
-    for title, figure in section.figures.items():
-        FigureCanvasAgg(figure)
-        with replacing(folder / FIGURES / f"{title}.png") as part:
-            # No version or date: the same figure is the same file.
-            figure.savefig(part, format="png", dpi=DPI, metadata={"Software": None})
     rows = [asdict(replace(row, given=None)) | {"verdict": row.verdict} for row in section.rows]
     said = {"title": section.title, "numbers": dict(section.numbers), "rows": rows, "text": section.text}
-    with replacing(folder / KEPT / f"{name}.json") as part:
-        part.write_text(json.dumps(said, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    text = json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+    for place in (FIGURES, KEPT):
+        writable(folder / place)
+    drawings = {f"{title}.png": partial(_draw, figure) for title, figure in section.figures.items()}
+    write(folder / FIGURES, drawings)
+    write(folder / KEPT, {f"{name}.json": lambda part: part.write_text(text, "utf-8")})
+
+
+def _draw(figure: Figure, path: Path) -> None:
+    FigureCanvasAgg(figure)
+    # No version or date: the same figure is the same file.
+    figure.savefig(path, format="png", dpi=DPI, metadata={"Software": None})
 
 
 def kept(folder: Path) -> dict[str, dict[str, Any]]:
@@ -86,8 +91,7 @@ def kept(folder: Path) -> dict[str, dict[str, Any]]:
 def assemble(folder: Path) -> None:
     """Write the page from what its sections said."""
     text = assemble_text(folder)
-    with replacing(folder / PAGE) as part:
-        part.write_text(text, "utf-8")
+    write(folder, {PAGE: lambda part: part.write_text(text, "utf-8")})
 
 
 def assemble_text(folder: Path) -> str:

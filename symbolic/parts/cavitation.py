@@ -18,7 +18,8 @@ import casadi as ca
 from symbolic.assembly import Assembly
 from symbolic.model import Part
 from symbolic.parts.contact import ContactPair, Loaded, junction_of
-from symbolic.parts.thickness import ThicknessLaw, entraining_speed
+from symbolic.parts.film import constants
+from symbolic.parts.thickness import ThicknessLaw
 from symbolic.variables import Value
 
 
@@ -44,13 +45,10 @@ class CavitatingFilm(Part):
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Row: film law for h, explicit in dh/dt. Returns W."""
-        beta = assembly.parameter(self.beta, "beta")
-        u = entraining_speed(assembly, self.speed, self.radius)
-        gamma = assembly.parameter(self.squeeze, "squeeze") / u
+        beta, gamma, h0 = constants(self, assembly, contact)
         floor = assembly.parameter(self.floor, "floor")
         if not 0 < assembly.nominal(floor) < 1:
             raise ValueError(f"floor is {assembly.nominal(floor)}; it must lie between 0 and 1")
-        h0 = self.law.thickness(assembly, contact, beta)
         h = assembly.state(contact.label("h"), "m", assembly.nominal(contact.delta0), h0)
         deflection = 1 + (h.symbol - h0 + contact.compression) / contact.delta0
         least = floor ** (1 / contact.exponent)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import casadi as ca
 
@@ -75,6 +76,29 @@ def _inverse_log_softplus(y: ca.SX) -> ca.SX:
     return ca.if_else(s > 1, large, small)
 
 
+class Squeezed(Protocol):
+    """A film with squeeze: the numbers of W = Q (h/h0)^(-beta) exp(-gamma dh/dt)."""
+
+    @property
+    def law(self) -> ThicknessLaw: ...
+    @property
+    def speed(self) -> Value: ...
+    @property
+    def radius(self) -> Value: ...
+    @property
+    def beta(self) -> Value: ...
+    @property
+    def squeeze(self) -> Value: ...
+
+
+def constants(film: Squeezed, assembly: Assembly, contact: Loaded) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Return beta, gamma = squeeze/u (s/m) and h0 (m) of a film."""
+    beta = assembly.parameter(film.beta, "beta")
+    u = entraining_speed(assembly, film.speed, film.radius)
+    gamma = assembly.parameter(film.squeeze, "squeeze") / u
+    return beta, gamma, film.law.thickness(assembly, contact, beta)
+
+
 @dataclass(frozen=True)
 class SqueezeFilm(Part):
     """W = Q (h/h0)^(-beta) exp(-gamma dh/dt), gamma = squeeze / u: one state h and one unknown xi.
@@ -95,10 +119,7 @@ class SqueezeFilm(Part):
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Rows: film law (its xi-derivative never vanishes) for xi, geometry for h. Returns W."""
-        beta = assembly.parameter(self.beta, "beta")
-        u = entraining_speed(assembly, self.speed, self.radius)
-        gamma = assembly.parameter(self.squeeze, "squeeze") / u
-        h0 = self.law.thickness(assembly, contact, beta)
+        beta, gamma, h0 = constants(self, assembly, contact)
         h = assembly.state(contact.label("h"), "m", assembly.nominal(contact.delta0), h0)
         xi = assembly.algebraic(contact.label("xi"), ca.SX(REST_XI), move_xi)
         deflection = 1 + (h.symbol - h0 + contact.compression) / contact.delta0

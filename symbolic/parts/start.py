@@ -13,8 +13,7 @@ import casadi as ca
 from symbolic.assembly import Assembly
 from symbolic.model import Part
 from symbolic.parts.contact import ContactPair, Loaded, junction_of
-from symbolic.parts.film import SqueezeFilm
-from symbolic.parts.thickness import entraining_speed
+from symbolic.parts.film import SqueezeFilm, constants
 from symbolic.variables import Value
 
 
@@ -55,10 +54,7 @@ class ExplicitSqueezeFilm(SqueezeFilm):
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Row: the film law for h. Returns W."""
-        beta = assembly.parameter(self.beta, "beta")
-        u = entraining_speed(assembly, self.speed, self.radius)
-        gamma = assembly.parameter(self.squeeze, "squeeze") / u
-        h0 = self.law.thickness(assembly, contact, beta)
+        beta, gamma, h0 = constants(self, assembly, contact)
         h = assembly.state(contact.label("h"), "m", assembly.nominal(contact.delta0), h0)
         relative = 1 + (h.symbol - h0 + contact.compression) / contact.delta0
         log_load = contact.exponent * ca.log(relative)

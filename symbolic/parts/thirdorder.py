@@ -20,8 +20,7 @@ import casadi as ca
 from symbolic.assembly import Assembly, Motion, State
 from symbolic.model import Model, Part
 from symbolic.parts.contact import Junction, Loaded
-from symbolic.parts.film import LEVELS, SqueezeFilm
-from symbolic.parts.thickness import entraining_speed
+from symbolic.parts.film import LEVELS, SqueezeFilm, constants
 from symbolic.variables import Coordinate
 
 REFUSED = "the third-order form is of one coordinate and one contact with a squeeze film"
@@ -67,10 +66,7 @@ class _Reduced:
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Add h, h', h'' and the outputs. Returns W."""
         film = self.film
-        beta = assembly.parameter(film.beta, "beta")
-        u = entraining_speed(assembly, film.speed, film.radius)
-        gamma = assembly.parameter(film.squeeze, "squeeze") / u
-        h0 = film.law.thickness(assembly, contact, beta)
+        beta, gamma, h0 = constants(film, assembly, contact)
         scale, zero, name = assembly.nominal(contact.delta0), ca.SX(0), contact.label("h")
         self.states = [
             assembly.state(name + "'" * order, "m", scale, zero if order else h0) for order in range(3)
