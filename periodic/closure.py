@@ -17,11 +17,16 @@ from periodic.system import System
 
 @dataclass(frozen=True)
 class Row:
-    """A closure linearised: value, gradient in the mesh-point states (N+1, n) and in y (q,)."""
+    """A closure linearised: value, gradient in the mesh-point states (N+1, n) and in y (q,).
+
+    Where it depends on more, also the gradients in the stages (N, ncol, n) and the unknowns (N, ncol, m).
+    """
 
     value: float
     nodes: Array
     outer: Array
+    stages: Array | None = None
+    algebraic: Array | None = None
 
 
 class Closure(Protocol):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.closure import Row
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
@@ -50,11 +51,6 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
     stages = solve_stages(local, right, weights)
     return Condensed(_steps(orbit, stages), stages, algebraic.reshape(count, ncol, -1, width), residual)
-
-
-def largest_residual(system: System, orbit: Orbit) -> float:
-    """Return the largest residual (scaled) at the collocation points of an orbit."""
-    return _rows(system, orbit, ())[1]
 
 
 def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
@@ -169,3 +165,23 @@ def recover(
         axis=2,
     )
     return stages, -np.einsum("jlmw,jlw->jlm", condensed.algebraic, inner)
+
+
+def reduced(orbit: Orbit, condensed: Condensed, row: Row) -> Row:
+    """Return a closure in mesh-point states and y alone, its stages and unknowns eliminated."""
+    if row.stages is None and row.algebraic is None:
+        return row
+    count, ncol, n = orbit.stages.shape
+    nodes, outer, value = row.nodes.copy(), row.outer.copy(), row.value
+    stages = np.zeros((count, ncol, n)) if row.stages is None else row.stages.copy()
+    if row.algebraic is not None and row.algebraic.size:
+        inner = -np.einsum("jlm,jlmw->jlw", row.algebraic, condensed.algebraic)
+        value += float(inner[..., 0].sum())
+        outer += inner[..., 1 + 2 * n :].sum(axis=(0, 1))
+        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
+        knots = np.einsum("jlk,jln->jkn", weights, inner[..., 1 : 1 + n])
+        nodes[:-1] += knots[:, 0]
+        stages += knots[:, 1:] + inner[..., 1 + n : 1 + 2 * n]
+    each = np.einsum("jln,jlnw->jw", stages, condensed.stages)
+    nodes[:-1] += each[:, 1 : 1 + n]
+    return Row(value + float(each[:, 0].sum()), nodes, outer + each[:, 1 + n :].sum(axis=0))

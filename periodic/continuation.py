@@ -14,8 +14,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from periodic import rotation
-from periodic.adapt import redistribute
 from periodic.closure import Metric, Plane
 from periodic.locate import RejectedError, special_points
 from periodic.newton import Outcome
@@ -35,7 +33,6 @@ from periodic.solve import (
     repeats,
     same,
     settle,
-    wanted_ntst,
 )
 from periodic.stop import Stop
 from periodic.switching import away
@@ -197,7 +194,7 @@ class Run:
         floor = NOISE * task.settings.mesh.tolerance * base.orbit.span()
         if self._bend(base, new, ds) > BENT * ds + floor:
             raise RejectedError("the step does not follow its tangents")
-        if not rotation.is_resolved(base.correction.fundamental, new.correction.fundamental):
+        if not task.method.resolved(base.correction, new.correction):
             raise RejectedError("the multipliers turn too far past 1 for the step")
         return new
 
@@ -213,9 +210,8 @@ class Run:
 
     def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
-        task, anchors = self.task, new.orbit.mesh.anchors
-        shortest = task.settings.mesh.shortest
-        mesh = redistribute(new.orbit, wanted_ntst(task, new), anchors, new.orbit.phases, shortest)
+        task = self.task
+        mesh = task.method.mesh_for(task, new)
         moved = carried(task, base, mesh, base.orbit.phases, base.tangent)
         if isinstance(moved, Outcome):
             raise RejectedError(f"the mesh could not be adapted: {moved.value}")

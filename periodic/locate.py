@@ -66,7 +66,7 @@ def special_points(
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
     found = [_named(task, turn, base, new) for turn in turns]
-    for test in (*events.PASSAGES, *(() if turns or from_turn else (events.BRANCHING,))):
+    for test in (*task.method.passages, *(() if turns or from_turn else task.method.branching)):
         found += _where(task, base, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):

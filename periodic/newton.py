@@ -140,7 +140,8 @@ def linear_step(
     events = [Event(i) for i in range(len(orbit.phases))]
     try:
         condensed = collocation.condense(system, orbit, free)
-        rows = [c.linearise(system, orbit, free) for c in (*events, *closures)]
+        every = (c.linearise(system, orbit, free) for c in (*events, *closures))
+        rows = [collocation.reduced(orbit, condensed, row) for row in every]
         gap = orbit.nodes[-1] - orbit.nodes[0]
         solution = bordered.solve(condensed, gap, rows, with_kernel=bool(closures))
     except FloatingPointError:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from periodic import measure
 from periodic.accuracy import ErrorEstimate
-from periodic.collocation import largest_residual
 from periodic.orbit import Orbit
 from periodic.solve import Solved, Task
 
@@ -89,7 +88,7 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
         minimum=dict(zip(names, map(float, low), strict=True)),
         maximum=dict(zip(names, map(float, high), strict=True)),
         error=solved.error,
-        residual=largest_residual(task.system, solved.orbit),
+        residual=solved.correction.residual,
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
         trivial=float(np.abs(multipliers - 1).min()) if task.autonomous else None,

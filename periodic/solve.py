@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from periodic import anchors
-from periodic.accuracy import LEAST_SPAN, ErrorEstimate, estimate
-from periodic.adapt import redistribute
+from periodic.accuracy import LEAST_SPAN, ErrorEstimate
 from periodic.anchors import Crossing
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
 from periodic.mesh import Mesh
-from periodic.newton import Correction, Outcome, correct, moved
-from periodic.orbit import FORCED, Orbit, transfer
-from periodic.relax import relax
+from periodic.methods.protocol import Method
+from periodic.newton import Correction, Outcome, moved
+from periodic.orbit import FORCED, Orbit
 from periodic.scheme import Array
-from periodic.settings import DEEPEST, Settings
+from periodic.settings import Settings
 from periodic.system import System
-
-AIM = 0.15
-"""The part of the tolerance that a new mesh aims at."""
 
 ROUNDS = 8
 
 
 KEPT = 30.0
 """How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
-
-
-ASIDE = (1.0, 0.0, 10.0)
-"""How far before its kink an anchor begins on a new mesh (rad), in tolerances; tried in turn."""
-
-
-SHALLOWER = (10.0, 100.0)
-"""How much shallower anchors are tried where a new mesh fails."""
 
 
 @dataclass
@@ -47,7 +35,7 @@ class Work:
 
 @dataclass(frozen=True)
 class Task:
-    """What is solved: a system, the continuation parameter's index, the metric and the settings.
+    """What is solved: a system, the continuation parameter's index, the metric, the settings, the method.
 
     `others` are the indices of further free parameters, `conditions` what determines them, one for each.
     """
@@ -56,6 +44,7 @@ class Task:
     index: int
     metric: Metric
     settings: Settings
+    method: Method
     work: Work = field(default_factory=Work)
     others: tuple[int, ...] = ()
     conditions: tuple[Condition, ...] = ()
@@ -108,26 +97,20 @@ def parameter_direction(orbit: Orbit, metric: Metric, others: int = 0) -> Direct
 def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
     closures = [*(condition.at(plane.origin) for condition in task.conditions), plane]
-    result = correct(task.system, guess, task.free, closures, task.settings.newton)
+    result = task.method.correct(task.system, guess, task.free, closures, task.settings.newton)
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
     assert result.kernel is not None
-    if not anchors.genuine(task.system, result.orbit):
+    if not task.method.genuine(task.system, result.orbit):
         return Outcome.ANCHORS_CROSSED
     tangent = result.kernel
     length = np.sqrt(task.metric.dot(result.orbit, tangent, tangent))
     sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
     tangent = tangent.scaled(sign / length)
     origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
-    error = estimate(task.system, result.orbit, result.monodromy, origin, task.free, task.conditions)
-    return Solved(result, tangent, error, _wanted(task, result.orbit, error))
-
-
-def _wanted(task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
-    """Return the crossings to tie the mesh to, at levels that the orbit's own accuracy gives a meaning."""
-    settings, meaningful = task.settings.mesh.anchors, DEEPEST * min(error.orbit, 1.0)
-    return anchors.wanted(task.system, orbit, replace(settings, deepest=max(settings.deepest, meaningful)))
+    error = task.method.estimate(task, result, origin)
+    return Solved(result, tangent, error, task.method.wanted(task, result.orbit, error))
 
 
 def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
@@ -166,31 +149,17 @@ def is_settled(task: Task, solved: Solved) -> bool:
 
 
 def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
-    """Solve again on a mesh made for this orbit: right anchors, right number of intervals.
-
-    Where that fails, anchors at shallower levels are tried: they lie farther before the kink.
-    """
-    return _first_of(_remeshed(task, solved, chosen, fixed) for chosen in _choices(task, solved))
+    """Solve again on a mesh made for this orbit, the first of the method's that succeeds."""
+    choices = task.method.meshes(task, solved)
+    return _first_of(_remeshed(task, solved, mesh, phases, fixed) for mesh, phases in choices)
 
 
-def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:
-    yield solved.wanted
-    settings = task.settings.mesh.anchors
-    levels = [c.anchor.level for c in solved.wanted if c.anchor.level > 0]
-    for factor in SHALLOWER if levels else ():
-        shallower = replace(settings, deepest=factor * min(levels))
-        yield anchors.wanted(task.system, solved.orbit, shallower)
-
-
-def _remeshed(task: Task, solved: Solved, chosen: list[Crossing], fixed: bool) -> Solved | Outcome:
-    old = solved.orbit
-    tied, phases = anchors.placed(task.system, old, chosen)
-    mesh = redistribute(old, wanted_ntst(task, solved), tied, phases, task.settings.mesh.shortest)
+def _remeshed(task: Task, solved: Solved, mesh: Mesh, phases: Array, fixed: bool) -> Solved | Outcome:
+    if not fixed:
+        return carried(task, solved, mesh, phases, solved.tangent)
     sign = float(np.sign(solved.tangent.parameter)) or 1.0
-    if fixed:
-        attempts = (at_parameter(task, guess, sign) for guess in _guesses(task, old, mesh, phases))
-        return _first_of(_unmoved(task, solved, new) for new in attempts)
-    return carried(task, solved, mesh, phases, solved.tangent)
+    guesses = task.method.guesses(task, solved.orbit, mesh, phases)
+    return _first_of(_unmoved(task, solved, at_parameter(task, guess, sign)) for guess in guesses)
 
 
 def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Direction) -> Solved | Outcome:
@@ -201,7 +170,7 @@ def carried(task: Task, solved: Solved, mesh: Mesh, phases: Array, direction: Di
         plane = Plane(guess, on_mesh(direction, old, guess), 0.0, task.metric, task.index)
         return _unmoved(task, solved, on_plane(task, guess, plane))
 
-    return _first_of(attempt(guess) for guess in _guesses(task, old, mesh, phases))
+    return _first_of(attempt(guess) for guess in task.method.guesses(task, old, mesh, phases))
 
 
 def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome:
@@ -219,17 +188,6 @@ def _first_of(attempts: Iterable[Solved | Outcome]) -> Solved | Outcome:
             return attempt
         failures.append(attempt)
     return failures[0]
-
-
-def _guesses(task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
-    """Carry an orbit to another mesh, its anchors a little before their kinks, where they are well defined.
-
-    Past its kink a switch hardly changes, and Newton has nothing to hold on to.
-    """
-    deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.anchors])
-    for aside in ASIDE if deep.any() else (0.0,):
-        shifted = phases + aside * task.settings.mesh.tolerance * deep
-        yield relax(task.system, transfer(old, mesh, shifted))
 
 
 def closes(task: Task, start: Solved, new: Solved) -> bool:
@@ -268,15 +226,6 @@ def distance(task: Task, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     jump = float(b.parameter[task.index] - a.parameter[task.index])
     difference = replace(parameter_direction(a, task.metric), profile=profile, parameter=jump)
     return float(np.sqrt(task.metric.dot(a, difference, difference)))
-
-
-def wanted_ntst(task: Task, solved: Solved) -> int:
-    """The number of intervals that brings the error estimate to its aim."""
-    mesh = task.settings.mesh
-    order = mesh.scheme.ncol + 1
-    ratio = solved.error.worst / (AIM * mesh.tolerance) if np.isfinite(solved.error.worst) else 4.0**order
-    factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
-    return int(np.clip(np.ceil(factor * solved.orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))
 
 
 def on_mesh(direction: Direction, old: Orbit, new: Orbit, later: float = 0.0) -> Direction:

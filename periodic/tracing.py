@@ -14,10 +14,10 @@ from threadpoolctl import threadpool_limits
 from periodic.branch import Branch, Layout, Quantity
 from periodic.closure import Condition, Metric
 from periodic.continuation import Run
-from periodic.mesh import Mesh, uniform
-from periodic.orbit import Orbit, at_rest, transfer
+from periodic.methods.collocation import Collocation
+from periodic.methods.protocol import Method
+from periodic.orbit import Orbit
 from periodic.point import Point
-from periodic.relax import relax
 from periodic.scheme import Array
 from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
@@ -36,6 +36,7 @@ def trace(
     at: float | Sequence[float] = (),
     accuracy: Accuracy = Accuracy.STANDARD,
     settings: Settings | None = None,
+    method: Method | None = None,
     values: Mapping[str, float] | None = None,
     determined: Mapping[str, Condition] | None = None,
     guess: Orbit | None = None,
@@ -72,15 +73,13 @@ def trace(
         index,
         Metric(high - low),
         settings or accuracy.settings(),
+        method or Collocation(),
         others=tuple(index_of(system, name) for name in determined),
         conditions=tuple(determined.values()),
     )
     clock = time.perf_counter()
     fixed = _parameters(system, base, {**(values or {}), parameter: begin})
-    orbit = _rest(task, fixed) if guess is None else _adopted(task, guess, fixed)
-    orbit.parameter[list(task.others)] = (
-        guess.parameter[list(task.others)] if guess else fixed[list(task.others)]
-    )
+    orbit = _start(task, guess, fixed)
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), user, search=guess is None) for _ in signs]
     halves: list[list[Point]] = []
@@ -208,14 +207,10 @@ def _parameters(system: System, base: Array, values: Mapping[str, float]) -> Arr
     return parameter
 
 
-def _adopted(task: Task, guess: Orbit, parameter: Array) -> Orbit:
-    """A guess in the settings' scheme, at the given parameters but for those that are determined."""
-    old, others = guess.mesh, list(task.others)
-    parameter[others] = guess.parameter[others]
-    mesh = Mesh(task.settings.mesh.scheme, old.breaks, old.anchors, old.period)
-    return relax(task.system, replace(transfer(guess, mesh, guess.phases), parameter=parameter))
-
-
-def _rest(task: Task, parameter: Array) -> Orbit:
-    mesh = task.settings.mesh
-    return at_rest(task.system, uniform(mesh.scheme, mesh.ntst), parameter)
+def _start(task: Task, guess: Orbit | None, parameter: Array) -> Orbit:
+    """The first guess: at rest, or the one given at the given parameters, determined ones apart."""
+    system, mesh = task.system, task.settings.mesh
+    if guess is None:
+        return task.method.rest(system, mesh, parameter)
+    parameter[list(task.others)] = guess.parameter[list(task.others)]
+    return task.method.adopted(system, mesh, guess, parameter)

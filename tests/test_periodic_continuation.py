@@ -13,6 +13,7 @@ import periodic as per
 import symbolic as sym
 from periodic.closure import Metric
 from periodic.mesh import uniform
+from periodic.methods.collocation import Collocation
 from periodic.orbit import at_rest
 from periodic.solve import Task
 
@@ -215,7 +216,7 @@ def test_run_is_a_generator() -> None:
     index = [p.name for p in SYSTEM.parameters].index("Omega")
     start = SYSTEM.nominal
     start[index] = RANGE[0]
-    run = per.Run(Task(SYSTEM, index, Metric(RANGE[1] - RANGE[0]), STANDARD.settings()), RANGE)
+    run = per.Run(Task(SYSTEM, index, Metric(RANGE[1] - RANGE[0]), STANDARD.settings(), Collocation()), RANGE)
     points = run.points(at_rest(SYSTEM, uniform(per.Scheme(), 24), start), 1)
     first = [next(points) for _ in range(3)]
     assert run.stop is None
