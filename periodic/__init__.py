@@ -2,14 +2,29 @@
 
 from periodic.branch import Branch, BranchFileError
 from periodic.closure import PhaseCondition
+from periodic.conditions import Level, Peak
 from periodic.continuation import Run
+from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
+from periodic.functionals import (
+    Amplitude,
+    Component,
+    Maximum,
+    Minimum,
+    Multiplier,
+    PeakToPeak,
+    PhaseLag,
+    Value,
+    mean,
+)
+from periodic.label import Label
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
 from periodic.plotting import plot
-from periodic.point import Label, Point
+from periodic.point import Point
 from periodic.sampling import sampled
 from periodic.scheme import Family, Scheme
+from periodic.sensitivity import sensitivities
 from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
 from periodic.switching import SwitchError, branched, doubled
@@ -18,6 +33,21 @@ from periodic.tracing import trace
 
 __all__ = [
     "Accuracy",
+    "Amplitude",
+    "Component",
+    "DoublingCondition",
+    "FoldCondition",
+    "Level",
+    "Maximum",
+    "Minimum",
+    "Multiplier",
+    "Peak",
+    "PeakToPeak",
+    "PhaseLag",
+    "TorusCondition",
+    "Value",
+    "mean",
+    "sensitivities",
     "Branch",
     "BranchFileError",
     "Family",

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.closure import Condition, Plane
+from periodic.closure import Condition, Plane, closures
 from periodic.newton import Outcome, at_fixed_phase, linear_step
 from periodic.orbit import Orbit, bisect
 from periodic.scheme import Array
@@ -51,8 +51,8 @@ def estimate(
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit: of fixed parameters, or of `free` ones on a plane."""
     fine = bisect(orbit)
-    closures = [] if plane is None else [*(c.at(fine) for c in conditions), _moved(plane, fine)]
-    step = linear_step(system, fine, free, closures)
+    closing = [] if plane is None else [*closures(conditions, free[1:], fine), _moved(plane, fine)]
+    step = linear_step(system, fine, free, closing)
     if isinstance(step, Outcome):
         return ErrorEstimate(np.inf, np.inf)
     moved = step.outer[: len(fine.phases)]

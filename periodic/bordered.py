@@ -56,7 +56,7 @@ def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bo
     top = maps[-1].copy()
     top[:, 1 : 1 + n] -= np.eye(n)
     top[:, 0] += gap
-    border = np.array([_reduced(row, maps) for row in rows]).reshape(len(rows), maps.shape[2])
+    border = np.array([reduced(row, maps) for row in rows]).reshape(len(rows), maps.shape[2])
     system = np.concatenate([top, border])
     right = np.zeros((len(system), 2))
     right[:, 0] = -system[:, 0]
@@ -72,7 +72,7 @@ def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bo
     )
 
 
-def _reduced(row: Row, maps: Array) -> Array:
+def reduced(row: Row, maps: Array) -> Array:
     """A closure as a row in (1, dx_0, dy)."""
     reduced = np.einsum("jn,jnw->w", row.nodes, maps)
     reduced[0] += row.value

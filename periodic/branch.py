@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from periodic.point import Label, Point
+from periodic.checkpoint import Checkpoint
+from periodic.label import Label
+from periodic.point import Point
 from periodic.scheme import Array
 from periodic.stop import Stop
 
@@ -41,7 +43,8 @@ class Branch:
     """Points in order along the branch; `parameter` names the one that was continued in.
 
     `stop` says why the branch ended; a branch traced both ways from its start has a second reason in
-    `stop_backwards`. `elapsed` in s.
+    `stop_backwards`. `elapsed` in s. `checkpoints` are where its runs (one or two) stand, for `trace` to
+    resume them; the first `backwards` points are those of the first of two runs.
     """
 
     parameter: str
@@ -52,6 +55,8 @@ class Branch:
     newton_iterations: int = 0
     elapsed: float = 0.0
     versions: dict[str, str] = field(default_factory=dict)
+    checkpoints: tuple[Checkpoint, ...] = ()
+    backwards: int = 0
 
     def __repr__(self) -> str:
         return f"Branch({self.parameter}, {len(self)} points, {self.stop})"
@@ -87,6 +92,16 @@ class Branch:
     def peak_to_peak(self, output: str) -> Array:
         """Maximum minus minimum of an output along the branch (SI), shape (points,)."""
         return np.array([p.peak_to_peak(output) for p in self.points])
+
+    def column(self, name: str) -> Array:
+        """A column asked for, or a parameter (SI), along the branch, shape (points,)."""
+        names = [q.name for q in self.layout.parameters]
+        if name in names:
+            return np.array([p.orbit.parameter[names.index(name)] for p in self.points])
+        known = [*names, *(self.points[0].columns if self.points else ())]
+        if name not in known:
+            raise ValueError(f"column is {name!r}; it must be one of {', '.join(known)}")
+        return np.array([p.columns[name] for p in self.points])
 
     def table(self) -> str:
         """Return one line per point: parameter, peak to peak of each output, largest multiplier, label."""

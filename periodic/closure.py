@@ -5,6 +5,7 @@ Each closure is one scalar equation in the mesh-point states, the anchor phases 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -19,14 +20,23 @@ from periodic.system import System
 class Row:
     """A closure linearised: value, gradient in the mesh-point states (N+1, n) and in y (q,).
 
-    Where it depends on more, also the gradients in the stages (N, ncol, n) and the unknowns (N, ncol, m).
+    Where it depends on the stages too, also the gradient in them, (N, ncol, n).
     """
 
     value: float
     nodes: Array
     outer: Array
     stages: Array | None = None
-    algebraic: Array | None = None
+
+    def scaled(self, factor: float) -> Row:
+        """Return value and gradient times a factor."""
+        stages = None if self.stages is None else factor * self.stages
+        return Row(factor * self.value, factor * self.nodes, factor * self.outer, stages)
+
+    def __add__(self, other: Row) -> Row:
+        both = [row.stages for row in (self, other) if row.stages is not None]
+        stages = np.sum(both, axis=0) if both else None
+        return Row(self.value + other.value, self.nodes + other.nodes, self.outer + other.outer, stages)
 
 
 class Closure(Protocol):
@@ -139,11 +149,41 @@ class Plane:
         return Row(float(value) - self.distance, weighted, outer)
 
 
-class Condition(Protocol):
-    """What determines a further free parameter: a closure that may refer to an earlier orbit."""
+@dataclass(frozen=True)
+class Given:
+    """What else determines an orbit: the further free parameters and as many closures.
 
-    def at(self, origin: Orbit) -> Closure:
+    own: index of the free parameter that a condition is given for.
+    """
+
+    own: int
+    free: tuple[int, ...] = ()
+    closures: tuple[Closure, ...] = ()
+
+
+class Condition(Protocol):
+    """What determines a further free parameter: a closure that may refer to an earlier orbit.
+
+    One that is `intrinsic` belongs to every orbit of the system (a phase condition); others pick points of a
+    branch (its folds, a level of an output), and are told the intrinsic ones.
+    """
+
+    @property
+    def intrinsic(self) -> bool: ...
+
+    def at(self, origin: Orbit, given: Given) -> Closure:
         """Return the closure for orbits near `origin`, on the same mesh."""
+
+
+def closures(conditions: Sequence[Condition], free: Sequence[int], origin: Orbit) -> list[Closure]:
+    """Return the closures of conditions for the parameters `free`, one for each, near an orbit."""
+    both = list(zip(free, conditions, strict=True))
+    own = tuple(k for k, condition in both if condition.intrinsic)
+    basic = tuple(condition.at(origin, Given(k)) for k, condition in both if condition.intrinsic)
+    return [
+        basic[own.index(k)] if condition.intrinsic else condition.at(origin, Given(k, own, basic))
+        for k, condition in both
+    ]
 
 
 @dataclass(frozen=True)
@@ -154,7 +194,9 @@ class PhaseCondition:
     the angular frequency.
     """
 
-    def at(self, origin: Orbit) -> Closure:
+    intrinsic = True
+
+    def at(self, origin: Orbit, given: Given) -> Closure:
         """Return the condition with respect to an orbit."""
         return _Phase(origin)
 

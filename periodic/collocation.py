@@ -167,21 +167,12 @@ def recover(
     return stages, -np.einsum("jlmw,jlw->jlm", condensed.algebraic, inner)
 
 
-def reduced(orbit: Orbit, condensed: Condensed, row: Row) -> Row:
-    """Return a closure in mesh-point states and y alone, its stages and unknowns eliminated."""
-    if row.stages is None and row.algebraic is None:
+def reduced(condensed: Condensed, row: Row) -> Row:
+    """Return a closure in mesh-point states and y alone, its stages eliminated."""
+    if row.stages is None:
         return row
-    count, ncol, n = orbit.stages.shape
-    nodes, outer, value = row.nodes.copy(), row.outer.copy(), row.value
-    stages = np.zeros((count, ncol, n)) if row.stages is None else row.stages.copy()
-    if row.algebraic is not None and row.algebraic.size:
-        inner = -np.einsum("jlm,jlmw->jlw", row.algebraic, condensed.algebraic)
-        value += float(inner[..., 0].sum())
-        outer += inner[..., 1 + 2 * n :].sum(axis=(0, 1))
-        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
-        knots = np.einsum("jlk,jln->jkn", weights, inner[..., 1 : 1 + n])
-        nodes[:-1] += knots[:, 0]
-        stages += knots[:, 1:] + inner[..., 1 + n : 1 + 2 * n]
-    each = np.einsum("jln,jlnw->jw", stages, condensed.stages)
+    n = row.nodes.shape[1]
+    each = np.einsum("jln,jlnw->jw", row.stages, condensed.stages)
+    nodes = row.nodes.copy()
     nodes[:-1] += each[:, 1 : 1 + n]
-    return Row(value + float(each[:, 0].sum()), nodes, outer + each[:, 1 + n :].sum(axis=0))
+    return Row(row.value + float(each[:, 0].sum()), nodes, row.outer + each[:, 1 + n :].sum(axis=0))

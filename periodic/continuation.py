@@ -14,11 +14,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from periodic.checkpoint import Checkpoint
 from periodic.closure import Metric, Plane
-from periodic.locate import RejectedError, special_points
+from periodic.label import Label
+from periodic.locate import Found, RejectedError, special_points
 from periodic.newton import Outcome
 from periodic.orbit import Orbit
-from periodic.point import Label, Point, describe
+from periodic.point import Point, describe
 from periodic.solve import (
     Solved,
     Task,
@@ -34,7 +36,7 @@ from periodic.solve import (
     same,
     settle,
 )
-from periodic.stop import Stop
+from periodic.stop import Reason, Stop
 from periodic.switching import away
 
 WINDOW = 1 / 60
@@ -56,9 +58,27 @@ ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
 
+@dataclass(frozen=True)
+class State:
+    """Where a run stands: its last solution, the first, the next step's size, and what it has counted.
+
+    kept: how many of its points belong to steps that were completed.
+    """
+
+    begun: Solved
+    last: Solved
+    sign: int
+    ds: float
+    steps: int
+    since_remesh: int
+    left: bool
+    met: dict[str, int]
+    kept: int
+
+
 @dataclass
 class Run:
-    """A continuation under way: where it stands and why it stopped.
+    """A continuation under way: its points, where it stands and why it stopped.
 
     `search` allows a first orbit that Newton does not find to be approached from elsewhere.
     """
@@ -68,11 +88,14 @@ class Run:
     user: Sequence[float] = ()
     search: bool = True
     stop: Stop | None = None
+    collected: list[Point] = field(default_factory=list, repr=False)
+    state: State | None = field(default=None, repr=False)
     _since_remesh: int = field(default=0, repr=False)
+    _count: dict[str, int] = field(default_factory=dict, repr=False)
 
     def points(self, start: Orbit, sign: int) -> Iterator[Point]:
         """Yield points from a start orbit, first towards `sign` times the parameter, until `stop` is set."""
-        task, step = self.task, self.task.settings.step
+        task = self.task
         base = self._first(start, float(sign))
         if isinstance(base, Outcome):
             self.stop = Stop.no_start(base)
@@ -85,37 +108,111 @@ class Run:
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )
-        yield describe(task, base, Label.END)
+        task.watch.checked(task.system, base.orbit)
+        yield self._emitted(base, Label.END)
         if _value(task, base) in self.user:
-            yield describe(task, base, Label.USER)
-        ds, count, since = step.ds, 1, _value(task, base)
-        begun, left, sought = base, False, self._sought(since)
-        while count < step.max_points:
+            yield self._emitted(base, Label.USER)
+        self.state = State(base, base, sign, task.settings.step.ds, 0, 0, False, {}, len(self.collected))
+        yield from self._onward(base)
+
+    def resumed(self, start: Orbit, points: list[Point], checkpoint: Checkpoint) -> Iterator[Point]:
+        """Yield the points that follow those of an interrupted run, which began at `start`."""
+        task, c = self.task, checkpoint
+        self.collected, last = points, points[-1].orbit
+        begun = self._first(start, float(c.sign))
+        direction = replace(parameter_direction(last, task.metric), profile=c.profile, parameter=c.slope)
+        again = on_plane(task, last, Plane(last, direction, 0.0, task.metric, task.index))
+        for found in (begun, again):
+            if isinstance(found, Outcome):
+                self.stop = Stop.no_start(found)
+                return
+        assert isinstance(begun, Solved) and isinstance(again, Solved)
+        self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
+        self._since_remesh, self._count = c.since_remesh, dict(c.met)
+        yield from self._onward(self._prepared(again) if c.steps else again)
+
+    @property
+    def checkpoint(self) -> Checkpoint | None:
+        """What it takes to go on after the last completed step."""
+        s = self.state
+        if s is None:
+            return None
+        tangent = s.last.tangent
+        done = self.stop is not None and self.stop.reason not in (Reason.INTERRUPTED, Reason.MAX_POINTS)
+        numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)
+        return Checkpoint(s.sign, tangent.profile, tangent.parameter, *numbers)
+
+    def _onward(self, base: Solved) -> Iterator[Point]:
+        """Take steps from a base, which is the last solution on a mesh for the next one."""
+        assert self.state is not None
+        while self.state.steps + 1 < self.task.settings.step.max_points:
+            taken = self._taken(base)
+            if isinstance(taken, Stop):
+                self.stop = taken
+                yield self._emitted(base, Label.FAILED)
+                return
+            new, ds, specials = taken
+            for special in specials:
+                yield from self._met(special)
+                if self.stop is not None:
+                    return
+            self._completed(new, ds)
+            yield self.collected[-1]
+            base = self._prepared(new)
+        self.stop = Stop.max_points(self.task.settings.step.max_points)
+
+    def _taken(self, base: Solved) -> tuple[Solved, float, list[Found]] | Stop:
+        """Take one step, as long as it can be; return its end, its length and its special points."""
+        assert self.state is not None
+        ds, since = self.state.ds, _value(self.task, self.state.last)
+        sought = self._sought(_value(self.task, self.state.begun))
+        while True:
             try:
                 base, new = self._step(base, ds)
-                specials = special_points(task, base, new, ds, self.bounds, sought, since)
+                return new, ds, special_points(self.task, base, new, ds, self.bounds, sought, since)
             except RejectedError as rejected:
                 ds /= 2
-                if ds < step.ds_min:
-                    self.stop = Stop.small_step(str(rejected))
-                    yield describe(task, base, Label.FAILED)
-                    return
-                continue
-            for special in specials:
-                if left and special.label is Label.USER and closes(task, begun, special.solved):
-                    self.stop = Stop.closed(count)
-                    yield describe(task, special.solved, Label.END)
-                    return
-                if special.label is not Label.USER or _value(task, special.solved) in self.user:
-                    yield describe(task, special.solved, special.label)
-            if any(s.label is Label.END for s in specials):
-                self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
+                if ds < self.task.settings.step.ds_min:
+                    return Stop.small_step(str(rejected))
+
+    def _met(self, special: Found) -> Iterator[Point]:
+        """Yield a special point, and set `stop` where the branch ends there."""
+        assert self.state is not None
+        state, label, own = self.state, special.label, bool(special.name)
+        if label is Label.USER and not own:
+            if state.left and closes(self.task, state.begun, special.solved):
+                self.stop = Stop.closed(state.steps + 1)
+                label = Label.END
+            elif _value(self.task, special.solved) not in self.user:
                 return
-            yield describe(task, new, Label.NONE)
-            count, since, left = count + 1, _value(task, new), left or not same(task, begun, new)
-            ds = self._next_size(ds, new)
-            base = self._prepared(new)
-        self.stop = Stop.max_points(step.max_points)
+        if label is Label.END and self.stop is None:
+            value = _value(self.task, special.solved)
+            self.stop = Stop.limit(special.name) if own else Stop.bound(self.bounds, value)
+        name = special.name if label is Label.USER and own else label.value
+        self._count[name] = self._count.get(name, 0) + 1
+        if self.stop is None and self._count[name] == self.task.watch.stop.get(name):
+            self.stop = Stop.asked(name, self._count[name])
+        yield self._emitted(special.solved, label, special.name if own else "")
+
+    def _emitted(self, solved: Solved, label: Label, event: str = "") -> Point:
+        point = describe(self.task, solved, label, event)
+        self.collected.append(point)
+        return point
+
+    def _completed(self, new: Solved, ds: float) -> None:
+        """Keep a step: its end becomes the last solution."""
+        assert self.state is not None
+        self._emitted(new, Label.NONE)
+        self.state = replace(
+            self.state,
+            last=new,
+            ds=self._next_size(ds, new),
+            steps=self.state.steps + 1,
+            since_remesh=self._since_remesh,
+            left=self.state.left or not same(self.task, self.state.begun, new),
+            met=dict(self._count),
+            kept=len(self.collected),
+        )
 
     def _sought(self, begin: float) -> Sequence[float]:
         """Values at which the branch gets a point: the user's, and where it may meet its own start."""

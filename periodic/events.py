@@ -11,13 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic import rotation
-from periodic.point import Label
-from periodic.solve import Solved, Task
+from periodic.label import Label
+
+if TYPE_CHECKING:
+    from periodic.solve import Solved, Task
 
 Complex = NDArray[np.complex128]
 
@@ -36,7 +39,7 @@ class Test:
     """A function of an orbit that changes sign at special points of one kind.
 
     precision: of its place along the branch, in steps. genuine: whether the zero found is of that kind.
-    twice: whether it may change sign twice between two orbits at which it has the same.
+    twice: whether it may change sign twice between two orbits at which it has the same. name: the user's.
     """
 
     label: Label
@@ -44,6 +47,7 @@ class Test:
     precision: float
     genuine: Callable[[Task, Solved], bool] = lambda task, solved: True
     twice: Callable[[Solved, Solved], bool] = lambda base, new: False
+    name: str = ""
 
 
 def multipliers(task: Task, solved: Solved) -> Complex:
@@ -83,8 +87,13 @@ def _noise(solved: Solved) -> float:
 
 def torus(task: Task, solved: Solved) -> float:
     """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error."""
-    products = _products(multipliers(task, solved))
-    if (np.abs(products - 1) < _noise(solved)).any():
+    return torus_of(multipliers(task, solved), _noise(solved))
+
+
+def torus_of(found: Complex, noise: float) -> float:
+    """The torus test of given multipliers, their products known to within `noise`."""
+    products = _products(found)
+    if (np.abs(products - 1) < noise).any():
         return 0.0
     return float(np.prod((products - 1) / (1 + np.abs(products))).real)
 

@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import optimize
 
-from periodic import events
+from periodic import codimension, events
 from periodic.closure import Plane
 from periodic.events import Test
+from periodic.label import Label
 from periodic.newton import Outcome
-from periodic.point import Label
 from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, predict, settle
 
 MERGED = 0.05
@@ -35,11 +35,12 @@ TRIALS = 15
 
 @dataclass(frozen=True)
 class Found:
-    """A special point at `distance` from the step's base."""
+    """A special point at `distance` from the step's base; `name` is the user's of an event or limit."""
 
     label: Label
     distance: float
     solved: Solved
+    name: str = ""
 
 
 class RejectedError(Exception):
@@ -66,7 +67,7 @@ def special_points(
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
     found = [_named(task, turn, base, new) for turn in turns]
-    for test in (*task.method.passages, *(() if turns or from_turn else task.method.branching)):
+    for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
         found += _where(task, base, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
@@ -75,7 +76,7 @@ def special_points(
         for value, label in [*((v, Label.USER) for v in user), (bound, Label.END)]:
             if first < value <= last or last <= value < first:
                 found.append(_at_value(task, base, begin, end, value, label))
-    found.sort(key=lambda item: item.distance)
+    found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
     labels = [item.label for item in found]
     return found[: labels.index(Label.END) + 1] if Label.END in labels else found
 
@@ -139,12 +140,12 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
         return []
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
-        return [Found(test.label, distance, solved)]
+        return [Found(test.label, distance, solved, test.name)]
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
         if value(ends[0]) * value(ends[1]) < 0:
             solved = _root(task, refined, (-reach, reach), value, test.precision * ds)[1]
-            return [Found(test.label, distance, solved)]
+            return [Found(test.label, distance, solved, test.name)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
 
@@ -153,8 +154,10 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
     more excitation periods later. BP where a multiplier touches 1 without passing it: the branch leaves
-    another there, which goes on.
+    another there, which goes on. On a curve in two parameters it is at most a cusp.
     """
+    if codimension.picked(task) is not None:
+        return replace(turn, label=codimension.turn(task, turn.solved, base, new))
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)

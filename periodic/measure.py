@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,8 +38,18 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
     return system.output(orbit.rate(tau), orbit.state(tau), algebraic, tau, orbit.parameter)
 
 
-def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
-    """Return minimum and maximum (SI) of each output over one period, two arrays of shape (outputs,)."""
+@dataclass(frozen=True)
+class Extremes:
+    """Minimum and maximum (SI) of each output over the period and the phases of both, shape (outputs,)."""
+
+    minimum: Array
+    maximum: Array
+    minimum_phase: Array
+    maximum_phase: Array
+
+
+def extrema(system: System, orbit: Orbit) -> Extremes:
+    """Return the extremes of each output over one period."""
     tau = orbit.stage_phases.ravel()
     flat = (len(tau), -1)
     values = system.output(
@@ -58,8 +70,10 @@ def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
     best, centre, radius = both[index, row], tau[index], half[index]
     for _ in range(ZOOMS):
         best, centre, radius = _zoom(system, orbit, signs, row % count, best, centre, radius)
-    best = best.reshape(2 * count, CANDIDATES).max(axis=1)
-    return -best[:count], best[count:]
+    best, centre = best.reshape(2 * count, CANDIDATES), centre.reshape(2 * count, CANDIDATES)
+    each, top = np.arange(2 * count), best.argmax(axis=1)
+    value, phase = best[each, top], centre[each, top]
+    return Extremes(-value[:count], value[count:], phase[:count], phase[count:])
 
 
 def _candidates(values: Array) -> NDArray[np.int_]:

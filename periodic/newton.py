@@ -141,7 +141,7 @@ def linear_step(
     try:
         condensed = collocation.condense(system, orbit, free)
         every = (c.linearise(system, orbit, free) for c in (*events, *closures))
-        rows = [collocation.reduced(orbit, condensed, row) for row in every]
+        rows = [collocation.reduced(condensed, row) for row in every]
         gap = orbit.nodes[-1] - orbit.nodes[0]
         solution = bordered.solve(condensed, gap, rows, with_kernel=bool(closures))
     except FloatingPointError:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.mesh import Grid, Mesh
 from periodic.scheme import Array
@@ -58,7 +59,7 @@ class Orbit:
         rates = self.knot_rates[:, 0, :]
         return np.concatenate([rates, rates[:1]])
 
-    def locate(self, tau: Array) -> tuple[Array, Array]:
+    def locate(self, tau: Array) -> tuple[NDArray[np.int_], Array]:
         """Return interval index and place theta in [0, 1] within it of each phase."""
         begin = self.grid.left[0]
         wrapped = begin + np.mod(tau - begin, self.mesh.period)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.branch import Branch
-from periodic.point import Label, Point
+from periodic.label import Label
+from periodic.point import Point
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

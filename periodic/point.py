@@ -2,34 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import Enum
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic import measure
+from periodic import codimension, measure
 from periodic.accuracy import ErrorEstimate
+from periodic.label import Label
 from periodic.orbit import Orbit
 from periodic.solve import Solved, Task
-
-
-class Label(Enum):
-    """Special points, as the field names them."""
-
-    NONE = ""
-    END = "EP"
-    FOLD = "LP"
-    DOUBLING = "PD"
-    TORUS = "NS"
-    BRANCH = "BP"
-    USER = "UZ"
-    FAILED = "MX"
-
-    @property
-    def critical(self) -> bool:
-        """Whether a multiplier is on the unit circle there."""
-        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,7 +21,8 @@ class Point:
     minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
     arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there, which tells how
     accurate the multipliers are; None for a forced orbit. A point is stable when all other multipliers lie
-    inside the unit circle; a special point where one is on it is not.
+    inside the unit circle; a special point where one is on it is not, nor a `marginal` one of a curve of such
+    points. event: the user's name of the event met there. columns: functionals asked for, by name.
     """
 
     orbit: Orbit
@@ -53,15 +36,20 @@ class Point:
     iterations: int
     slope: float
     trivial: float | None = None
+    marginal: bool = False
+    event: str = ""
+    columns: dict[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        kind = " ".join(filter(None, [self.label.value, "stable" if self.stable else "unstable"]))
+        kind = " ".join(filter(None, [self.label.value, self.event, "stable" if self.stable else "unstable"]))
         return f"Point({self.parameter:.12g}, {kind})"
 
     @property
     def stable(self) -> bool:
         """Whether all multipliers lie inside the unit circle, the trivial one apart."""
-        return not self.label.critical and bool((np.abs(self.nontrivial) < 1).all())
+        if self.marginal or self.label.critical:
+            return False
+        return bool((np.abs(self.nontrivial) < 1).all())
 
     @property
     def nontrivial(self) -> NDArray[np.complex128]:
@@ -75,9 +63,9 @@ class Point:
         return self.maximum[output] - self.minimum[output]
 
 
-def describe(task: Task, solved: Solved, label: Label) -> Point:
+def describe(task: Task, solved: Solved, label: Label, event: str = "") -> Point:
     """Measure a solved orbit."""
-    low, high = measure.extrema(task.system, solved.orbit)
+    found = measure.extrema(task.system, solved.orbit)
     names = [output.name for output in task.system.outputs]
     multipliers = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
     return Point(
@@ -85,11 +73,14 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
         parameter=float(solved.orbit.parameter[task.index]),
         label=label,
         multipliers=multipliers[np.argsort(-np.abs(multipliers))],
-        minimum=dict(zip(names, map(float, low), strict=True)),
-        maximum=dict(zip(names, map(float, high), strict=True)),
+        minimum=dict(zip(names, map(float, found.minimum), strict=True)),
+        maximum=dict(zip(names, map(float, found.maximum), strict=True)),
         error=solved.error,
         residual=solved.correction.residual,
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
         trivial=float(np.abs(multipliers - 1).min()) if task.autonomous else None,
+        marginal=codimension.marginal(task),
+        event=event,
+        columns=task.watch.measured(task.system, solved.orbit),
     )

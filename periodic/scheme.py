@@ -69,6 +69,13 @@ class Scheme:
         """Weights of the knots' values in the value at 1, shape (ncol+1,)."""
         return self.basis(np.array([1.0]))[0]
 
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the quadrature at the collocation points, shape (ncol,); their sum is 1."""
+        powers = np.arange(self.ncol)
+        moments = np.linalg.solve(self.points[None, :] ** powers[:, None], 1 / (powers + 1))
+        return moments.astype(float, copy=False)
+
     def basis(self, theta: Array) -> Array:
         """Lagrange polynomials of the knots at theta, shape (len(theta), ncol+1)."""
         return lagrange(self.knots, theta)

@@ -10,7 +10,7 @@ import numpy as np
 from periodic import anchors
 from periodic.accuracy import LEAST_SPAN, ErrorEstimate
 from periodic.anchors import Crossing
-from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
+from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane, closures
 from periodic.mesh import Mesh
 from periodic.methods.protocol import Method
 from periodic.newton import Correction, Outcome, moved
@@ -18,6 +18,7 @@ from periodic.orbit import FORCED, Orbit
 from periodic.scheme import Array
 from periodic.settings import Settings
 from periodic.system import System
+from periodic.watch import Watch
 
 ROUNDS = 8
 
@@ -37,7 +38,8 @@ class Work:
 class Task:
     """What is solved: a system, the continuation parameter's index, the metric, the settings, the method.
 
-    `others` are the indices of further free parameters, `conditions` what determines them, one for each.
+    `others` are the indices of further free parameters, `conditions` what determines them, one for each;
+    `watch` is what else is looked for.
     """
 
     system: System
@@ -48,6 +50,7 @@ class Task:
     work: Work = field(default_factory=Work)
     others: tuple[int, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    watch: Watch = field(default_factory=Watch)
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -96,8 +99,8 @@ def parameter_direction(orbit: Orbit, metric: Metric, others: int = 0) -> Direct
 
 def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
-    closures = [*(condition.at(plane.origin) for condition in task.conditions), plane]
-    result = task.method.correct(task.system, guess, task.free, closures, task.settings.newton)
+    closing = [*closures(task.conditions, task.others, plane.origin), plane]
+    result = task.method.correct(task.system, guess, task.free, closing, task.settings.newton)
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome

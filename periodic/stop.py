@@ -13,6 +13,7 @@ class Reason(Enum):
 
     BOUND = "bound reached"
     CLOSED = "branch closed"
+    ASKED = "stopped as asked"
     MAX_POINTS = "largest number of points reached"
     SMALL_STEP = "step size below its minimum"
     NO_START = "no orbit found at the start"
@@ -40,6 +41,16 @@ class Stop:
         """The parameter reached an end of its range."""
         side = "lower" if abs(value - bounds[0]) < abs(value - bounds[1]) else "upper"
         return cls(Reason.BOUND, f"{side} end of the range")
+
+    @classmethod
+    def limit(cls, name: str) -> Stop:
+        """Another parameter reached an end of its limits."""
+        return cls(Reason.BOUND, name)
+
+    @classmethod
+    def asked(cls, name: str, count: int) -> Stop:
+        """The branch has as many points of a kind as were asked for."""
+        return cls(Reason.ASKED, f"{name} met {count} time{'s' if count > 1 else ''}")
 
     @classmethod
     def closed(cls, count: int) -> Stop:

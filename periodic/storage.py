@@ -10,6 +10,7 @@ import hashlib
 import io
 import json
 import os
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +19,15 @@ import xarray as xr
 
 from periodic.accuracy import ErrorEstimate
 from periodic.branch import Branch, BranchFileError, Layout, Quantity
+from periodic.checkpoint import Checkpoint
+from periodic.label import Label
 from periodic.mesh import Anchor, Mesh
 from periodic.orbit import Orbit
-from periodic.point import Label, Point
+from periodic.point import Point
 from periodic.scheme import Family, Scheme
 from periodic.stop import Reason, Stop
 
-FORMAT = "orbitrace branch 2"
+FORMAT = "orbitrace branch 3"
 
 
 def save(branch: Branch, path: Path) -> None:
@@ -90,11 +93,15 @@ def dataset(branch: Branch) -> xr.Dataset:
         "newton_iterations": [p.iterations for p in points],
         "slope": [p.slope for p in points],
         "trivial": [np.nan if p.trivial is None else p.trivial for p in points],
+        "marginal": [p.marginal for p in points],
+        "event": [p.event for p in points],
     }
     data = xr.Dataset({name: ("point", np.array(column)) for name, column in per_point.items()})
     outputs = [q.name for q in branch.layout.outputs]
     for name, extreme in (("minimum", [p.minimum for p in points]), ("maximum", [p.maximum for p in points])):
         data[name] = (("point", "output"), _table([[e[o] for o in outputs] for e in extreme], len(outputs)))
+    columns = list(points[0].columns) if points else []
+    data["columns"] = (("point", "column"), _table([[*p.columns.values()] for p in points], len(columns)))
     states = len(branch.layout.states)
     for part, take in (("real", np.real), ("imag", np.imag)):
         data[f"multiplier_{part}"] = (
@@ -105,6 +112,9 @@ def dataset(branch: Branch) -> xr.Dataset:
         ("point", "parameter"),
         _table([p.orbit.parameter for p in points], len(branch.layout.parameters)),
     )
+    profiles = [c.profile for c in branch.checkpoints]
+    data["checkpoint_nodes"] = ("checkpoint", np.array([len(p) for p in profiles], dtype=int))
+    data["checkpoint_profile"] = (("checkpoint_node", "state"), _joined(profiles, (states,)))
     _add_orbits(data, branch)
     data.attrs = _attributes(branch)
     return data
@@ -156,7 +166,15 @@ def _attributes(branch: Branch) -> dict[str, Any]:
         "newton_iterations": branch.newton_iterations,
         "elapsed_s": branch.elapsed,
         "versions": json.dumps(branch.versions),
+        "columns": json.dumps(list(branch.points[0].columns) if branch.points else []),
+        "checkpoints": json.dumps([_progress(c) for c in branch.checkpoints]),
+        "backwards": branch.backwards,
     }
+
+
+def _progress(checkpoint: Checkpoint) -> dict[str, Any]:
+    """A checkpoint without its profile."""
+    return {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint) if f.name != "profile"}
 
 
 def _branch(data: xr.Dataset) -> Branch:
@@ -172,7 +190,15 @@ def _branch(data: xr.Dataset) -> Branch:
         newton_iterations=int(data.attrs["newton_iterations"]),
         elapsed=float(data.attrs["elapsed_s"]),
         versions=json.loads(data.attrs["versions"]),
+        checkpoints=_checkpoints(data),
+        backwards=int(data.attrs["backwards"]),
     )
+
+
+def _checkpoints(data: xr.Dataset) -> tuple[Checkpoint, ...]:
+    profiles = np.split(data["checkpoint_profile"].values, np.cumsum(data["checkpoint_nodes"].values)[:-1])
+    numbers = json.loads(data.attrs["checkpoints"])
+    return tuple(Checkpoint(profile=p, **n) for n, p in zip(numbers, profiles, strict=False))
 
 
 def _stop(pair: list[str]) -> Stop:
@@ -180,7 +206,7 @@ def _stop(pair: list[str]) -> Stop:
 
 
 def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
-    names = [q.name for q in layout.outputs]
+    names, columns = [q.name for q in layout.outputs], json.loads(data.attrs["columns"])
 
     def number(name: str) -> float:
         return float(data[name].values[i])
@@ -197,6 +223,9 @@ def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
         iterations=int(number("newton_iterations")),
         slope=number("slope"),
         trivial=None if np.isnan(number("trivial")) else number("trivial"),
+        marginal=bool(data["marginal"].values[i]),
+        event=str(data["event"].values[i]),
+        columns=dict(zip(columns, map(float, data["columns"].values[i]), strict=True)),
     )
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic import bordered, collocation
-from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
+from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane, closures
 from periodic.mesh import Mesh
 from periodic.newton import Outcome, correct
 from periodic.orbit import Orbit
@@ -89,8 +89,8 @@ def _switched(
     direction = replace(direction, others=np.zeros(len(determined)))
     direction = direction.scaled(1 / float(np.sqrt(metric.dot(origin, direction, direction))))
     plane = Plane(origin, direction, length, metric, free[0])
-    closures = [*(condition.at(origin) for condition in determined.values()), plane]
-    found = correct(system, along(system, free, origin, direction, length), free, closures)
+    closing = [*closures(list(determined.values()), free[1:], origin), plane]
+    found = correct(system, along(system, free, origin, direction, length), free, closing)
     if found.outcome is not Outcome.CONVERGED:
         raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
     return found.orbit

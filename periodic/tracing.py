@@ -13,7 +13,9 @@ from threadpoolctl import threadpool_limits
 
 from periodic.branch import Branch, Layout, Quantity
 from periodic.closure import Condition, Metric
+from periodic.conditions import Level
 from periodic.continuation import Run
+from periodic.functionals import Functional
 from periodic.methods.collocation import Collocation
 from periodic.methods.protocol import Method
 from periodic.orbit import Orbit
@@ -23,6 +25,7 @@ from periodic.settings import Accuracy, Settings
 from periodic.solve import Task
 from periodic.stop import Reason, Stop
 from periodic.system import System, VariableLike, index_of
+from periodic.watch import Watch
 
 Progress = Callable[[Point], None]
 
@@ -40,6 +43,11 @@ def trace(
     values: Mapping[str, float] | None = None,
     determined: Mapping[str, Condition] | None = None,
     guess: Orbit | None = None,
+    columns: Mapping[str, Functional] | None = None,
+    events: Mapping[str, Level] | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    stop: Mapping[str, int] | None = None,
+    resume: Branch | None = None,
     progress: Progress | None = None,
 ) -> Branch:
     """Trace the branch of periodic orbits through `start` within `bounds`.
@@ -50,9 +58,17 @@ def trace(
     excitation period or several; it brings its parameters and a start of its own (default: the system's
     nominal ones and bounds[0]), which `values` (SI, by name) and `start` replace. `determined` are further
     free parameters with the conditions that determine them: {"omega": PhaseCondition()} for an autonomous
-    system with a parameter omega = 2 pi / period. An interrupt (Ctrl-C) returns the branch so far. A
-    numerical failure is the branch's `stop`. Raises ValueError, in one sentence, for a parameter, bound or
-    value that is not allowed.
+    system with a parameter omega = 2 pi / period, {"preload": FoldCondition()} for the curve that a fold
+    traces in two parameters, {"preload": Level(PeakToPeak("x"), 1e-5)} for orbits of constant ripple.
+
+    `columns` are functionals of the orbit kept at each point; `events` levels of functionals that get a point
+    (UZ); `limits` ranges of other parameters that end the branch; `stop` ends it at the n-th point of a label
+    or event, {"LP": 2}, counted from the start in each direction. `method` is the discretisation (default:
+    Collocation()).
+
+    An interrupt (Ctrl-C) returns the branch so far; `resume` takes such a branch up where it stands, with all
+    other arguments as before. A numerical failure is the branch's `stop`. Raises ValueError, in one sentence,
+    for a parameter, bound or value that is not allowed.
     """
     _checked(system, accuracy)
     index = index_of(system, parameter)
@@ -68,6 +84,7 @@ def trace(
         if not low <= value <= high:
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     determined = determined or {}
+    watch = Watch(columns or {}, events or {}, limits or {}, stop or {})
     task = Task(
         system,
         index,
@@ -76,58 +93,93 @@ def trace(
         method or Collocation(),
         others=tuple(index_of(system, name) for name in determined),
         conditions=tuple(determined.values()),
+        watch=watch,
     )
     clock = time.perf_counter()
-    fixed = _parameters(system, base, {**(values or {}), parameter: begin})
-    orbit = _start(task, guess, fixed)
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), user, search=guess is None) for _ in signs]
-    halves: list[list[Point]] = []
+    if resume is None:
+        orbit = _start(task, guess, _parameters(system, base, {**(values or {}), parameter: begin}))
+        generators = [run.points(orbit, sign) for run, sign in zip(runs, signs, strict=True)]
+    else:
+        generators = _taken_up(runs, signs, parameter, layout_of(system), resume)
     with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
-        for run, sign in zip(runs, signs, strict=True):
-            halves.append(_collect(run, run.points(orbit, sign), progress))
+        for run, points in zip(runs, generators, strict=True):
+            _collect(run, points, progress)
             if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
                 break
-    return _joined(system, parameter, runs, halves, time.perf_counter() - clock)
+    return _joined(system, parameter, runs, time.perf_counter() - clock, resume)
 
 
-def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> list[Point]:
-    collected: list[Point] = []
+def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> None:
+    """Let a run go on to its end, or to an interrupt: then what its last step began is left out."""
     try:
         for point in points:
-            collected.append(point)
             if progress is not None:
                 progress(point)
     except KeyboardInterrupt:
-        run.stop = Stop(Reason.INTERRUPTED, f"after {len(collected)} points")
-    return collected
+        del run.collected[run.state.kept if run.state else 1 :]
+        run.stop = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
 
 
-def _joined(
-    system: System, parameter: str, runs: list[Run], halves: list[list[Point]], elapsed: float
-) -> Branch:
-    """One branch out of one or two runs from the same start."""
-    two = len(halves) == 2 and len(halves[1]) > 0
-    points = [*_reversed(halves[0]), *halves[1]] if two else halves[0]
-    stop, backwards = (runs[1].stop, runs[0].stop) if two else (runs[0].stop, None)
-    assert stop is not None
+def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
+    """One branch out of one or two runs from the same start, and what was spent on it before."""
+    reached = [run for run in runs if run.stop is not None]
+    last, first = reached[-1], _reversed(runs[0].collected) if len(reached) == 2 else []
+    assert last.stop is not None
     return Branch(
         parameter=parameter,
         layout=layout_of(system),
-        points=tuple(points),
-        stop=stop,
-        stop_backwards=backwards,
-        newton_iterations=runs[0].task.work.iterations,
-        elapsed=elapsed,
+        points=(*first, *(last.collected or runs[0].collected[:1])),
+        stop=last.stop,
+        stop_backwards=runs[0].stop if len(reached) == 2 else None,
+        newton_iterations=runs[0].task.work.iterations + (before.newton_iterations if before else 0),
+        elapsed=elapsed + (before.elapsed if before else 0.0),
         versions=_versions("orbitrace", "numpy", "scipy"),
+        checkpoints=tuple(run.checkpoint for run in runs if run.checkpoint is not None),
+        backwards=len(first),
     )
+
+
+def _taken_up(
+    runs: list[Run], signs: list[int], parameter: str, layout: Layout, branch: Branch
+) -> list[Iterator[Point]]:
+    """The runs of an interrupted branch, each from where it stands. Raises ValueError for another one."""
+    if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
+        raise ValueError(
+            f"resume is a branch in {branch.parameter} with {len(branch)} points; it must be one in "
+            f"{parameter} of this system, with points"
+        )
+    begun = {c.sign: c for c in branch.checkpoints}
+    if not set(begun) <= set(signs):
+        raise ValueError("resume is a branch with another start; start and bounds must be as before")
+    start = branch.points[branch.backwards]
+    own = [[*branch.points[branch.backwards :]]]
+    if branch.backwards:
+        own.insert(0, [start, *_turned(branch.points[: branch.backwards])])
+    stops = [branch.stop_backwards or branch.stop, branch.stop]
+    generators: list[Iterator[Point]] = []
+    for run, sign, stop in zip(runs, signs, stops, strict=False):
+        checkpoint = begun.get(sign)
+        if checkpoint is None:
+            generators.append(run.points(start.orbit, sign))
+        elif checkpoint.done:
+            run.collected, run.stop = own.pop(0), stop
+            generators.append(iter(()))
+        else:
+            generators.append(run.resumed(start.orbit, own.pop(0), checkpoint))
+    return generators
 
 
 def _reversed(half: list[Point]) -> list[Point]:
     """A half run backwards as the first part of a branch, without its start."""
     start = half[0].parameter
-    away = [p for i, p in enumerate(half) if i > 1 or p.parameter != start]
-    return [replace(point, slope=-point.slope) for point in reversed(away)]
+    return _turned([p for i, p in enumerate(half) if i > 1 or p.parameter != start])
+
+
+def _turned(points: Sequence[Point]) -> list[Point]:
+    """Points in the opposite order."""
+    return [replace(point, slope=-point.slope) for point in reversed(points)]
 
 
 def _versions(*names: str) -> dict[str, str]:

@@ -20,6 +20,7 @@ from symbolic.assembly import Assembly
 from symbolic.kernel import batch, build, points, vector
 from symbolic.model import Model, Part
 from symbolic.parts.contact import Junction
+from symbolic.second import Gradient, Symbols, contraction
 from symbolic.variables import SwitchInfo, Variable
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ class Linearisation:
     """Residual and derivatives at N points (n states, m unknowns, q free parameters).
 
     residual (N, n+m); d_rate, d_state (N, n+m, n); d_algebraic (N, n+m, m); d_phase (N, n+m);
-    d_parameter (N, n+m, q). Rows n.. are the algebraic rows.
+    d_parameter (N, n+m, q). Rows n.. are the algebraic rows. Outputs are linearised in the same shapes.
     """
 
     residual: Array
@@ -77,6 +78,7 @@ class CompiledSystem:
     switches: tuple[SwitchInfo, ...]
     expressions: Expressions = field(repr=False)
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
+    _gradients: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
 
     @property
     def nominal(self) -> Array:
@@ -100,12 +102,28 @@ class CompiledSystem:
         free: tuple[int, ...] = (),
     ) -> Linearisation:
         """Return residual and derivatives; `free` are the indices of the parameters to differentiate in."""
-        points_, n, m = len(phase), len(self.states), len(self.algebraics)
-        shapes = [(n + m,), (n + m, n), (n + m, n), (n + m, m), (n + m,), (n + m, len(free))]
-        arrays = [np.zeros((points_, *shape)) for shape in shapes]
-        with np.errstate(all="ignore"):
-            self._jacobian_kernel(free)(rate, state, algebraic, phase, parameter, *_columns(*arrays))
-        return Linearisation(*arrays)
+        kernel = self._derivatives(self._jacobians, self.expressions.residual, free)
+        rows = len(self.states) + len(self.algebraics)
+        return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter))
+
+    def output_gradient(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        free: tuple[int, ...] = (),
+    ) -> Linearisation:
+        """Return the outputs (SI) as `residual`, and their derivatives."""
+        kernel = self._derivatives(self._gradients, self.expressions.outputs, free)
+        return self._linearised(kernel, len(self.outputs), free, (rate, state, algebraic, phase, parameter))
+
+    @cached_property
+    def curvature(self) -> Callable[..., Gradient]:
+        """Contracted second derivatives of the residual: see `symbolic.second.contraction`."""
+        e = self.expressions
+        return contraction(Symbols(e.rate, e.state, e.algebraic, e.phase, e.parameter), e.residual)
 
     def move(self, algebraic: Array, increment: Array) -> Array:
         """Return where Newton increments take the unknowns, both of shape (N, m)."""
@@ -180,15 +198,26 @@ class CompiledSystem:
         gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
         return build([state, phase, parameter], gradients)
 
-    def _jacobian_kernel(self, free: tuple[int, ...]) -> Callable[..., None]:
-        if free not in self._jacobians:
+    def _derivatives(
+        self, known: dict[tuple[int, ...], Callable[..., None]], rows: ca.SX, free: tuple[int, ...]
+    ) -> Callable[..., None]:
+        """The kernel of some rows and their derivatives, made once for each choice of free parameters."""
+        if free not in known:
             e = self.expressions
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
-            variables = (e.rate, e.state, e.algebraic, e.phase)
-            results = [e.residual, *(ca.jacobian(e.residual, v) for v in variables)]
-            results.append(ca.jacobian(e.residual, chosen))
-            self._jacobians[free] = build(self._arguments, results)
-        return self._jacobians[free]
+            variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
+            known[free] = build(self._arguments, [rows, *(ca.jacobian(rows, v) for v in variables)])
+        return known[free]
+
+    def _linearised(
+        self, kernel: Callable[..., None], rows: int, free: tuple[int, ...], at: tuple[Array, ...]
+    ) -> Linearisation:
+        n, m = len(self.states), len(self.algebraics)
+        shapes = [(rows,), (rows, n), (rows, n), (rows, m), (rows,), (rows, len(free))]
+        arrays = [np.zeros((len(at[3]), *shape)) for shape in shapes]
+        with np.errstate(all="ignore"):
+            kernel(*at, *_columns(*arrays))
+        return Linearisation(*arrays)
 
 
 def _columns(*arrays: Array) -> list[Array]:

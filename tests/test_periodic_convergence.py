@@ -113,8 +113,8 @@ def test_extremes_are_those_of_the_continuous_orbit() -> None:
     orbit = solved(system, per.Scheme(per.Family.RADAU, 7), 8).orbit
     omega, zeta, force = system.nominal
     amplitude = force / abs(1 - omega**2 + 2j * zeta * omega)
-    low, high = per.extrema(system, orbit)
-    assert [-low[0], high[0]] == pytest.approx([amplitude, amplitude], rel=1e-7)
+    found = per.extrema(system, orbit)
+    assert [-found.minimum[0], found.maximum[0]] == pytest.approx([amplitude, amplitude], rel=1e-7)
     assert np.abs(orbit.knots[..., 0]).max() < amplitude * (1 - 1e-4)
 
 

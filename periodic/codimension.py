@@ -1,0 +1,100 @@
+"""What is looked for along a branch, and along curves of its special points in a second parameter.
+
+On a curve of folds, doublings or tori one multiplier (or a pair's product) stays where it is; test functions
+leave it out. With d_i = mu_i - 1 (or + 1) the second multiplier gets there where the sum of the products of
+all d_i but one vanishes, which is smooth where two multipliers coincide.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from periodic import events
+from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
+from periodic.events import Test
+from periodic.label import Label
+
+if TYPE_CHECKING:
+    from periodic.closure import Condition
+    from periodic.solve import Solved, Task
+
+PRECISION = 1e-10
+
+REVERSED = 0.05
+"""At a cusp both parameters turn: the second one's rate is this part of that at the step's ends at most."""
+
+
+def second_at(task: Task, solved: Solved, at: float) -> float:
+    """Sum of the products of all (mu_i - at) / (1 + |mu_i|) but one, the trivial multiplier left out."""
+    found = events.multipliers(task, solved)
+    factors = np.poly((found - at) / (1 + np.abs(found)))
+    return float(factors[-2].real)
+
+
+def _cosine(task: Task, solved: Solved) -> float:
+    """Half the sum of the pair whose product is 1: the cosine of its angle while it is complex."""
+    found = events.multipliers(task, solved)
+    first, second = np.triu_indices(len(found), 1)
+    nearest = np.abs(found[first] * found[second] - 1).argmin()
+    return float((found[first[nearest]] + found[second[nearest]]).real) / 2
+
+
+def _torus_beside(task: Task, solved: Solved) -> float:
+    """The torus test of the multipliers without the one that is held on the unit circle."""
+    found = events.multipliers(task, solved)
+    return events.torus_of(np.delete(found, np.abs(np.abs(found) - 1).argmin()), 0.0)
+
+
+FOLDS = (
+    Test(Label.RESONANCE_1, lambda task, solved: second_at(task, solved, 1.0), PRECISION),
+    Test(Label.FOLD_DOUBLING, events.doubling, PRECISION),
+    Test(Label.FOLD_TORUS, _torus_beside, PRECISION),
+)
+DOUBLINGS = (
+    Test(Label.RESONANCE_2, lambda task, solved: second_at(task, solved, -1.0), PRECISION),
+    Test(Label.FOLD_DOUBLING, events.branching, PRECISION),
+    Test(Label.DOUBLING_TORUS, _torus_beside, PRECISION),
+)
+TORI = (
+    Test(Label.RESONANCE_1, lambda task, solved: _cosine(task, solved) - 1.0, PRECISION),
+    Test(Label.RESONANCE_2, lambda task, solved: _cosine(task, solved) + 1.0, PRECISION),
+    Test(Label.RESONANCE_3, lambda task, solved: _cosine(task, solved) + 0.5, PRECISION),
+    Test(Label.RESONANCE_4, _cosine, PRECISION),
+)
+CURVES = {FoldCondition: FOLDS, DoublingCondition: DOUBLINGS, TorusCondition: TORI}
+
+
+def picked(task: Task) -> Condition | None:
+    """Return the condition that picks the orbits of a curve, if there is one."""
+    return next((c for c in task.conditions if not c.intrinsic), None)
+
+
+def marginal(task: Task) -> bool:
+    """Whether a multiplier is held on the unit circle."""
+    return type(picked(task)) in CURVES
+
+
+def sought(task: Task, turned: bool) -> tuple[Test, ...]:
+    """Return the tests for special points within a step; `turned` if the parameter turns in it.
+
+    On a curve of orbits at a level, or of peaks, the folds of the branches that it crosses are where a
+    multiplier is 1.
+    """
+    condition, method = picked(task), task.method
+    if condition is None:
+        return method.passages + (() if turned else method.branching)
+    if type(condition) in CURVES:
+        return CURVES[type(condition)]
+    return (*method.passages, Test(Label.FOLD, events.branching, PRECISION))
+
+
+def turn(task: Task, found: Solved, base: Solved, new: Solved) -> Label:
+    """Return what a turn of the parameter is on a curve: a cusp where its other parameter turns too."""
+    if not isinstance(picked(task), FoldCondition):
+        return Label.NONE
+    own = next(k for k, c in enumerate(task.conditions) if not c.intrinsic)
+    rates = [float(s.tangent.others[own]) for s in (found, base, new)]
+    reverses = rates[1] * rates[2] < 0 and abs(rates[0]) < REVERSED * max(map(abs, rates[1:]))
+    return Label.CUSP if reverses else Label.NONE

@@ -1,0 +1,104 @@
+"""Conditions that pick orbits of a branch by what they do: an output at a given level, or at its peak."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from periodic.adjoint import Linear, Tangent, gradient
+from periodic.closure import Closure, Given, Row
+from periodic.functionals import Functional, Smooth
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System, differentiable
+
+STEP = 1e-5
+"""Step, in peak-to-peak values, of differences of a functional's derivative: they only steer Newton."""
+
+
+def smooth(functional: Functional) -> Smooth:
+    """Return the functional as one with a derivative. Raises ValueError if it has none."""
+    if not hasattr(functional, "linearise"):
+        raise ValueError(
+            f"functional is {functional!r}, which has no derivative; it must be one of periodic's own, or "
+            f"have a method linearise(system, orbit, free)"
+        )
+    return functional  # type: ignore[return-value]
+
+
+@dataclass(frozen=True)
+class Level:
+    """A functional of the orbit has a given value (SI): f = value."""
+
+    functional: Functional
+    value: float
+    intrinsic = False
+
+    def at(self, origin: Orbit, given: Given) -> Closure:
+        """Return the condition near an orbit."""
+        return _Level(smooth(self.functional), self.value)
+
+
+@dataclass(frozen=True)
+class _Level:
+    functional: Smooth
+    value: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return f - value and its gradient."""
+        row = self.functional.linearise(system, orbit, free)
+        return Row(row.value - self.value, row.nodes, row.outer, row.stages)
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A functional is stationary along the branch in the parameter that this condition is given for.
+
+    With t the branch's tangent, df/du t = 0: a resonance peak (or a trough), on either side of a fold.
+    """
+
+    functional: Functional
+    intrinsic = False
+
+    def at(self, origin: Orbit, given: Given) -> Closure:
+        """Return the condition near an orbit."""
+        return _Peak(smooth(self.functional), given)
+
+
+@dataclass
+class _Peak:
+    functional: Smooth
+    given: Given
+    across: Array | None = field(default=None)
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return df/du t and its gradient; t is the kernel of the branch's equations, c' t = 1."""
+        given = (*self.given.free, self.given.own)
+        linear = Linear.about(differentiable(system), orbit, given)
+        rows = [closure.linearise(system, orbit, given) for closure in self.given.closures]
+        n = orbit.nodes.shape[1]
+        top = linear.columns(linear.maps[-1])
+        top[:, :n] -= np.eye(n)
+        matrix = np.concatenate([top, *(linear.functional(row)[None] for row in rows)])
+        if self.across is None:
+            self.across = np.linalg.svd(matrix)[2][-1]
+        bordered = np.concatenate([matrix, self.across[None]])
+        direction = np.linalg.solve(bordered, np.append(np.zeros(len(matrix)), 1.0))
+        aim = self.functional.linearise(system, orbit, given)
+        slope = linear.functional(Row(0.0, aim.nodes, aim.outer, aim.stages))
+        weights = -np.linalg.solve(bordered.T, slope)[:-1]
+        source = linear.source(weights[:n]) + Row(0.0, aim.nodes, aim.outer, aim.stages)
+        for weight, row in zip(weights[n:], rows, strict=True):
+            source += row.scaled(float(weight))
+        tangent = linear.tangent(direction)
+        found = gradient(linear, tangent, source, free)
+        found += self._bent(system, orbit, tangent, free)
+        return Row(float(slope @ direction), found.nodes, found.outer, found.stages)
+
+    def _bent(self, system: System, orbit: Orbit, tangent: Tangent, free: tuple[int, ...]) -> Row:
+        """Return the second derivative of the functional along the tangent, by differences."""
+        size = STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
+        ends = [self.functional.linearise(system, tangent.moved(orbit, h), free) for h in (size, -size)]
+        row = (ends[0] + ends[1].scaled(-1.0)).scaled(1 / (2 * size))
+        return Row(0.0, row.nodes, row.outer, row.stages)

@@ -1,0 +1,111 @@
+"""Gradients at points along an orbit, gathered into a gradient in the orbit's own numbers.
+
+A point lies at theta in interval j. With B the Lagrange polynomials of the knots and D their derivatives,
+
+    x = B(theta) knots_j,   x' = B(theta) D knots_j / width_j,   tau = left_j + theta width_j,
+
+and z follows from the algebraic rows. Anchors move tau and stretch the intervals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.closure import Row
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import GradientLike, LinearisationLike, System
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points of an orbit: interval index (N,), place theta in it (N,), and what the equations take there."""
+
+    index: NDArray[np.int_]
+    theta: Array
+    phase: Array
+    rate: Array
+    state: Array
+    algebraic: Array
+
+    def arguments(self, orbit: Orbit) -> tuple[Array, Array, Array, Array, Array]:
+        """Return (x', x, z, tau, p)."""
+        return self.rate, self.state, self.algebraic, self.phase, orbit.parameter
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of a sum over points: rate, state (N, n), algebraic (N, m), phase (N,), parameter (q,)."""
+
+    rate: Array
+    state: Array
+    algebraic: Array
+    phase: Array
+    parameter: Array
+
+    @staticmethod
+    def of(gradient: GradientLike, free: tuple[int, ...]) -> Slopes:
+        """Return the slopes of a sum whose gradient at each point is given, in the parameters `free`."""
+        parameter = gradient.parameter.sum(axis=0)[list(free)]
+        return Slopes(gradient.rate, gradient.state, gradient.algebraic, gradient.phase, parameter)
+
+
+def collocation_points(orbit: Orbit) -> Points:
+    """Return the collocation points of an orbit, interval by interval."""
+    count, ncol, n = orbit.stages.shape
+    return Points(
+        np.repeat(np.arange(count), ncol),
+        np.tile(orbit.mesh.scheme.points, count),
+        orbit.stage_phases.ravel(),
+        orbit.knot_rates[:, 1:].reshape(-1, n),
+        orbit.stages.reshape(-1, n),
+        orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
+    )
+
+
+def gathered(system: System, orbit: Orbit, points: Points, slopes: Slopes, free: tuple[int, ...]) -> Row:
+    """Return the gradient of a sum over points as a row of value 0 (or what the algebraic rows still leave).
+
+    Raises numpy.linalg.LinAlgError where the algebraic rows do not determine z.
+    """
+    value, slopes = _without_algebraic(system, orbit, points, slopes, free)
+    scheme, width = orbit.mesh.scheme, orbit.grid.width[points.index]
+    basis = scheme.basis(points.theta)
+    rates = basis @ scheme.differentiation / width[:, None]
+    each = basis[:, :, None] * slopes.state[:, None] + rates[:, :, None] * slopes.rate[:, None]
+    knots = np.zeros_like(orbit.knots)
+    np.add.at(knots, points.index, each)
+    nodes = np.zeros_like(orbit.nodes)
+    nodes[:-1] = knots[:, 0]
+    left, stretch = orbit.grid.left_gradient[points.index], orbit.grid.width_gradient[points.index]
+    moved = slopes.phase @ (left + points.theta[:, None] * stretch)
+    shorter = (np.einsum("pn,pn->p", slopes.rate, points.rate) / width) @ stretch
+    return Row(value, nodes, np.append(moved - shorter, slopes.parameter), knots[:, 1:])
+
+
+def _without_algebraic(
+    system: System, orbit: Orbit, points: Points, slopes: Slopes, free: tuple[int, ...]
+) -> tuple[float, Slopes]:
+    """Eliminate z through the algebraic rows: dz = -R_z^-1 (R + R_x' dx' + R_x dx + R_tau dtau + R_p dp)."""
+    if slopes.algebraic.shape[1] == 0:
+        return 0.0, slopes
+    n = slopes.state.shape[1]
+    line = system.linearise(*points.arguments(orbit), free)
+    left = -solved(line, slopes.algebraic)
+    return float((left * line.residual[:, n:]).sum()), Slopes(
+        slopes.rate + np.einsum("pm,pmn->pn", left, line.d_rate[:, n:]),
+        slopes.state + np.einsum("pm,pmn->pn", left, line.d_state[:, n:]),
+        np.zeros_like(slopes.algebraic),
+        slopes.phase + np.einsum("pm,pm->p", left, line.d_phase[:, n:]),
+        slopes.parameter + np.einsum("pm,pmq->q", left, line.d_parameter[:, n:]),
+    )
+
+
+def solved(line: LinearisationLike, right: Array) -> Array:
+    """Solve with the transposed derivative of the algebraic rows in z, one right-hand side a point (N, m)."""
+    n = line.d_state.shape[2]
+    transposed = np.swapaxes(line.d_algebraic[:, n:], 1, 2)
+    return np.linalg.solve(transposed, right[:, :, None])[..., 0].astype(float, copy=False)

@@ -1,0 +1,67 @@
+"""What is watched along a branch besides its stability: columns, events, limits, and when to stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from periodic.conditions import Level
+from periodic.events import Test
+from periodic.functionals import Functional, Value
+from periodic.label import Label
+from periodic.orbit import Orbit
+from periodic.system import System, index_of
+
+
+@dataclass(frozen=True)
+class Watch:
+    """columns: functionals by the names of their columns. events: levels of functionals by name; where one
+    is passed the branch gets a point (UZ). limits: ranges of parameters (SI) that end the branch. stop: after
+    how many points of a label or event it ends.
+    """
+
+    columns: Mapping[str, Functional] = field(default_factory=dict)
+    events: Mapping[str, Level] = field(default_factory=dict)
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    stop: Mapping[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        known = [*(label.value for label in Label if label.value), *self.events]
+        for name, count in self.stop.items():
+            if name not in known:
+                raise ValueError(f"stop has {name!r}; it must name a label or an event: {', '.join(known)}")
+            if isinstance(count, bool) or not (isinstance(count, int) and count >= 1):
+                raise ValueError(f"stop of {name} is {count!r}; it must be a whole number of at least 1")
+        for name, event in self.events.items():
+            if not isinstance(event, Level):
+                raise ValueError(f"event {name} is {event!r}; it must be a Level(functional, value)")
+        for name, ends in self.limits.items():
+            low, high = ends
+            if not (math.isfinite(low) and math.isfinite(high) and low < high):
+                raise ValueError(f"limits of {name} are {ends}; they must be two rising finite numbers")
+
+    def tests(self) -> tuple[Test, ...]:
+        """Return the test functions of events and limits."""
+        events = [_passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
+        limits = [
+            _passing(Value(name), value, Label.END, f"{side} limit of {name}")
+            for name, ends in self.limits.items()
+            for side, value in zip(("lower", "upper"), ends, strict=True)
+        ]
+        return (*events, *limits)
+
+    def measured(self, system: System, orbit: Orbit) -> dict[str, float]:
+        """Return the columns of an orbit."""
+        return {name: float(functional(system, orbit)) for name, functional in self.columns.items()}
+
+    def checked(self, system: System, orbit: Orbit) -> None:
+        """Raise ValueError if an orbit to start from lies outside the limits."""
+        for name, (low, high) in self.limits.items():
+            value = float(orbit.parameter[index_of(system, name)])
+            if not low <= value <= high:
+                raise ValueError(f"{name} is {value} at the start; its limits are {low} to {high}")
+
+
+def _passing(functional: Functional, level: float, label: Label, name: str) -> Test:
+    return Test(label, lambda task, solved: functional(task.system, solved.orbit) - level, 1e-10, name=name)
