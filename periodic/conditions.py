@@ -85,20 +85,23 @@ class _Peak:
             self.across = np.linalg.svd(matrix)[2][-1]
         bordered = np.concatenate([matrix, self.across[None]])
         direction = np.linalg.solve(bordered, np.append(np.zeros(len(matrix)), 1.0))
-        aim = self.functional.linearise(system, orbit, given)
-        slope = linear.functional(Row(0.0, aim.nodes, aim.outer, aim.stages))
+        aim = self.functional.linearise(system, orbit, free)
+        k = len(orbit.phases)
+        own = [*range(k), *(k + free.index(i) for i in given)]
+        along = Row(0.0, aim.nodes, aim.outer[own], aim.stages)
+        slope = linear.functional(along)
         weights = -np.linalg.solve(bordered.T, slope)[:-1]
-        source = linear.source(weights[:n]) + Row(0.0, aim.nodes, aim.outer, aim.stages)
+        source = linear.source(weights[:n]) + along
         for weight, row in zip(weights[n:], rows, strict=True):
             source += row.scaled(float(weight))
         tangent = linear.tangent(direction)
         found = gradient(linear, tangent, source, free)
-        found += self._bent(system, orbit, tangent, free)
+        found += self._bent(system, orbit, tangent, aim, free)
         return Row(float(slope @ direction), found.nodes, found.outer, found.stages)
 
-    def _bent(self, system: System, orbit: Orbit, tangent: Tangent, free: tuple[int, ...]) -> Row:
-        """Return the second derivative of the functional along the tangent, by differences."""
+    def _bent(self, system: System, orbit: Orbit, tangent: Tangent, aim: Row, free: tuple[int, ...]) -> Row:
+        """Return the second derivative of the functional along the tangent, by a difference."""
         size = STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
-        ends = [self.functional.linearise(system, tangent.moved(orbit, h), free) for h in (size, -size)]
-        row = (ends[0] + ends[1].scaled(-1.0)).scaled(1 / (2 * size))
+        further = self.functional.linearise(system, tangent.moved(orbit, size), free)
+        row = (further + aim.scaled(-1.0)).scaled(1 / size)
         return Row(0.0, row.nodes, row.outer, row.stages)

@@ -80,7 +80,8 @@ class State:
 class Run:
     """A continuation under way: its points, where it stands and why it stopped.
 
-    `search` allows a first orbit that Newton does not find to be approached from elsewhere.
+    `search` allows a first orbit that Newton does not find to be approached from elsewhere. `ended` is where
+    a run stood that had come to its end before.
     """
 
     task: Task
@@ -90,6 +91,7 @@ class Run:
     stop: Stop | None = None
     collected: list[Point] = field(default_factory=list, repr=False)
     state: State | None = field(default=None, repr=False)
+    ended: Checkpoint | None = field(default=None, repr=False)
     _since_remesh: int = field(default=0, repr=False)
     _count: dict[str, int] = field(default_factory=dict, repr=False)
 
@@ -136,7 +138,7 @@ class Run:
         """What it takes to go on after the last completed step."""
         s = self.state
         if s is None:
-            return None
+            return self.ended
         tangent = s.last.tangent
         done = self.stop is not None and self.stop.reason not in (Reason.INTERRUPTED, Reason.MAX_POINTS)
         numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)

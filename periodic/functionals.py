@@ -97,8 +97,12 @@ class PeakToPeak:
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return value and gradient."""
-        largest, least = Maximum(self.output), Minimum(self.output)
-        return largest.linearise(system, orbit, free) + least.linearise(system, orbit, free).scaled(-1.0)
+        found, k = measure.extrema(system, orbit), output_index(system, self.output)
+        rows = (
+            _at_extremum(differentiable(system), orbit, k, phases, free)
+            for phases in (found.maximum_phase, found.minimum_phase)
+        )
+        return next(rows) + next(rows).scaled(-1.0)
 
 
 @dataclass(frozen=True)

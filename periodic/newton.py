@@ -150,7 +150,7 @@ def linear_step(
         return Outcome.SINGULAR
     stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
-    size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
+    size, length = _sizes(system, orbit, solution.nodes, stages, change, solution.outer, free)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
         solution.nodes,
@@ -166,17 +166,26 @@ def linear_step(
 
 
 def _sizes(
-    orbit: Orbit, nodes: Array, stages: Array, algebraic: Array, outer: Array, free: tuple[int, ...]
+    system: System,
+    orbit: Orbit,
+    nodes: Array,
+    stages: Array,
+    algebraic: Array,
+    outer: Array,
+    free: tuple[int, ...],
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
-    For convergence the unknowns count with their square: that is what the last step leaves of them, and
-    rounding in the rates of very short intervals keeps their own increments from falling further. For
-    damping they count the less in short intervals, over whose width they hardly act on the states.
+    A parameter's counts relative to its value or its nominal one, whichever is larger. For convergence the
+    unknowns count with their square: that is what the last step leaves of them, and rounding in the rates of
+    very short intervals keeps their own increments from falling further. For damping they count the less in
+    short intervals, over whose width they hardly act on the states.
     """
     k = len(orbit.phases)
     sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
-    sizes += [abs(d) / max(abs(orbit.parameter[i]), 1e-300) for d, i in zip(outer[k:], free, strict=True)]
+    chosen = list(free)
+    scales = np.maximum(np.abs(orbit.parameter[chosen]), np.abs(system.nominal[chosen]))
+    sizes += list(np.abs(outer[k:]) / np.where(scales > 0, scales, 1.0))
     regular = float(max(sizes))
     unknowns = (np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     width = orbit.grid.width

@@ -87,8 +87,9 @@ class Scheme:
 
 def lagrange(knots: Array, theta: Array) -> Array:
     """Lagrange polynomials of `knots` at `theta`, shape (len(theta), len(knots))."""
-    result = np.ones((len(theta), len(knots)))
-    for i, knot in enumerate(knots):
-        for other in np.delete(knots, i):
-            result[:, i] *= (theta - other) / (knot - other)
-    return result
+    gaps = knots[:, None] - knots + np.eye(len(knots))
+    factors = np.ones((len(knots) + 2, len(theta)))  # one on either side
+    factors[1:-1] = theta - knots[:, None]
+    before = np.cumprod(factors[:-2], axis=0)
+    after = np.cumprod(factors[:1:-1], axis=0)[::-1]
+    return (before * after / gaps.prod(axis=1)[:, None]).T

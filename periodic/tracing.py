@@ -164,7 +164,7 @@ def _taken_up(
         if checkpoint is None:
             generators.append(run.points(start.orbit, sign))
         elif checkpoint.done:
-            run.collected, run.stop = own.pop(0), stop
+            run.collected, run.stop, run.ended = own.pop(0), stop, checkpoint
             generators.append(iter(()))
         else:
             generators.append(run.resumed(start.orbit, own.pop(0), checkpoint))
