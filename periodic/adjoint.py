@@ -94,7 +94,10 @@ class Linear:
 
 
 def gradient(linear: Linear, tangent: Tangent, source: Row, free: tuple[int, ...]) -> Row:
-    """Return the gradient of source . v in the orbit and the parameters `free`, as a row of value 0."""
+    """Return the gradient of source . v in the orbit and the parameters `free`.
+
+    The row's value is what the algebraic rows, not yet met, will add.
+    """
     system, orbit = linear.system, linear.orbit
     points = collocation_points(orbit)
     line = system.linearise(*points.arguments(orbit), ())
@@ -114,7 +117,7 @@ def gradient(linear: Linear, tangent: Tangent, source: Row, free: tuple[int, ...
     slope = np.einsum("pr,prn,pn->p", weights, line.d_rate, rates)
     outer = row.outer
     outer[: len(orbit.phases)] -= _stretched(orbit, points, slope)
-    return Row(0.0, row.nodes, outer, row.stages)
+    return Row(row.value, row.nodes, outer, row.stages)
 
 
 def _stretched(orbit: Orbit, points: Points, slope: Array) -> Array:

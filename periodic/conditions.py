@@ -97,7 +97,8 @@ class _Peak:
         tangent = linear.tangent(direction)
         found = gradient(linear, tangent, source, free)
         found += self._bent(system, orbit, tangent, aim, free)
-        return Row(float(slope @ direction), found.nodes, found.outer, found.stages)
+        value = float(slope @ direction) + found.value
+        return Row(value, found.nodes, found.outer, found.stages)
 
     def _bent(self, system: System, orbit: Orbit, tangent: Tangent, aim: Row, free: tuple[int, ...]) -> Row:
         """Return the second derivative of the functional along the tangent, by a difference."""

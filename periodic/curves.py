@@ -101,7 +101,7 @@ class _Singular:
         for weight, row in zip(left[n:], rows, strict=True):
             source += row.scaled(float(weight))
         found = gradient(linear, linear.tangent(right), source, free).scaled(-1.0)
-        return Row(value, found.nodes, found.outer, found.stages)
+        return Row(value + found.value, found.nodes, found.outer, found.stages)
 
 
 @dataclass

@@ -240,7 +240,7 @@ class Multiplier:
         source = (linear.source(left.real), linear.source(-left.imag))
         row = gradient(linear, linear.tangent(right.real), source[0], free)
         row += gradient(linear, linear.tangent(right.imag), source[1], free)
-        return Row(self._taken(value), row.nodes, row.outer, row.stages)
+        return Row(self._taken(value) + row.value, row.nodes, row.outer, row.stages)
 
     def _taken(self, value: complex) -> float:
         return {"modulus": abs(value), "real": value.real, "imaginary": value.imag}[self.part]
@@ -274,7 +274,7 @@ def _at_extremum(
         line.d_parameter[0, output],
     )
     row = gathered(system, orbit, points, slopes, free)
-    return Row(float(line.residual[0, output]), row.nodes, row.outer, row.stages)
+    return Row(float(line.residual[0, output]) + row.value, row.nodes, row.outer, row.stages)
 
 
 def _points(system: System, orbit: Orbit, tau: Array) -> Points:
