@@ -1,8 +1,9 @@
 """What a periodic orbit is: collocation, continuation, stability. Knows only the `System` protocol."""
 
 from periodic.branch import Branch, BranchFileError
-from periodic.closure import PhaseCondition
+from periodic.closure import Conservative, PhaseCondition
 from periodic.continuation import Run
+from periodic.equilibria import equilibria
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
@@ -20,6 +21,7 @@ __all__ = [
     "Accuracy",
     "Branch",
     "BranchFileError",
+    "Conservative",
     "Family",
     "Label",
     "MeshSettings",
@@ -37,6 +39,7 @@ __all__ = [
     "System",
     "branched",
     "doubled",
+    "equilibria",
     "extrema",
     "outputs",
     "plot",

@@ -158,7 +158,9 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)
-    return replace(turn, label=Label.BRANCH) if events.touches(task, base, new) else turn
+    tests = (*task.method.passages, *task.method.branching)
+    labels = [test.label for test in tests if test.touches(task, turn.solved, base, new)]
+    return replace(turn, label=labels[0]) if labels else turn
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:

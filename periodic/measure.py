@@ -38,6 +38,9 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
 
 def extrema(system: System, orbit: Orbit) -> tuple[Array, Array]:
     """Return minimum and maximum (SI) of each output over one period, two arrays of shape (outputs,)."""
+    if orbit.equilibrium:
+        values = outputs(system, orbit, np.zeros(1))[0]
+        return values, values
     tau = orbit.stage_phases.ravel()
     flat = (len(tau), -1)
     values = system.output(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -20,6 +20,10 @@ MAX_CHANGE = 2.0
 
 SHORT = 1e-3
 """Width (rad) of intervals below which their unknowns count less in damping."""
+
+
+NEGLIGIBLE = 1e-3
+"""Change of the scaled states that a parameter about zero is compared with."""
 
 
 class Outcome(Enum):
@@ -84,24 +88,29 @@ class Step:
     kernel: Direction | None
 
 
+LinearStep = Callable[[System, Orbit, tuple[int, ...], Sequence[Closure]], Step | Outcome]
+
+
 def correct(
     system: System,
     guess: Orbit,
     free: tuple[int, ...] = (),
     closures: Sequence[Closure] = (),
     settings: NewtonSettings | None = None,
+    increment: LinearStep | None = None,
 ) -> Correction:
     """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
 
-    The outcome is on the result; nothing is raised for a numerical failure.
+    `increment` gives one Newton step (default: that of the collocation equations). The outcome is on the
+    result; nothing is raised for a numerical failure.
     """
-    settings = settings or NewtonSettings()
+    settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
     base: tuple[Orbit, Step] | None = None
     factor = 1.0
     while iterations < settings.max_iterations:
         iterations += 1
-        trial = linear_step(system, orbit, free, closures)
+        trial = increment(system, orbit, free, closures)
         worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
             factor /= 4
@@ -123,7 +132,7 @@ def correct(
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
     if outcome is Outcome.CONVERGED:
-        last = linear_step(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+        last = increment(system, orbit, free, closures)  # multipliers and tangent of the final orbit
         if isinstance(last, Outcome):
             outcome = last
         else:
@@ -150,7 +159,8 @@ def linear_step(
         return Outcome.SINGULAR
     stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
-    size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
+    effect = orbit.mesh.ntst * np.abs(condensed.stages[..., 1 + orbit.nodes.shape[1] :]).max(axis=(0, 1, 2))
+    size, length = sizes(orbit, solution.nodes, stages, change, solution.outer, free, effect)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
         solution.nodes,
@@ -165,18 +175,27 @@ def linear_step(
     )
 
 
-def _sizes(
-    orbit: Orbit, nodes: Array, stages: Array, algebraic: Array, outer: Array, free: tuple[int, ...]
+def sizes(
+    orbit: Orbit,
+    nodes: Array,
+    stages: Array,
+    algebraic: Array,
+    outer: Array,
+    free: tuple[int, ...],
+    effect: Array,
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
     For convergence the unknowns count with their square: that is what the last step leaves of them, and
     rounding in the rates of very short intervals keeps their own increments from falling further. For
-    damping they count the less in short intervals, over whose width they hardly act on the states.
+    damping they count the less in short intervals, over whose width they hardly act on the states. Free
+    parameters count relative to their values, or where these are about zero to what changes the states by
+    NEGLIGIBLE; effect (q,) is the states' change with each of y.
     """
     k = len(orbit.phases)
     sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
-    sizes += [abs(d) / max(abs(orbit.parameter[i]), 1e-300) for d, i in zip(outer[k:], free, strict=True)]
+    least = NEGLIGIBLE / np.maximum(effect[k:], 1e-300)
+    sizes += list(np.abs(outer[k:]) / np.maximum(np.abs(orbit.parameter[list(free)]), least))
     regular = float(max(sizes))
     unknowns = (np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     width = orbit.grid.width

@@ -23,13 +23,21 @@ class Label(Enum):
     DOUBLING = "PD"
     TORUS = "NS"
     BRANCH = "BP"
+    HOPF = "HB"
     USER = "UZ"
     FAILED = "MX"
 
     @property
     def critical(self) -> bool:
-        """Whether a multiplier is on the unit circle there."""
-        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH)
+        """Whether a multiplier is on the unit circle, an eigenvalue on the imaginary axis there."""
+        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH, Label.HOPF)
+
+
+CONSERVED = 100.0
+"""What lies within so many errors of the multipliers from 1 cannot be told from it,"""
+
+ROUNDING = 1e-10
+"""... or within this."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,9 +45,11 @@ class Point:
     """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
 
     minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
-    arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there, which tells how
-    accurate the multipliers are; None for a forced orbit. A point is stable when all other multipliers lie
-    inside the unit circle; a special point where one is on it is not.
+    arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there (two of a
+    conservative one), which tells how accurate the multipliers are; None for a forced orbit. A point is
+    stable when all other multipliers lie inside the unit circle (of a conservative orbit: on it, within their
+    error); a special point where one is on it is not. Of an equilibrium the multipliers are the eigenvalues
+    of its Jacobian (1/s), largest real part first, and it is stable when all real parts are negative.
     """
 
     orbit: Orbit
@@ -53,6 +63,7 @@ class Point:
     iterations: int
     slope: float
     trivial: float | None = None
+    conservative: bool = False
 
     def __repr__(self) -> str:
         kind = " ".join(filter(None, [self.label.value, "stable" if self.stable else "unstable"]))
@@ -60,19 +71,39 @@ class Point:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle, the trivial one apart."""
-        return not self.label.critical and bool((np.abs(self.nontrivial) < 1).all())
+        """Whether small disturbances die away, or of a conservative orbit stay small."""
+        if self.equilibrium:
+            return not self.label.critical and bool((self.multipliers.real < 0).all())
+        slack = CONSERVED * self.error.multiplier + ROUNDING if self.conservative else 0.0
+        return not self.label.critical and bool((np.abs(self.nontrivial) < 1 + slack).all())
+
+    @property
+    def equilibrium(self) -> bool:
+        """Whether the orbit is constant."""
+        return self.orbit.equilibrium
 
     @property
     def nontrivial(self) -> NDArray[np.complex128]:
-        """The multipliers without the trivial one of an autonomous orbit, largest first."""
-        if self.trivial is None:
-            return self.multipliers
-        return np.delete(self.multipliers, np.abs(self.multipliers - 1).argmin())
+        """The multipliers without those that are 1 whatever the parameters, largest first."""
+        return without_unit(self.multipliers, 0 if self.trivial is None else 1 + self.conservative)
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output."""
         return self.maximum[output] - self.minimum[output]
+
+
+def without_unit(multipliers: NDArray[np.complex128], count: int) -> NDArray[np.complex128]:
+    """Return the multipliers without the `count` that are nearest 1."""
+    return np.delete(multipliers, np.abs(multipliers - 1).argsort(kind="stable")[:count])
+
+
+def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
+    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None of none.
+
+    Unlike those themselves, which all but coincide, they are as accurate as the other multipliers.
+    """
+    nearest = multipliers[np.abs(multipliers - 1).argsort()[:count]]
+    return float(max(abs(nearest.mean() - 1), abs(nearest.prod() - 1))) if count else None
 
 
 def describe(task: Task, solved: Solved, label: Label) -> Point:
@@ -80,16 +111,18 @@ def describe(task: Task, solved: Solved, label: Label) -> Point:
     low, high = measure.extrema(task.system, solved.orbit)
     names = [output.name for output in task.system.outputs]
     multipliers = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
+    order = -multipliers.real if solved.orbit.equilibrium else -np.abs(multipliers)
     return Point(
         orbit=solved.orbit,
         parameter=float(solved.orbit.parameter[task.index]),
         label=label,
-        multipliers=multipliers[np.argsort(-np.abs(multipliers))],
+        multipliers=multipliers[np.argsort(order, kind="stable")],
         minimum=dict(zip(names, map(float, low), strict=True)),
         maximum=dict(zip(names, map(float, high), strict=True)),
         error=solved.error,
         residual=solved.correction.residual,
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
-        trivial=float(np.abs(multipliers - 1).min()) if task.autonomous else None,
+        trivial=_distance(multipliers, task.unit),
+        conservative=task.unit > 1,
     )

@@ -55,9 +55,14 @@ class Task:
         return (self.index, *self.others)
 
     @property
+    def unit(self) -> int:
+        """How many multipliers of the orbits are 1 whatever the parameters."""
+        return max((c.unit for c in self.conditions if isinstance(c, PhaseCondition)), default=0)
+
+    @property
     def autonomous(self) -> bool:
         """Whether the orbits have a multiplier that is 1 whatever the parameters."""
-        return any(isinstance(condition, PhaseCondition) for condition in self.conditions)
+        return self.unit > 0
 
 
 @dataclass(frozen=True)
@@ -149,9 +154,10 @@ def is_settled(task: Task, solved: Solved) -> bool:
 
 
 def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
-    """Solve again on a mesh made for this orbit, the first of the method's that succeeds."""
+    """Solve again on a mesh made for this orbit, the first of the method's that succeeds, if it has any."""
     choices = task.method.meshes(task, solved)
-    return _first_of(_remeshed(task, solved, mesh, phases, fixed) for mesh, phases in choices)
+    attempts = (_remeshed(task, solved, mesh, phases, fixed) for mesh, phases in choices)
+    return _first_of(attempts, otherwise=solved)
 
 
 def _remeshed(task: Task, solved: Solved, mesh: Mesh, phases: Array, fixed: bool) -> Solved | Outcome:
@@ -180,14 +186,16 @@ def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome
     return new
 
 
-def _first_of(attempts: Iterable[Solved | Outcome]) -> Solved | Outcome:
-    """Return the first solution, or the first failure if there is none."""
+def _first_of(
+    attempts: Iterable[Solved | Outcome], otherwise: Solved | Outcome = Outcome.MOVED
+) -> Solved | Outcome:
+    """Return the first solution, or the first failure if there is none; `otherwise` of no attempts."""
     failures: list[Outcome] = []
     for attempt in attempts:
         if isinstance(attempt, Solved):
             return attempt
         failures.append(attempt)
-    return failures[0]
+    return failures[0] if failures else otherwise
 
 
 def closes(task: Task, start: Solved, new: Solved) -> bool:

@@ -1,0 +1,102 @@
+"""The equations of an equilibrium, 0 = R(0, x, z, p), linearised, and one Newton step on them.
+
+With R_x' dx' + R_x dx + R_z dz = 0 small motion is dx' = J dx, J the upper part of -[R_x' R_z]^-1 R_x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.closure import Closure, Direction
+from periodic.newton import Outcome, Step, moved, sizes
+from periodic.orbit import Orbit
+from periodic.scheme import Array
+from periodic.system import System
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The equations at an equilibrium: residual (n+m,), derivatives in x' (n+m, n) and in the
+    unknowns (x, z, p), (n+m, n+m+q).
+    """
+
+    residual: Array
+    d_rate: Array
+    d_unknown: Array
+
+    @property
+    def jacobian(self) -> Array:
+        """J per unit of tau, shape (n, n). Raises numpy.linalg.LinAlgError where x' is not determined."""
+        n, count = self.d_rate.shape[1], len(self.residual)
+        rates = np.hstack([self.d_rate, self.d_unknown[:, n:count]])
+        return np.linalg.solve(rates, -self.d_unknown[:, :n])[:n].astype(float, copy=False)
+
+
+def rows_at(system: System, orbit: Orbit, free: tuple[int, ...]) -> Rows:
+    """Linearise at an equilibrium. Raises FloatingPointError where the equations are not finite."""
+    state, algebraic = orbit.nodes[:1], orbit.algebraic[:1, 0]
+    line = system.linearise(np.zeros_like(state), state, algebraic, np.zeros(1), orbit.parameter, free)
+    unknown = np.concatenate([line.d_state, line.d_algebraic, line.d_parameter], axis=2)[0]
+    if not (np.isfinite(line.residual).all() and np.isfinite(unknown).all()):
+        raise FloatingPointError("the residual or a derivative is not finite")
+    return Rows(line.residual[0], line.d_rate[0], unknown)
+
+
+def increment(
+    system: System, orbit: Orbit, free: tuple[int, ...], closures: Sequence[Closure]
+) -> Step | Outcome:
+    """Return one Newton step for state, unknowns and free parameters, or why there is none."""
+    n = orbit.nodes.shape[1]
+    try:
+        rows = rows_at(system, orbit, free)
+        border = [_flat(closure, system, orbit, free) for closure in closures]
+        matrix = np.vstack([rows.d_unknown, *(gradient for _, gradient in border)])
+        right = np.zeros((len(matrix), 2))
+        right[:, 0] = -np.append(rows.residual, [value for value, _ in border])
+        right[-1, 1] = 1.0
+        solution, kernel = np.linalg.solve(matrix, right).T
+        jacobian = rows.jacobian
+    except FloatingPointError:
+        return Outcome.NOT_FINITE
+    except np.linalg.LinAlgError:
+        return Outcome.SINGULAR
+    step = _direction(orbit, solution, 0)
+    change = moved(system, orbit.algebraic, step.algebraic) - orbit.algebraic
+    outer = solution[len(rows.residual) :]
+    unit = np.abs(rows.d_unknown[:, :n]).max()
+    effect = np.abs(rows.d_unknown[:, len(rows.residual) :]).max(axis=0) / unit if unit else 0 * outer
+    size, length = sizes(orbit, step.nodes, step.stages, change, outer, free, effect)
+    along = _direction(orbit, kernel, len(free)) if free else None
+    residual = float(np.abs(rows.residual).max())
+    return Step(step.nodes, step.stages, step.algebraic, outer, size, length, residual, jacobian[None], along)
+
+
+def _flat(closure: Closure, system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[float, Array]:
+    """A closure's value and its gradient in (x, z, p)."""
+    row = closure.linearise(system, orbit, free)
+    state = row.nodes.sum(axis=0)
+    algebraic = np.zeros(orbit.algebraic.shape[2])
+    if row.stages is not None:
+        state = state + row.stages.sum(axis=(0, 1))
+    if row.algebraic is not None:
+        algebraic = row.algebraic.sum(axis=(0, 1))
+    return row.value, np.concatenate([state, algebraic, row.outer])
+
+
+def _direction(orbit: Orbit, vector: Array, free: int) -> Direction:
+    """(x, z, p) as a direction of constant orbits."""
+    n, m = orbit.nodes.shape[1], orbit.algebraic.shape[2]
+    nodes = np.broadcast_to(vector[:n], orbit.nodes.shape)
+    outer = vector[n + m :] if free else np.zeros(1)
+    return Direction(
+        nodes=nodes,
+        stages=np.broadcast_to(vector[:n], orbit.stages.shape),
+        algebraic=np.broadcast_to(vector[n : n + m], orbit.algebraic.shape),
+        phases=np.zeros(0),
+        profile=nodes,
+        parameter=float(outer[0]),
+        others=outer[1:],
+    )
