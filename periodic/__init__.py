@@ -6,6 +6,7 @@ from periodic.continuation import Run
 from periodic.equilibria import equilibria
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
+from periodic.onset import eigenvalues, hopf, mode
 from periodic.orbit import Orbit
 from periodic.plotting import plot
 from periodic.point import Label, Point
@@ -39,8 +40,11 @@ __all__ = [
     "System",
     "branched",
     "doubled",
+    "eigenvalues",
     "equilibria",
     "extrema",
+    "hopf",
+    "mode",
     "outputs",
     "plot",
     "sampled",

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,12 +28,22 @@ class Rows:
     d_rate: Array
     d_unknown: Array
 
+    @cached_property
+    def _rates(self) -> Array:
+        """(x', z) as a map of x, shape (n+m, n). Raises numpy.linalg.LinAlgError where not determined."""
+        n, count = self.d_rate.shape[1], len(self.residual)
+        rates = np.hstack([self.d_rate, self.d_unknown[:, n:count]])
+        return np.linalg.solve(rates, -self.d_unknown[:, :n]).astype(float, copy=False)
+
     @property
     def jacobian(self) -> Array:
         """J per unit of tau, shape (n, n). Raises numpy.linalg.LinAlgError where x' is not determined."""
-        n, count = self.d_rate.shape[1], len(self.residual)
-        rates = np.hstack([self.d_rate, self.d_unknown[:, n:count]])
-        return np.linalg.solve(rates, -self.d_unknown[:, :n])[:n].astype(float, copy=False)
+        return self._rates[: self.d_rate.shape[1]]
+
+    @property
+    def unknowns(self) -> Array:
+        """dz = U dx in small motion, shape (m, n)."""
+        return self._rates[self.d_rate.shape[1] :]
 
 
 def rows_at(system: System, orbit: Orbit, free: tuple[int, ...]) -> Rows:

@@ -105,12 +105,12 @@ def doubles_twice(base: Solved, new: Solved) -> bool:
     """
     ends = [np.linalg.eigvals(end.correction.monodromy) for end in (base, new)]
     negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
-    return max(negative) > 1 or rotation.passes(base.correction.fundamental, new.correction.fundamental, -1)
+    return max(negative) > 1 or rotation.passes(base.correction, new.correction, -1)
 
 
 def branches_twice(base: Solved, new: Solved) -> bool:
     """Whether a pair of multipliers turns past +1 between two orbits."""
-    return rotation.passes(base.correction.fundamental, new.correction.fundamental, 1)
+    return rotation.passes(base.correction, new.correction, 1)
 
 
 TURN = Test(Label.FOLD, slope, 1e-6)

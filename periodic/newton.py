@@ -56,7 +56,8 @@ class NewtonSettings:
 class Correction:
     """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
 
-    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n).
+    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). unit: how many multipliers are 1
+    whatever the parameters.
     """
 
     orbit: Orbit
@@ -66,6 +67,7 @@ class Correction:
     residual: float
     fundamental: Array
     kernel: Direction | None
+    unit: int = 0
 
     @property
     def monodromy(self) -> Array:

@@ -106,10 +106,10 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
-    assert result.kernel is not None
     if not task.method.genuine(task.system, result.orbit):
         return Outcome.ANCHORS_CROSSED
-    tangent = result.kernel
+    result, tangent = replace(result, unit=task.unit), result.kernel
+    assert tangent is not None
     length = np.sqrt(task.metric.dot(result.orbit, tangent, tangent))
     sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
     tangent = tangent.scaled(sign / length)

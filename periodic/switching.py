@@ -13,6 +13,7 @@ import numpy as np
 
 from periodic import bordered, collocation
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
+from periodic.equilibrium import increment
 from periodic.mesh import Mesh
 from periodic.newton import Outcome, correct
 from periodic.orbit import Orbit
@@ -54,7 +55,7 @@ def doubled(
         parameter=0.0,
         others=np.zeros(0),
     )
-    return _switched(system, twice, direction, parameter, determined or {}, distance)
+    return switched(system, twice, direction, parameter, determined or {}, distance)
 
 
 def branched(
@@ -71,10 +72,10 @@ def branched(
     """
     autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
     direction = away(system, orbit, 1, autonomous)
-    return _switched(system, orbit, direction, parameter, determined or {}, distance)
+    return switched(system, orbit, direction, parameter, determined or {}, distance)
 
 
-def _switched(
+def switched(
     system: System,
     origin: Orbit,
     direction: Direction,
@@ -82,15 +83,16 @@ def _switched(
     determined: Mapping[str, Condition],
     distance: float | None,
 ) -> Orbit:
-    """Solve on the plane across a direction, some way along it."""
+    """Solve on the plane across a direction, some way along it. Raises SwitchError."""
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     length = FAR * origin.span() if distance is None else distance
     metric = Metric(1.0)
     direction = replace(direction, others=np.zeros(len(determined)))
     direction = direction.scaled(1 / float(np.sqrt(metric.dot(origin, direction, direction))))
     plane = Plane(origin, direction, length, metric, free[0])
-    closures = [*(condition.at(origin) for condition in determined.values()), plane]
-    found = correct(system, along(system, free, origin, direction, length), free, closures)
+    guess = along(system, free, origin, direction, length)
+    closures = [*(condition.at(guess) for condition in determined.values()), plane]
+    found = correct(system, guess, free, closures, increment=increment if origin.equilibrium else None)
     if found.outcome is not Outcome.CONVERGED:
         raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
     return found.orbit

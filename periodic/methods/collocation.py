@@ -105,7 +105,7 @@ class Collocation:
 
     def resolved(self, base: Correction, new: Correction) -> bool:
         """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base.fundamental, new.fundamental)
+        return rotation.is_resolved(base, new)
 
 
 def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:
