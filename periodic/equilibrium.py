@@ -74,13 +74,13 @@ def increment(
         return Outcome.NOT_FINITE
     except np.linalg.LinAlgError:
         return Outcome.SINGULAR
-    step = _direction(orbit, solution, 0)
+    step = direction(orbit, solution, 0)
     change = moved(system, orbit.algebraic, step.algebraic) - orbit.algebraic
     outer = solution[len(rows.residual) :]
     unit = np.abs(rows.d_unknown[:, :n]).max()
     effect = np.abs(rows.d_unknown[:, len(rows.residual) :]).max(axis=0) / unit if unit else 0 * outer
     size, length = sizes(orbit, step.nodes, step.stages, change, outer, free, effect)
-    along = _direction(orbit, kernel, len(free)) if free else None
+    along = direction(orbit, kernel, len(free)) if free else None
     residual = float(np.abs(rows.residual).max())
     return Step(step.nodes, step.stages, step.algebraic, outer, size, length, residual, jacobian[None], along)
 
@@ -97,8 +97,8 @@ def _flat(closure: Closure, system: System, orbit: Orbit, free: tuple[int, ...])
     return row.value, np.concatenate([state, algebraic, row.outer])
 
 
-def _direction(orbit: Orbit, vector: Array, free: int) -> Direction:
-    """(x, z, p) as a direction of constant orbits."""
+def direction(orbit: Orbit, vector: Array, free: int) -> Direction:
+    """Return (x, z, p) as a direction of constant orbits; p holds the `free` free parameters, or none."""
     n, m = orbit.nodes.shape[1], orbit.algebraic.shape[2]
     nodes = np.broadcast_to(vector[:n], orbit.nodes.shape)
     outer = vector[n + m :] if free else np.zeros(1)

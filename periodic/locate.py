@@ -29,6 +29,9 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
+ASIDE = (1e-6, -1e-6, 1e-5, -1e-5, 1e-4, -1e-4)
+"""Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
+
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
@@ -44,6 +47,14 @@ class Found:
 
 class RejectedError(Exception):
     """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
+
+
+class _NoOrbitError(RejectedError):
+    """Newton failed at a distance from a step's base."""
+
+    def __init__(self, why: str, distance: float) -> None:
+        super().__init__(why)
+        self.distance = distance
 
 
 def special_points(
@@ -197,13 +208,28 @@ def _root(
     if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
         nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
         return nearest, solutions[nearest]
-    root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
-    return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+    try:
+        root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+        return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+    except _NoOrbitError as failed:
+        return _aside(task, base, ends, failed)
+
+
+def _aside(
+    task: Task, base: Solved, ends: tuple[float, float], failed: _NoOrbitError
+) -> tuple[float, Solved]:
+    """Return the solution nearest to where there was none; raise what failed if there is none near."""
+    for part in ASIDE:
+        distance = failed.distance + part * (ends[1] - ends[0])
+        if min(ends) <= distance <= max(ends):
+            with contextlib.suppress(_NoOrbitError):
+                return distance, _at_distance(task, base, distance)
+    raise failed
 
 
 def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
     guess = predict(task, base.orbit, base.tangent, distance)
     solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
     if isinstance(solved, Outcome):
-        raise RejectedError(solved.value)
+        raise _NoOrbitError(solved.value, distance)
     return solved

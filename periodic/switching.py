@@ -13,6 +13,7 @@ import numpy as np
 
 from periodic import bordered, collocation
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane
+from periodic.crossing import tangents
 from periodic.equilibrium import increment
 from periodic.mesh import Mesh
 from periodic.newton import Outcome, correct
@@ -65,14 +66,38 @@ def branched(
     *,
     determined: Mapping[str, Condition] | None = None,
     distance: float | None = None,
+    leaving: Orbit | None = None,
 ) -> Orbit:
     """Return an orbit of the branch that crosses another at a branch point (BP): a guess for `trace`.
 
-    Arguments as in `doubled`; a negative distance gives the orbit on the other side. Raises SwitchError.
+    Arguments as in `doubled`; a negative distance gives the orbit on the other side. Of two branches of
+    equilibria it is the one that leads away from `leaving`, a nearby equilibrium of the other; without one,
+    that along which the parameter changes less. Raises SwitchError.
     """
+    if orbit.equilibrium:
+        across = _across(system, orbit, index_of(system, parameter), leaving)
+        return switched(system, orbit, across, parameter, determined or {}, distance)
     autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
     direction = away(system, orbit, 1, autonomous)
     return switched(system, orbit, direction, parameter, determined or {}, distance)
+
+
+def _across(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Direction:
+    """The tangent of the other branch of equilibria at a branch point."""
+    found = tangents(system, orbit, index)
+    if not found:
+        raise SwitchError("no other branch of equilibria crosses there")
+    if leaving is None:
+        return found[0]
+    jump = float(leaving.parameter[index] - orbit.parameter[index])
+    way = replace(found[0], profile=leaving.nodes[0] - orbit.nodes, parameter=jump)
+    metric = Metric(1.0)
+
+    def aligned(tangent: Direction) -> float:
+        length = np.sqrt(metric.dot(orbit, tangent, tangent))
+        return abs(metric.dot(orbit, tangent, way)) / float(length)
+
+    return min(found, key=aligned)
 
 
 def switched(
