@@ -145,7 +145,11 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    distance, solved = _root(task, base, span, value, test.precision * ds)
+    precision, crossed = test.precision * ds, test is not events.TURN
+    distance, solved = _root(task, base, span, value, precision, aside=crossed)
+    turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
+    if solved.orbit.equilibrium and turned < task.settings.step.turn:
+        raise RejectedError("a special point of another branch was met")
     if not test.genuine(task, solved):
         return []
     refined = _accepted(task, settle(task, solved))
@@ -154,7 +158,7 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
         if value(ends[0]) * value(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), value, test.precision * ds)[1]
+            solved = _root(task, refined, (-reach, reach), value, precision, aside=crossed)[1]
             return [Found(test.label, distance, solved)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
@@ -195,9 +199,18 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
 
 
 def _root(
-    task: Task, base: Solved, ends: tuple[float, float], test: Callable[[Solved], float], precision: float
+    task: Task,
+    base: Solved,
+    ends: tuple[float, float],
+    test: Callable[[Solved], float],
+    precision: float,
+    *,
+    aside: bool = False,
 ) -> tuple[float, Solved]:
-    """Return distance and solution where `test` changes sign between two distances from the base."""
+    """Return distance and solution where `test` changes sign between two distances from the base.
+
+    `aside` accepts a solution very near to it where there is none at the place itself.
+    """
     solutions: dict[float, Solved] = {}
 
     def value(distance: float) -> float:
@@ -212,6 +225,8 @@ def _root(
         root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
         return root, solutions[root] if root in solutions else _at_distance(task, base, root)
     except _NoOrbitError as failed:
+        if not aside:
+            raise
         return _aside(task, base, ends, failed)
 
 
