@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.closure import Direction
-from periodic.equilibrium import direction, rows_at
+from periodic.equilibrium import crossing, direction, rows_at
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
@@ -26,7 +26,9 @@ def tangents(system: System, orbit: Orbit, index: int) -> list[Direction]:
     Steepest: in which the parameter changes least. Empty where no two branches cross.
     """
     scale = _scale(system, orbit, index)
-    matrix = _derivatives(system, orbit, index, scale)
+    matrix = rows_at(system, orbit, (index,)).balanced(scale)
+    if not crossing(matrix):
+        return []
     left, _, right = np.linalg.svd(matrix)
     kernel, psi = right[-2:], left[:, -1]
     form = np.array([[_second(system, orbit, index, scale, psi, a, b) for b in kernel] for a in kernel])
@@ -42,16 +44,10 @@ def _scale(system: System, orbit: Orbit, index: int) -> float:
     return states / parameter if parameter > SHIFT * states else abs(float(orbit.parameter[index])) or 1.0
 
 
-def _derivatives(system: System, orbit: Orbit, index: int, scale: float) -> Array:
-    """R_u with p in units of `scale`, shape (n+m, n+m+1)."""
-    rows = rows_at(system, orbit, (index,)).d_unknown.copy()
-    rows[:, -1] *= scale
-    return rows
-
-
 def _second(system: System, orbit: Orbit, index: int, scale: float, psi: Array, a: Array, b: Array) -> float:
     """psi R_uu a b by central differences along a."""
-    ends = [_derivatives(system, _moved(orbit, index, scale, h * a), index, scale) for h in (-SHIFT, SHIFT)]
+    orbits = [_moved(orbit, index, scale, h * a) for h in (-SHIFT, SHIFT)]
+    ends = [rows_at(system, moved, (index,)).balanced(scale) for moved in orbits]
     return float(psi @ (ends[1] - ends[0]) @ b) / (2 * SHIFT)
 
 

@@ -17,6 +17,9 @@ from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
 
+CROSSING = 1e-4
+"""Least singular value of R_u, as a part of the largest, up to which two branches cross."""
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -44,6 +47,20 @@ class Rows:
     def unknowns(self) -> Array:
         """dz = U dx in small motion, shape (m, n)."""
         return self._rates[self.d_rate.shape[1] :]
+
+    def balanced(self, scale: float) -> Array:
+        """Derivatives in u = (x, z, p / scale), every row over its length in (x', z)."""
+        n, count = self.d_rate.shape[1], len(self.residual)
+        lengths = np.linalg.norm(np.hstack([self.d_rate, self.d_unknown[:, n:count]]), axis=1)
+        columns = np.ones(self.d_unknown.shape[1])
+        columns[count:] = scale
+        return self.d_unknown / lengths[:, None] * columns
+
+
+def crossing(matrix: Array) -> bool:
+    """Whether derivatives in u have a kernel of more than one dimension, so that branches cross."""
+    sizes = np.linalg.svd(matrix, compute_uv=False)
+    return bool(sizes[-1] < CROSSING * (sizes[0] if len(sizes) > 1 else 1.0))
 
 
 def rows_at(system: System, orbit: Orbit, free: tuple[int, ...]) -> Rows:

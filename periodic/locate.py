@@ -29,8 +29,11 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
-ASIDE = (1e-6, -1e-6, 1e-5, -1e-5, 1e-4, -1e-4)
+ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
+
+ORBITS = 1e3
+"""How many times as far that is of orbits, which have errors of their own."""
 
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
@@ -234,8 +237,9 @@ def _aside(
     task: Task, base: Solved, ends: tuple[float, float], failed: _NoOrbitError
 ) -> tuple[float, Solved]:
     """Return the solution nearest to where there was none; raise what failed if there is none near."""
+    stretch = (ends[1] - ends[0]) * (1 if base.orbit.equilibrium else ORBITS)
     for part in ASIDE:
-        distance = failed.distance + part * (ends[1] - ends[0])
+        distance = failed.distance + part * stretch
         if min(ends) <= distance <= max(ends):
             with contextlib.suppress(_NoOrbitError):
                 return distance, _at_distance(task, base, distance)

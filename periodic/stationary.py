@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.equilibrium import rows_at
+from periodic.equilibrium import crossing, rows_at
 from periodic.events import Test
 from periodic.point import Label
 from periodic.scheme import Array
@@ -25,9 +25,6 @@ LIGHT = 0.1
 
 UPRIGHT = 1e-5
 """A branch of smaller slope, in ranges of the parameter, turns."""
-
-CROSSING = 1e-4
-"""Least singular value of R_u (rows of length 1) at a turn up to which two branches cross there."""
 
 
 def eigenvalues(solved: Solved) -> Complex:
@@ -65,13 +62,11 @@ def _crosses_twice(base: Solved, new: Solved) -> bool:
 
 
 def _matrix(task: Task, solved: Solved) -> tuple[Array, Array]:
-    """R_u and the tangent, u = (x, z, p), p in ranges of the parameter; all rows of length 1."""
+    """R_u and the tangent of length 1, u = (x, z, p), p in ranges of the parameter."""
     orbit, tangent, ranges = solved.orbit, solved.tangent, task.metric.scale
-    rows = rows_at(task.system, orbit, task.free).d_unknown.copy()
-    rows[:, orbit.nodes.shape[1] + orbit.algebraic.shape[2] :] *= ranges
+    rows = rows_at(task.system, orbit, task.free).balanced(ranges)
     outer = np.append(tangent.parameter, tangent.others) / ranges
     along = np.concatenate([tangent.nodes[0], tangent.algebraic[0, 0], outer])
-    rows /= np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-300)
     return rows, along / np.linalg.norm(along)
 
 
@@ -87,8 +82,7 @@ def _on_its_way(task: Task, solved: Solved) -> bool:
 
 def crosses(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
     """Whether two branches cross where one of them turns."""
-    least = np.linalg.svd(_matrix(task, turn)[0], compute_uv=False)[-1]
-    return branching(task, base) * branching(task, new) < 0 and bool(least < CROSSING)
+    return branching(task, base) * branching(task, new) < 0 and crossing(_matrix(task, turn)[0])
 
 
 def _touches_twice(base: Solved, new: Solved) -> bool:
@@ -102,6 +96,6 @@ def _touches_twice(base: Solved, new: Solved) -> bool:
 
 
 PASSAGES = (
-    Test(Label.HOPF, hopf, 1e-10, _complex, _crosses_twice),
+    Test(Label.HOPF, hopf, 1e-12, _complex, _crosses_twice),
     Test(Label.BRANCH, branching, 1e-10, _on_its_way, _touches_twice, crosses),
 )
