@@ -52,6 +52,9 @@ BENT = 0.1
 NOISE = 10.0
 """What the orbits' own errors may add to that distance, in tolerances."""
 
+COLLAPSED = 0.1
+"""An orbit that is so much smaller than its guess is not what was guessed."""
+
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
@@ -111,6 +114,9 @@ class Run:
             if any(s.label is Label.END for s in specials):
                 self.stop = Stop.bound(self.bounds, specials[-1].solved.orbit.parameter[task.index])
                 return
+            if any(s.shrunk for s in specials):
+                self.stop = Stop.equilibrium(count)
+                return
             yield describe(task, new, Label.NONE)
             count, since, left = count + 1, _value(task, new), left or not same(task, begun, new)
             ds = self._next_size(ds, new)
@@ -126,7 +132,7 @@ class Run:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
         task = self.task
         first = settle(task, at_parameter(task, start, sign), fixed=True)
-        if isinstance(first, Solved):
+        if isinstance(first, Solved) and not self._collapsed(start, first):
             return first
         if not self.search:
             return self._at_turn(start, sign, first)
@@ -136,8 +142,13 @@ class Run:
                 return settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
 
-    def _at_turn(self, start: Orbit, sign: float, failed: Outcome) -> Solved | Outcome:
+    def _collapsed(self, start: Orbit, first: Solved) -> bool:
+        """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
+        return self.task.autonomous and first.orbit.span() < COLLAPSED * start.span()
+
+    def _at_turn(self, start: Orbit, sign: float, first: Solved | Outcome) -> Solved | Outcome:
         """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+        failed = first if isinstance(first, Outcome) else Outcome.COLLAPSED
         try:
             across = away(self.task.system, start, 1, self.task.autonomous).scaled(sign)
         except (FloatingPointError, np.linalg.LinAlgError):

@@ -25,6 +25,10 @@ NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
 
+TOUCHED = 0.01
+"""What a touch leaves of prod (mu - 1), as a part of that at the step's ends."""
+
+
 @dataclass(frozen=True)
 class Test:
     """A function of an orbit that changes sign at special points of one kind.
@@ -67,7 +71,10 @@ def branching(task: Task, solved: Solved) -> float:
 
 def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
     """Whether a multiplier comes to 1 at a turn between two orbits and goes back, as far as can be told."""
-    if branching(task, base) * branching(task, new) < 0:
+    values = [branching(task, end) for end in (base, new)]
+    if task.unit > 1:  # no other multiplier passes 1 at a turn
+        return abs(branching(task, turn)) < TOUCHED * min(map(abs, values))
+    if values[0] * values[1] < 0:
         return False
     ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), _noise(end)) for end in (base, new)]
     return all(distance > noise for distance, noise in ends)

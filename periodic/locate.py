@@ -47,6 +47,11 @@ class Found:
     distance: float
     solved: Solved
 
+    @property
+    def shrunk(self) -> bool:
+        """Whether a branch of orbits ends at an equilibrium there."""
+        return self.label is Label.HOPF and not self.solved.orbit.equilibrium
+
 
 class RejectedError(Exception):
     """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
@@ -69,10 +74,11 @@ def special_points(
     user: Sequence[float],
     since: float,
 ) -> list[Found]:
-    """Return the special points of a step in order along the branch; a bound (EP) ends the list.
+    """Return the special points of a step in order along the branch.
 
-    `since` is the parameter up to which values have been looked for: that of the last point, from which the
-    base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
+    A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). `since` is the parameter up
+    to which values have been looked for: that of the last point, from which the base may differ by its error
+    where it was solved again on a new mesh. Raises RejectedError.
     """
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
     turns = [] if from_turn else _where(task, base, new, ds, events.TURN)
@@ -90,8 +96,8 @@ def special_points(
             if first < value <= last or last <= value < first:
                 found.append(_at_value(task, base, begin, end, value, label))
     found.sort(key=lambda item: item.distance)
-    labels = [item.label for item in found]
-    return found[: labels.index(Label.END) + 1] if Label.END in labels else found
+    final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
+    return found[: final[0] + 1] if final else found
 
 
 def _check_ways(task: Task, pieces: list[Found]) -> None:
@@ -170,9 +176,13 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
     """A turn of the branch by its name.
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
-    more excitation periods later. BP where a multiplier touches 1 without passing it: the branch leaves
-    another there, which goes on.
+    more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
+    follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
+    branch leaves another there, which goes on.
     """
+    spans = [solved.orbit.span() for solved in (turn.solved, base, new)]
+    if task.autonomous and spans[0] < MERGED * min(spans[1:]):
+        return replace(turn, label=Label.HOPF)
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)

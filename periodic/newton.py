@@ -34,6 +34,7 @@ class Outcome(Enum):
     NOT_FINITE = "the equations were not finite near the iterate"
     SINGULAR = "the linear system was singular"
     ANCHORS_CROSSED = "two anchors of the mesh met"
+    COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
 
 

@@ -132,6 +132,17 @@ def test_feedback_control_from_rest_to_its_doubling() -> None:
     assert labels(orbits) == ["PD"]
 
 
+def test_orbits_shrink_to_the_hopf_point() -> None:
+    """Assert that orbits traced towards their Hopf point end there, and that it is found again."""
+    (point,) = per.equilibria(feedback(), "alpha", (2, 0.5)).labelled(per.Label.HOPF)
+    guess = per.hopf(feedback(), point.orbit, "alpha", distance=0.2)
+    orbits = per.trace(feedback(), "alpha", (0.9, 1.2), guess=guess, determined=ORBIT)
+    assert orbits.stop.reason is per.Reason.EQUILIBRIUM
+    assert labels(orbits) == ["HB"]
+    assert orbits[-1].parameter == pytest.approx(1.0, abs=1e-7)
+    assert orbits[-1].peak_to_peak("x") < 1e-2
+
+
 def test_reaction_of_auto() -> None:
     """Assert the folds and the Hopf point of AUTO's demo ab, known in closed form, and no neutral saddle.
 
