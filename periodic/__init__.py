@@ -6,6 +6,7 @@ from periodic.continuation import Run
 from periodic.equilibria import equilibria
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
+from periodic.normalform import first_lyapunov
 from periodic.onset import eigenvalues, hopf, mode
 from periodic.orbit import Orbit
 from periodic.plotting import plot
@@ -43,6 +44,7 @@ __all__ = [
     "eigenvalues",
     "equilibria",
     "extrema",
+    "first_lyapunov",
     "hopf",
     "mode",
     "outputs",

@@ -32,11 +32,15 @@ class Rows:
     d_unknown: Array
 
     @cached_property
+    def d_motion(self) -> Array:
+        """Derivatives in (x', z), shape (n+m, n+m)."""
+        return np.hstack([self.d_rate, self.d_unknown[:, self.d_rate.shape[1] : len(self.residual)]])
+
+    @cached_property
     def _rates(self) -> Array:
         """(x', z) as a map of x, shape (n+m, n). Raises numpy.linalg.LinAlgError where not determined."""
-        n, count = self.d_rate.shape[1], len(self.residual)
-        rates = np.hstack([self.d_rate, self.d_unknown[:, n:count]])
-        return np.linalg.solve(rates, -self.d_unknown[:, :n]).astype(float, copy=False)
+        n = self.d_rate.shape[1]
+        return np.linalg.solve(self.d_motion, -self.d_unknown[:, :n]).astype(float, copy=False)
 
     @property
     def jacobian(self) -> Array:
@@ -50,10 +54,9 @@ class Rows:
 
     def balanced(self, scale: float) -> Array:
         """Derivatives in u = (x, z, p / scale), every row over its length in (x', z)."""
-        n, count = self.d_rate.shape[1], len(self.residual)
-        lengths = np.linalg.norm(np.hstack([self.d_rate, self.d_unknown[:, n:count]]), axis=1)
+        lengths = np.linalg.norm(self.d_motion, axis=1)
         columns = np.ones(self.d_unknown.shape[1])
-        columns[count:] = scale
+        columns[len(self.residual) :] = scale
         return self.d_unknown / lengths[:, None] * columns
 
 
@@ -63,10 +66,14 @@ def crossing(matrix: Array) -> bool:
     return bool(sizes[-1] < CROSSING * (sizes[0] if len(sizes) > 1 else 1.0))
 
 
-def rows_at(system: System, orbit: Orbit, free: tuple[int, ...]) -> Rows:
-    """Linearise at an equilibrium. Raises FloatingPointError where the equations are not finite."""
+def rows_at(system: System, orbit: Orbit, free: tuple[int, ...], rate: Array | None = None) -> Rows:
+    """Linearise at an equilibrium, or beside one where x' is `rate` (n,).
+
+    Raises FloatingPointError where the equations are not finite.
+    """
     state, algebraic = orbit.nodes[:1], orbit.algebraic[:1, 0]
-    line = system.linearise(np.zeros_like(state), state, algebraic, np.zeros(1), orbit.parameter, free)
+    moving = np.zeros_like(state) if rate is None else rate[None]
+    line = system.linearise(moving, state, algebraic, np.zeros(1), orbit.parameter, free)
     unknown = np.concatenate([line.d_state, line.d_algebraic, line.d_parameter], axis=2)[0]
     if not (np.isfinite(line.residual).all() and np.isfinite(unknown).all()):
         raise FloatingPointError("the residual or a derivative is not finite")

@@ -76,9 +76,9 @@ def special_points(
 ) -> list[Found]:
     """Return the special points of a step in order along the branch.
 
-    A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). `since` is the parameter up
-    to which values have been looked for: that of the last point, from which the base may differ by its error
-    where it was solved again on a new mesh. Raises RejectedError.
+    A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). `since` is the parameter
+    up to which values have been looked for: that of the last point, from which the base may differ by its
+    error where it was solved again on a new mesh. Raises RejectedError.
     """
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
     turns = [] if from_turn else _where(task, base, new, ds, events.TURN)

@@ -190,6 +190,42 @@ def test_orbits_of_stuart_and_landau(sign: float) -> None:
         assert omega == pytest.approx(1, rel=1e-9)
 
 
+def hopf_point(system: sym.CompiledSystem, parameter: str, bounds: tuple[float, float]) -> per.Point:
+    """The first Hopf point between two values."""
+    return per.equilibria(system, parameter, bounds).labelled(per.Label.HOPF)[0]
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_lyapunov_coefficient_of_stuart_and_landau(sign: float) -> None:
+    """Assert l1 = 2 sign: for z' = i z + sign |z|^2 z and <q, q> = 1, c1 = 2 sign, omega = 1."""
+    point = hopf_point(stuart_landau(sign), "mu", (-1, 1))
+    assert per.first_lyapunov(stuart_landau(sign), point.orbit) == pytest.approx(2 * sign, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "make, parameter, bounds, growth",
+    [(feedback, "alpha", (2, 0.5), -0.25), (brusselator, "B", (1, 4), 0.5)],
+)
+def test_lyapunov_coefficient_from_the_orbits(
+    make: Any, parameter: str, bounds: tuple[float, float], growth: float
+) -> None:
+    """Assert p - p0 = -l1 omega a^2 / (2 d Re lambda/dp), a the root mean square distance of small orbits."""
+    system = make()
+    point = hopf_point(system, parameter, bounds)
+    coefficient = per.first_lyapunov(system, point.orbit)
+    orbit = per.hopf(system, point.orbit, parameter, distance=0.02)
+    shift = orbit.parameter[[p.name for p in system.parameters].index(parameter)] - point.parameter
+    omega = point.multipliers[0].imag
+    assert shift / 0.02**2 == pytest.approx(-coefficient * omega / (2 * growth), rel=1e-3)
+
+
+def test_known_lyapunov_coefficients() -> None:
+    """Assert MatCont's -0.3 for the feedback system, and that Lorenz's orbits are born unstable."""
+    point = hopf_point(feedback(), "alpha", (2, 0.5))
+    assert per.first_lyapunov(feedback(), point.orbit) == pytest.approx(-0.3, rel=1e-9)
+    assert per.first_lyapunov(lorenz(), convection().labelled(per.Label.HOPF)[0].orbit) > 0
+
+
 def circle() -> sym.CompiledSystem:
     """x' = 1 - x^2 - mu^2: a closed branch."""
     return equations(lambda x, p: {"x": 1 - x.x**2 - p.mu**2}, {"x": 1.0}, mu=0.0)
