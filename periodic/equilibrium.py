@@ -75,7 +75,7 @@ def rows_at(system: System, orbit: Orbit, free: tuple[int, ...], rate: Array | N
     moving = np.zeros_like(state) if rate is None else rate[None]
     line = system.linearise(moving, state, algebraic, np.zeros(1), orbit.parameter, free)
     unknown = np.concatenate([line.d_state, line.d_algebraic, line.d_parameter], axis=2)[0]
-    if not (np.isfinite(line.residual).all() and np.isfinite(unknown).all()):
+    if not all(np.isfinite(values).all() for values in (line.residual, line.d_rate, unknown)):
         raise FloatingPointError("the residual or a derivative is not finite")
     return Rows(line.residual[0], line.d_rate[0], unknown)
 

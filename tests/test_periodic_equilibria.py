@@ -18,7 +18,7 @@ from equations import (
     stuart_landau,
 )
 from scipy.integrate import solve_ivp
-from traces import FINE, duffing_system
+from traces import FINE, duffing, duffing_system, fold_speeds
 
 import periodic as per
 import symbolic as sym
@@ -299,6 +299,40 @@ def test_equilibria_with_unknowns_and_any_omega() -> None:
         assert end.maximum["x"] == pytest.approx(1, rel=1e-12)
         pair = -0.1 + 1j * np.sqrt(4 - 0.01)
         assert end.multipliers == pytest.approx([pair, pair.conjugate()], rel=1e-11)
+
+
+def test_lyapunov_coefficient_with_an_unknown() -> None:
+    """Assert that the Brusselator has the same coefficient with x^2 y as an algebraic unknown."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p: {
+                "x": p.A + x.z - (p.B + 1) * x.x,
+                "y": p.B * x.x - x.z,
+                "z": x.z - x.x**2 * x.y,
+            },
+            states={"x": 1.0, "y": 1.0},
+            unknowns={"z": 1.0},
+            parameters={"A": 1.3, "B": 1.0},
+        )
+    )
+    found, known = (per.first_lyapunov(s, hopf_point(s, "B", (1, 4)).orbit) for s in (system, brusselator()))
+    assert found == pytest.approx(known, rel=1e-9)
+
+
+def test_orbits_from_an_equilibrium() -> None:
+    """Assert that an equilibrium of the unexcited system is a guess for its forced orbits."""
+    still = per.equilibria(duffing_system(0.1, 1.0, 0.0), "k", (1, 2), frequency="Omega")
+    omega = np.sqrt(1 - 0.05**2)
+    assert still[0].multipliers == pytest.approx([-0.05 + 1j * omega, -0.05 - 1j * omega], rel=1e-12)
+    forced = per.trace(
+        duffing_system(0.1, 1.0, 0.0),
+        "Omega",
+        (0.3, 3),
+        start=0.3,
+        guess=still[0].orbit,
+        values={"F": 0.5},
+    )
+    assert fold_speeds(forced) == pytest.approx(fold_speeds(duffing()), rel=1e-9)
 
 
 def test_kept_on_disk(tmp_path: Path) -> None:
