@@ -1,10 +1,11 @@
 """What a periodic orbit is: collocation, continuation, stability. Knows only the `System` protocol."""
 
 from periodic.branch import Branch, BranchFileError
-from periodic.closure import PhaseCondition
+from periodic.closure import Conservative, PhaseCondition
 from periodic.conditions import Level, Peak
 from periodic.continuation import Run
 from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
+from periodic.equilibria import equilibria
 from periodic.functionals import (
     Amplitude,
     Component,
@@ -19,6 +20,8 @@ from periodic.functionals import (
 from periodic.label import Label
 from periodic.measure import extrema, outputs
 from periodic.newton import NewtonSettings
+from periodic.normalform import first_lyapunov
+from periodic.onset import eigenvalues, hopf, mode
 from periodic.orbit import Orbit
 from periodic.plotting import plot
 from periodic.point import Point
@@ -50,6 +53,7 @@ __all__ = [
     "sensitivities",
     "Branch",
     "BranchFileError",
+    "Conservative",
     "Family",
     "Label",
     "MeshSettings",
@@ -67,7 +71,12 @@ __all__ = [
     "System",
     "branched",
     "doubled",
+    "eigenvalues",
+    "equilibria",
     "extrema",
+    "first_lyapunov",
+    "hopf",
+    "mode",
     "outputs",
     "plot",
     "sampled",

@@ -104,9 +104,15 @@ class Branch:
         return np.array([p.columns[name] for p in self.points])
 
     def table(self) -> str:
-        """Return one line per point: parameter, peak to peak of each output, largest multiplier, label."""
+        """Return one line per point: parameter, peak to peak of each output, largest multiplier, label.
+
+        Of equilibria the outputs themselves and the largest real part of the eigenvalues.
+        """
         names = [q.name for q in self.layout.outputs]
-        head = ["label", self.parameter, *(f"{n} p-p" for n in names), "|mu| max", "stable", "error"]
+        measured, largest = (" p-p", "|mu| max")
+        if any(p.equilibrium for p in self.points):
+            measured, largest = ("", "Re lambda max")
+        head = ["label", self.parameter, *(n + measured for n in names), largest, "stable", "error"]
         rows = [head, *([*_cells(p, names)] for p in self.points)]
         widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
         return "\n".join(
@@ -128,7 +134,9 @@ class Branch:
 
 
 def _cells(point: Point, names: list[str]) -> list[str]:
-    ripple = [f"{point.peak_to_peak(name):.9g}" for name in names]
-    size = f"{np.abs(point.multipliers).max():.9f}"
+    take = point.maximum.__getitem__ if point.equilibrium else point.peak_to_peak
+    ripple = [f"{take(name):.9g}" for name in names]
+    largest = point.multipliers.real if point.equilibrium else np.abs(point.multipliers)
+    size = f"{largest.max():.9f}"
     stable = "yes" if point.stable else "no"
     return [point.label.value, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.orbit:.1e}"]

@@ -191,14 +191,27 @@ class PhaseCondition:
     """The integral phase condition of autonomous orbits: mean over the period of <x - x_o, x_o'> = 0.
 
     x_o is the orbit before (Doedel 1981). It holds the phase that the equations leave open, and determines
-    the angular frequency.
+    the angular frequency. `unit` is the number of multipliers that are then 1 whatever the parameters.
     """
 
     intrinsic = True
+    unit = 1
 
     def at(self, origin: Orbit, given: Given) -> Closure:
         """Return the condition with respect to an orbit."""
         return _Phase(origin)
+
+
+@dataclass(frozen=True)
+class Conservative(PhaseCondition):
+    """The phase condition of systems that conserve energy, whose orbits come in families.
+
+    It determines a parameter that would dissipate energy, such as a damping, which so stays 0 (Munoz-Almaraz
+    et al., Physica D 181, 2003); the angular frequency is then a parameter like any other. Two multipliers
+    are 1 whatever the parameters.
+    """
+
+    unit = 2
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,9 @@ BENT = 0.1
 NOISE = 10.0
 """What the orbits' own errors may add to that distance, in tolerances."""
 
+COLLAPSED = 0.1
+"""An orbit that is so much smaller than its guess is not what was guessed."""
+
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
@@ -191,6 +194,8 @@ class Run:
             value = _value(self.task, special.solved)
             self.stop = Stop.limit(special.name) if own else Stop.bound(self.bounds, value)
         name = special.name if label is Label.USER and own else label.value
+        if special.shrunk:
+            self.stop = Stop.equilibrium(state.steps + 1)
         self._count[name] = self._count.get(name, 0) + 1
         if self.stop is None and self._count[name] == self.task.watch.stop.get(name):
             self.stop = Stop.asked(name, self._count[name])
@@ -225,7 +230,7 @@ class Run:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
         task = self.task
         first = settle(task, at_parameter(task, start, sign), fixed=True)
-        if isinstance(first, Solved):
+        if isinstance(first, Solved) and not self._collapsed(start, first):
             return first
         if not self.search:
             return self._at_turn(start, sign, first)
@@ -235,8 +240,13 @@ class Run:
                 return settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
 
-    def _at_turn(self, start: Orbit, sign: float, failed: Outcome) -> Solved | Outcome:
+    def _collapsed(self, start: Orbit, first: Solved) -> bool:
+        """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
+        return self.task.autonomous and first.orbit.span() < COLLAPSED * start.span()
+
+    def _at_turn(self, start: Orbit, sign: float, first: Solved | Outcome) -> Solved | Outcome:
         """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+        failed = first if isinstance(first, Outcome) else Outcome.COLLAPSED
         try:
             across = away(self.task.system, start, 1, self.task.autonomous).scaled(sign)
         except (FloatingPointError, np.linalg.LinAlgError):

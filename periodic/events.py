@@ -18,20 +18,19 @@ from numpy.typing import NDArray
 
 from periodic import rotation
 from periodic.label import Label
+from periodic.spectrum import CONSERVED, ROUNDING, without_unit
 
 if TYPE_CHECKING:
     from periodic.solve import Solved, Task
 
 Complex = NDArray[np.complex128]
 
-CONSERVED = 100.0
-"""What lies within so many errors of the multipliers from 1 cannot be told from it,"""
-
 NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
-ROUNDING = 1e-10
-"""... or within this."""
+
+TOUCHED = 0.01
+"""What a touch leaves of prod (mu - 1), as a part of that at the step's ends."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,8 @@ class Test:
     """A function of an orbit that changes sign at special points of one kind.
 
     precision: of its place along the branch, in steps. genuine: whether the zero found is of that kind.
-    twice: whether it may change sign twice between two orbits at which it has the same. name: the user's.
+    twice: whether it may change sign twice between two orbits at which it has the same. touches: whether a
+    turn of the branch (between a base and a new orbit) is of that kind. name: the user's.
     """
 
     label: Label
@@ -47,13 +47,14 @@ class Test:
     precision: float
     genuine: Callable[[Task, Solved], bool] = lambda task, solved: True
     twice: Callable[[Solved, Solved], bool] = lambda base, new: False
+    touches: Callable[[Task, Solved, Solved, Solved], bool] = lambda task, turn, base, new: False
     name: str = ""
 
 
 def multipliers(task: Task, solved: Solved) -> Complex:
-    """Return the multipliers of an orbit, without the trivial one if it is autonomous."""
+    """Return the multipliers of an orbit, without those that are 1 whatever the parameters."""
     found = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
-    return np.delete(found, np.abs(found - 1).argmin()) if task.autonomous else found
+    return without_unit(found, task.unit)
 
 
 def slope(task: Task, solved: Solved) -> float:
@@ -73,11 +74,14 @@ def branching(task: Task, solved: Solved) -> float:
     return float(np.prod((found - 1) / (1 + np.abs(found))).real)
 
 
-def touches(task: Task, base: Solved, new: Solved) -> bool:
-    """Whether a multiplier comes to 1 between two orbits and goes back, as far as it can be told."""
-    if branching(task, base) * branching(task, new) < 0:
+def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
+    """Whether a multiplier comes to 1 at a turn between two orbits and goes back, as far as can be told."""
+    values = [branching(task, end) for end in (base, new)]
+    if task.unit > 1:  # no other multiplier passes 1 at a turn
+        return abs(branching(task, turn)) < TOUCHED * min(map(abs, values))
+    if values[0] * values[1] < 0:
         return False
-    ends = [(np.abs(multipliers(task, end) - 1).min(), _noise(end)) for end in (base, new)]
+    ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), _noise(end)) for end in (base, new)]
     return all(distance > noise for distance, noise in ends)
 
 
@@ -118,12 +122,12 @@ def doubles_twice(base: Solved, new: Solved) -> bool:
     """
     ends = [np.linalg.eigvals(end.correction.monodromy) for end in (base, new)]
     negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
-    return max(negative) > 1 or rotation.passes(base.correction.fundamental, new.correction.fundamental, -1)
+    return max(negative) > 1 or rotation.passes(base.correction, new.correction, -1)
 
 
 def branches_twice(base: Solved, new: Solved) -> bool:
     """Whether a pair of multipliers turns past +1 between two orbits."""
-    return rotation.passes(base.correction.fundamental, new.correction.fundamental, 1)
+    return rotation.passes(base.correction, new.correction, 1)
 
 
 TURN = Test(Label.FOLD, slope, 1e-6)
@@ -134,4 +138,4 @@ PASSAGES = (
     Test(Label.TORUS, torus, 1e-10, _complex),
 )
 
-BRANCHING = Test(Label.BRANCH, branching, 1e-10, twice=branches_twice)
+BRANCHING = Test(Label.BRANCH, branching, 1e-10, twice=branches_twice, touches=touches)

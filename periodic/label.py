@@ -14,6 +14,7 @@ class Label(Enum):
     DOUBLING = "PD"
     TORUS = "NS"
     BRANCH = "BP"
+    HOPF = "HB"
     USER = "UZ"
     FAILED = "MX"
     CUSP = "CP"
@@ -27,5 +28,5 @@ class Label(Enum):
 
     @property
     def critical(self) -> bool:
-        """Whether a multiplier is on the unit circle there."""
-        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH)
+        """Whether a multiplier is on the unit circle, an eigenvalue on the imaginary axis there."""
+        return self in (Label.FOLD, Label.DOUBLING, Label.TORUS, Label.BRANCH, Label.HOPF)

@@ -29,6 +29,12 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
+ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
+"""Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
+
+ORBITS = 1e3
+"""How many times as far that is of orbits, which have errors of their own."""
+
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
@@ -42,9 +48,22 @@ class Found:
     solved: Solved
     name: str = ""
 
+    @property
+    def shrunk(self) -> bool:
+        """Whether a branch of orbits ends at an equilibrium there."""
+        return self.label is Label.HOPF and not self.solved.orbit.equilibrium
+
 
 class RejectedError(Exception):
     """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
+
+
+class _NoOrbitError(RejectedError):
+    """Newton failed at a distance from a step's base."""
+
+    def __init__(self, why: str, distance: float) -> None:
+        super().__init__(why)
+        self.distance = distance
 
 
 def special_points(
@@ -56,10 +75,11 @@ def special_points(
     user: Sequence[float],
     since: float,
 ) -> list[Found]:
-    """Return the special points of a step in order along the branch; a bound (EP) ends the list.
+    """Return the special points of a step in order along the branch.
 
-    `since` is the parameter up to which values have been looked for: that of the last point, from which the
-    base may differ by its error where it was solved again on a new mesh. Raises RejectedError.
+    A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). `since` is the parameter
+    up to which values have been looked for: that of the last point, from which the base may differ by its
+    error where it was solved again on a new mesh. Raises RejectedError.
     """
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
     turns = [] if from_turn else _where(task, base, new, ds, events.TURN)
@@ -77,8 +97,8 @@ def special_points(
             if first < value <= last or last <= value < first:
                 found.append(_at_value(task, base, begin, end, value, label))
     found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
-    labels = [item.label for item in found]
-    return found[: labels.index(Label.END) + 1] if Label.END in labels else found
+    final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
+    return found[: final[0] + 1] if final else found
 
 
 def _check_ways(task: Task, pieces: list[Found]) -> None:
@@ -135,7 +155,11 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    distance, solved = _root(task, base, span, value, test.precision * ds)
+    precision, crossed = test.precision * ds, test is not events.TURN
+    distance, solved = _root(task, base, span, value, precision, aside=crossed)
+    turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
+    if solved.orbit.equilibrium and turned < task.settings.step.turn:
+        raise RejectedError("a special point of another branch was met")
     if not test.genuine(task, solved):
         return []
     refined = _accepted(task, settle(task, solved))
@@ -144,7 +168,7 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
         if value(ends[0]) * value(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), value, test.precision * ds)[1]
+            solved = _root(task, refined, (-reach, reach), value, precision, aside=crossed)[1]
             return [Found(test.label, distance, solved, test.name)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
@@ -153,15 +177,21 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
     """A turn of the branch by its name.
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
-    more excitation periods later. BP where a multiplier touches 1 without passing it: the branch leaves
-    another there, which goes on. On a curve in two parameters it is at most a cusp.
+    more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
+    follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
+    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp.
     """
     if codimension.picked(task) is not None:
         return replace(turn, label=codimension.turn(task, turn.solved, base, new))
+    spans = [solved.orbit.span() for solved in (turn.solved, base, new)]
+    if task.autonomous and spans[0] < MERGED * min(spans[1:]):
+        return replace(turn, label=Label.HOPF)
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)
-    return replace(turn, label=Label.BRANCH) if events.touches(task, base, new) else turn
+    tests = (*task.method.passages, *task.method.branching)
+    labels = [test.label for test in tests if test.touches(task, turn.solved, base, new)]
+    return replace(turn, label=labels[0]) if labels else turn
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
@@ -185,9 +215,18 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
 
 
 def _root(
-    task: Task, base: Solved, ends: tuple[float, float], test: Callable[[Solved], float], precision: float
+    task: Task,
+    base: Solved,
+    ends: tuple[float, float],
+    test: Callable[[Solved], float],
+    precision: float,
+    *,
+    aside: bool = False,
 ) -> tuple[float, Solved]:
-    """Return distance and solution where `test` changes sign between two distances from the base."""
+    """Return distance and solution where `test` changes sign between two distances from the base.
+
+    `aside` accepts a solution very near to it where there is none at the place itself.
+    """
     solutions: dict[float, Solved] = {}
 
     def value(distance: float) -> float:
@@ -198,13 +237,31 @@ def _root(
     if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
         nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
         return nearest, solutions[nearest]
-    root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
-    return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+    try:
+        root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+        return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+    except _NoOrbitError as failed:
+        if not aside:
+            raise
+        return _aside(task, base, ends, failed)
+
+
+def _aside(
+    task: Task, base: Solved, ends: tuple[float, float], failed: _NoOrbitError
+) -> tuple[float, Solved]:
+    """Return the solution nearest to where there was none; raise what failed if there is none near."""
+    stretch = (ends[1] - ends[0]) * (1 if base.orbit.equilibrium else ORBITS)
+    for part in ASIDE:
+        distance = failed.distance + part * stretch
+        if min(ends) <= distance <= max(ends):
+            with contextlib.suppress(_NoOrbitError):
+                return distance, _at_distance(task, base, distance)
+    raise failed
 
 
 def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
     guess = predict(task, base.orbit, base.tangent, distance)
     solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
     if isinstance(solved, Outcome):
-        raise RejectedError(solved.value)
+        raise _NoOrbitError(solved.value, distance)
     return solved

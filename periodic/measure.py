@@ -50,6 +50,9 @@ class Extremes:
 
 def extrema(system: System, orbit: Orbit) -> Extremes:
     """Return the extremes of each output over one period."""
+    if orbit.equilibrium:
+        values = outputs(system, orbit, np.zeros(1))[0]
+        return Extremes(values, values, np.zeros_like(values), np.zeros_like(values))
     tau = orbit.stage_phases.ravel()
     flat = (len(tau), -1)
     values = system.output(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -22,6 +22,10 @@ SHORT = 1e-3
 """Width (rad) of intervals below which their unknowns count less in damping."""
 
 
+NEGLIGIBLE = 1e-3
+"""Change of the scaled states that a parameter about zero is compared with."""
+
+
 class Outcome(Enum):
     """How a Newton iteration ended; the value says it in words."""
 
@@ -30,6 +34,7 @@ class Outcome(Enum):
     NOT_FINITE = "the equations were not finite near the iterate"
     SINGULAR = "the linear system was singular"
     ANCHORS_CROSSED = "two anchors of the mesh met"
+    COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
 
 
@@ -52,7 +57,8 @@ class NewtonSettings:
 class Correction:
     """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
 
-    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n).
+    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). unit: how many multipliers are 1
+    whatever the parameters.
     """
 
     orbit: Orbit
@@ -62,6 +68,7 @@ class Correction:
     residual: float
     fundamental: Array
     kernel: Direction | None
+    unit: int = 0
 
     @property
     def monodromy(self) -> Array:
@@ -84,24 +91,29 @@ class Step:
     kernel: Direction | None
 
 
+LinearStep = Callable[[System, Orbit, tuple[int, ...], Sequence[Closure]], Step | Outcome]
+
+
 def correct(
     system: System,
     guess: Orbit,
     free: tuple[int, ...] = (),
     closures: Sequence[Closure] = (),
     settings: NewtonSettings | None = None,
+    increment: LinearStep | None = None,
 ) -> Correction:
     """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
 
-    The outcome is on the result; nothing is raised for a numerical failure.
+    `increment` gives one Newton step (default: that of the collocation equations). The outcome is on the
+    result; nothing is raised for a numerical failure.
     """
-    settings = settings or NewtonSettings()
+    settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
     base: tuple[Orbit, Step] | None = None
     factor = 1.0
     while iterations < settings.max_iterations:
         iterations += 1
-        trial = linear_step(system, orbit, free, closures)
+        trial = increment(system, orbit, free, closures)
         worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
             factor /= 4
@@ -123,7 +135,7 @@ def correct(
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
     if outcome is Outcome.CONVERGED:
-        last = linear_step(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+        last = increment(system, orbit, free, closures)  # multipliers and tangent of the final orbit
         if isinstance(last, Outcome):
             outcome = last
         else:
@@ -150,7 +162,8 @@ def linear_step(
         return Outcome.SINGULAR
     stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
-    size, length = _sizes(system, orbit, solution.nodes, stages, change, solution.outer, free)
+    effect = orbit.mesh.ntst * np.abs(condensed.stages[..., 1 + orbit.nodes.shape[1] :]).max(axis=(0, 1, 2))
+    size, length = sizes(orbit, solution.nodes, stages, change, solution.outer, free, effect)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
         solution.nodes,
@@ -165,27 +178,27 @@ def linear_step(
     )
 
 
-def _sizes(
-    system: System,
+def sizes(
     orbit: Orbit,
     nodes: Array,
     stages: Array,
     algebraic: Array,
     outer: Array,
     free: tuple[int, ...],
+    effect: Array,
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
-    A parameter's counts relative to its value or its nominal one, whichever is larger. For convergence the
-    unknowns count with their square: that is what the last step leaves of them, and rounding in the rates of
-    very short intervals keeps their own increments from falling further. For damping they count the less in
-    short intervals, over whose width they hardly act on the states.
+    For convergence the unknowns count with their square: that is what the last step leaves of them, and
+    rounding in the rates of very short intervals keeps their own increments from falling further. For
+    damping they count the less in short intervals, over whose width they hardly act on the states. Free
+    parameters count relative to their values, or where these are about zero to what changes the states by
+    NEGLIGIBLE; effect (q,) is the states' change with each of y.
     """
     k = len(orbit.phases)
     sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
-    chosen = list(free)
-    scales = np.maximum(np.abs(orbit.parameter[chosen]), np.abs(system.nominal[chosen]))
-    sizes += list(np.abs(outer[k:]) / np.where(scales > 0, scales, 1.0))
+    least = NEGLIGIBLE / np.maximum(effect[k:], 1e-300)
+    sizes += list(np.abs(outer[k:]) / np.maximum(np.abs(orbit.parameter[list(free)]), least))
     regular = float(max(sizes))
     unknowns = (np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     width = orbit.grid.width

@@ -20,7 +20,8 @@ FORCED = 2 * np.pi
 class Orbit:
     """States at mesh points (N+1, n) and collocation points (N, ncol, n), unknowns (N, ncol, m).
 
-    phases (k,) are the anchors' places; parameter (p,) the system's parameters. All scaled.
+    phases (k,) are the anchors' places; parameter (p,) the system's parameters. All scaled. An equilibrium is
+    an orbit that is constant, on a mesh of one interval.
     """
 
     mesh: Mesh
@@ -29,8 +30,11 @@ class Orbit:
     algebraic: Array
     phases: Array
     parameter: Array
+    equilibrium: bool = False
 
     def __repr__(self) -> str:
+        if self.equilibrium:
+            return f"Orbit(equilibrium, {self.nodes.shape[1]} states)"
         return f"Orbit({self.mesh.ntst} intervals, {self.nodes.shape[1]} states, {self.periods} periods)"
 
     @cached_property
@@ -88,14 +92,23 @@ class Orbit:
         return round(self.mesh.period / FORCED)
 
     def span(self) -> float:
-        """Largest peak-to-peak value of the scaled states: what errors are compared with."""
+        """Largest peak-to-peak value of the scaled states: what errors are compared with.
+
+        1, the size of scaled states, for an equilibrium.
+        """
+        if self.equilibrium:
+            return 1.0
         flat = self.knots.reshape(-1, self.knots.shape[2])
         return float(np.ptp(flat, axis=0).max())
 
 
 def at_rest(system: System, mesh: Mesh, parameter: Array) -> Orbit:
     """Return the constant orbit at the system's rest values."""
-    state, algebraic = system.rest(parameter)
+    return constant(mesh, *system.rest(parameter), parameter)
+
+
+def constant(mesh: Mesh, state: Array, algebraic: Array, parameter: Array) -> Orbit:
+    """Return the constant orbit of a state (n,) and unknowns (m,)."""
     count, ncol = mesh.ntst, mesh.scheme.ncol
     return Orbit(
         mesh,

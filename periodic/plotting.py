@@ -23,24 +23,26 @@ def plot(
 ) -> Axes:
     """Plot the peak to peak of an output (default: the first) against the parameter; return the axes.
 
-    `measure` replaces the peak to peak by any function of a point.
+    Of equilibria it is the output itself. `measure` replaces the peak to peak by any function of a point.
     """
     import matplotlib.pyplot as plt
 
     name = output or branch.layout.outputs[0].name
     units = {q.name: q.unit for q in (*branch.layout.outputs, *branch.layout.parameters)}
-    measured = measure or (lambda point: point.peak_to_peak(name))
+    still = any(point.equilibrium for point in branch)
+    shown = name if still else f"{name} peak to peak"
+    measured = measure or (lambda point: point.maximum[name] if still else point.peak_to_peak(name))
     axes = axes or plt.subplots(figsize=(7.0, 4.5), layout="constrained")[1]
     values, heights = branch.values, np.array([measured(p) for p in branch.points])
     for piece, stable in runs(branch):
         axes.plot(values[piece], heights[piece], "-" if stable else "--", color="C0", linewidth=1.5)
     for point in branch.special_points:
-        if point.label in (Label.FOLD, Label.FAILED):
+        if point.label in (Label.FOLD, Label.FAILED) or (still and point.label.critical):
             at = (point.parameter, measured(point))
             axes.plot(*at, "o", color="C3", markersize=5)
             axes.annotate(point.label.value, at, xytext=(6, 6), textcoords="offset points")
     axes.set_xlabel(_with_unit(branch.parameter, units))
-    axes.set_ylabel(_with_unit(f"{name} peak to peak", {f"{name} peak to peak": units[name]}))
+    axes.set_ylabel(_with_unit(shown, {shown: units[name]}))
     return axes
 
 

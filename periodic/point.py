@@ -12,6 +12,7 @@ from periodic.accuracy import ErrorEstimate
 from periodic.label import Label
 from periodic.orbit import Orbit
 from periodic.solve import Solved, Task
+from periodic.spectrum import CONSERVED, ROUNDING, without_unit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -19,10 +20,13 @@ class Point:
     """parameter: the continuation parameter (SI); multipliers (n,) complex, largest first.
 
     minimum, maximum: extremes of each output over the period (SI), by name. slope: d parameter / d
-    arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there, which tells how
-    accurate the multipliers are; None for a forced orbit. A point is stable when all other multipliers lie
-    inside the unit circle; a special point where one is on it is not, nor a `marginal` one of a curve of such
-    points. event: the user's name of the event met there. columns: functionals asked for, by name.
+    arclength. trivial: distance from 1 of the multiplier that an autonomous orbit has there (two of a
+    conservative one), which tells how accurate the multipliers are; None for a forced orbit. A point is
+    stable when all other multipliers lie inside the unit circle (of a conservative orbit: on it, within their
+    error); a special point where one is on it is not, nor a `marginal` one of a curve of such points. Of an
+    equilibrium the multipliers are the eigenvalues of its Jacobian (1/s), largest real part first, and it is
+    stable when all real parts are negative. event: the user's name of the event met there. columns:
+    functionals asked for, by name.
     """
 
     orbit: Orbit
@@ -36,6 +40,7 @@ class Point:
     iterations: int
     slope: float
     trivial: float | None = None
+    conservative: bool = False
     marginal: bool = False
     event: str = ""
     columns: dict[str, float] = field(default_factory=dict)
@@ -46,21 +51,36 @@ class Point:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle, the trivial one apart."""
+        """Whether small disturbances die away, or of a conservative orbit stay small."""
         if self.marginal or self.label.critical:
             return False
-        return bool((np.abs(self.nontrivial) < 1).all())
+        if self.equilibrium:
+            return bool((self.multipliers.real < 0).all())
+        slack = CONSERVED * self.error.multiplier + ROUNDING if self.conservative else 0.0
+        return bool((np.abs(self.nontrivial) < 1 + slack).all())
+
+    @property
+    def equilibrium(self) -> bool:
+        """Whether the orbit is constant."""
+        return self.orbit.equilibrium
 
     @property
     def nontrivial(self) -> NDArray[np.complex128]:
-        """The multipliers without the trivial one of an autonomous orbit, largest first."""
-        if self.trivial is None:
-            return self.multipliers
-        return np.delete(self.multipliers, np.abs(self.multipliers - 1).argmin())
+        """The multipliers without those that are 1 whatever the parameters, largest first."""
+        return without_unit(self.multipliers, 0 if self.trivial is None else 1 + self.conservative)
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output."""
         return self.maximum[output] - self.minimum[output]
+
+
+def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
+    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None of none.
+
+    Unlike those themselves, which all but coincide, they are as accurate as the other multipliers.
+    """
+    nearest = multipliers[np.abs(multipliers - 1).argsort()[:count]]
+    return float(max(abs(nearest.mean() - 1), abs(nearest.prod() - 1))) if count else None
 
 
 def describe(task: Task, solved: Solved, label: Label, event: str = "") -> Point:
@@ -68,18 +88,20 @@ def describe(task: Task, solved: Solved, label: Label, event: str = "") -> Point
     found = measure.extrema(task.system, solved.orbit)
     names = [output.name for output in task.system.outputs]
     multipliers = np.linalg.eigvals(solved.correction.monodromy).astype(np.complex128)
+    order = -multipliers.real if solved.orbit.equilibrium else -np.abs(multipliers)
     return Point(
         orbit=solved.orbit,
         parameter=float(solved.orbit.parameter[task.index]),
         label=label,
-        multipliers=multipliers[np.argsort(-np.abs(multipliers))],
+        multipliers=multipliers[np.argsort(order, kind="stable")],
         minimum=dict(zip(names, map(float, found.minimum), strict=True)),
         maximum=dict(zip(names, map(float, found.maximum), strict=True)),
         error=solved.error,
         residual=solved.correction.residual,
         iterations=solved.correction.iterations,
         slope=solved.tangent.parameter,
-        trivial=float(np.abs(multipliers - 1).min()) if task.autonomous else None,
+        trivial=_distance(multipliers, task.unit),
+        conservative=task.unit > 1,
         marginal=codimension.marginal(task),
         event=event,
         columns=task.watch.measured(task.system, solved.orbit),

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.scheme import Array
+from periodic.newton import Correction
 
 PART = 0.7
 """Largest turn of a multiplier (rad), as a part of its distance from +1."""
@@ -35,11 +35,8 @@ class Pair:
     distance: float
 
 
-def is_resolved(before: Array, after: Array) -> bool:
-    """Whether two orbits' lightly damped pairs of multipliers are close enough, seen from +1.
-
-    before, after: fundamental matrices at the mesh points, shape (N+1, n, n); the last is the monodromy.
-    """
+def is_resolved(before: Correction, after: Correction) -> bool:
+    """Whether two orbits' lightly damped pairs of multipliers are close enough, seen from +1."""
     for a, b in _matched(before, after):
         light = min(a.modulus, b.modulus) > LIGHT
         if light and abs(a.angle - b.angle) > max(PART * min(a.distance, b.distance), LEAST):
@@ -47,7 +44,7 @@ def is_resolved(before: Array, after: Array) -> bool:
     return True
 
 
-def passes(before: Array, after: Array, sign: int) -> bool:
+def passes(before: Correction, after: Correction, sign: int) -> bool:
     """Whether a pair turns past `sign` (+1 or -1) between two orbits."""
     offset = 0.0 if sign > 0 else np.pi
     return any(
@@ -56,7 +53,7 @@ def passes(before: Array, after: Array, sign: int) -> bool:
     )
 
 
-def _matched(before: Array, after: Array) -> list[tuple[Pair, Pair]]:
+def _matched(before: Correction, after: Correction) -> list[tuple[Pair, Pair]]:
     """The pairs of two orbits, each of the side that has fewer with the nearest of the other.
 
     A pair may be born of two real multipliers or end in them.
@@ -65,14 +62,16 @@ def _matched(before: Array, after: Array) -> list[tuple[Pair, Pair]]:
     return [(a, min(more, key=lambda b: abs(b.angle - a.angle))) for a in fewer]
 
 
-def pairs(fundamental: Array) -> list[Pair]:
-    """Return the complex pairs of multipliers.
+def pairs(correction: Correction) -> list[Pair]:
+    """Return the complex pairs of multipliers, without those that are 1 whatever the parameters.
 
     The angle is that of the largest component of the eigenvector's solution, followed along the mesh.
     """
-    multipliers, vectors = np.linalg.eig(fundamental[-1])
+    fundamental = correction.fundamental
+    multipliers, vectors = np.linalg.eig(correction.monodromy)
+    unit = np.abs(multipliers - 1).argsort()[: correction.unit]
     found = []
-    for k in np.flatnonzero(multipliers.imag > 0):
+    for k in np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit):
         solution = fundamental @ vectors[:, k]
         component = int(np.abs(solution).mean(axis=0).argmax())
         angle = np.unwrap(np.angle(solution[:, component]))

@@ -58,9 +58,14 @@ class Task:
         return (self.index, *self.others)
 
     @property
+    def unit(self) -> int:
+        """How many multipliers of the orbits are 1 whatever the parameters."""
+        return max((c.unit for c in self.conditions if isinstance(c, PhaseCondition)), default=0)
+
+    @property
     def autonomous(self) -> bool:
         """Whether the orbits have a multiplier that is 1 whatever the parameters."""
-        return any(isinstance(condition, PhaseCondition) for condition in self.conditions)
+        return self.unit > 0
 
 
 @dataclass(frozen=True)
@@ -104,10 +109,10 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
-    assert result.kernel is not None
     if not task.method.genuine(task.system, result.orbit):
         return Outcome.ANCHORS_CROSSED
-    tangent = result.kernel
+    result, tangent = replace(result, unit=task.unit), result.kernel
+    assert tangent is not None
     length = np.sqrt(task.metric.dot(result.orbit, tangent, tangent))
     sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
     tangent = tangent.scaled(sign / length)
@@ -152,9 +157,10 @@ def is_settled(task: Task, solved: Solved) -> bool:
 
 
 def remesh(task: Task, solved: Solved, *, fixed: bool = False) -> Solved | Outcome:
-    """Solve again on a mesh made for this orbit, the first of the method's that succeeds."""
+    """Solve again on a mesh made for this orbit, the first of the method's that succeeds, if it has any."""
     choices = task.method.meshes(task, solved)
-    return _first_of(_remeshed(task, solved, mesh, phases, fixed) for mesh, phases in choices)
+    attempts = (_remeshed(task, solved, mesh, phases, fixed) for mesh, phases in choices)
+    return _first_of(attempts, otherwise=solved)
 
 
 def _remeshed(task: Task, solved: Solved, mesh: Mesh, phases: Array, fixed: bool) -> Solved | Outcome:
@@ -183,14 +189,16 @@ def _unmoved(task: Task, old: Solved, new: Solved | Outcome) -> Solved | Outcome
     return new
 
 
-def _first_of(attempts: Iterable[Solved | Outcome]) -> Solved | Outcome:
-    """Return the first solution, or the first failure if there is none."""
+def _first_of(
+    attempts: Iterable[Solved | Outcome], otherwise: Solved | Outcome = Outcome.MOVED
+) -> Solved | Outcome:
+    """Return the first solution, or the first failure if there is none; `otherwise` of no attempts."""
     failures: list[Outcome] = []
     for attempt in attempts:
         if isinstance(attempt, Solved):
             return attempt
         failures.append(attempt)
-    return failures[0]
+    return failures[0] if failures else otherwise
 
 
 def closes(task: Task, start: Solved, new: Solved) -> bool:

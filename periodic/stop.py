@@ -14,6 +14,7 @@ class Reason(Enum):
     BOUND = "bound reached"
     CLOSED = "branch closed"
     ASKED = "stopped as asked"
+    EQUILIBRIUM = "equilibrium reached"
     MAX_POINTS = "largest number of points reached"
     SMALL_STEP = "step size below its minimum"
     NO_START = "no orbit found at the start"
@@ -56,6 +57,11 @@ class Stop:
     def closed(cls, count: int) -> Stop:
         """The branch came back to its start."""
         return cls(Reason.CLOSED, f"it came back to its start after {count} points")
+
+    @classmethod
+    def equilibrium(cls, count: int) -> Stop:
+        """Autonomous orbits shrank to a point."""
+        return cls(Reason.EQUILIBRIUM, f"the orbits shrank to it after {count} points")
 
     @classmethod
     def max_points(cls, count: int) -> Stop:

@@ -92,6 +92,8 @@ def dataset(branch: Branch) -> xr.Dataset:
         "residual": [p.residual for p in points],
         "newton_iterations": [p.iterations for p in points],
         "slope": [p.slope for p in points],
+        "equilibrium": [p.equilibrium for p in points],
+        "conservative": [p.conservative for p in points],
         "trivial": [np.nan if p.trivial is None else p.trivial for p in points],
         "marginal": [p.marginal for p in points],
         "event": [p.event for p in points],
@@ -222,11 +224,17 @@ def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
         residual=number("residual"),
         iterations=int(number("newton_iterations")),
         slope=number("slope"),
+        conservative=_flag(data, "conservative", i),
         trivial=None if np.isnan(number("trivial")) else number("trivial"),
         marginal=bool(data["marginal"].values[i]),
         event=str(data["event"].values[i]),
         columns=dict(zip(columns, map(float, data["columns"].values[i]), strict=True)),
     )
+
+
+def _flag(data: xr.Dataset, name: str, i: int) -> bool:
+    """A truth value of a point; false in files that were written before there were others."""
+    return bool(data[name].values[i]) if name in data else False
 
 
 def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
@@ -266,6 +274,7 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
                 algebraic[rows].reshape(count, ncol, m),
                 data["anchor_phase"].values[span],
                 data["parameters"].values[i],
+                _flag(data, "equilibrium", i),
             )
         )
         segment, anchor = segment + segments, anchor + anchors

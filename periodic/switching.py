@@ -13,6 +13,8 @@ import numpy as np
 
 from periodic import bordered, collocation
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane, closures
+from periodic.crossing import tangents
+from periodic.equilibrium import increment
 from periodic.mesh import Mesh
 from periodic.newton import Outcome, correct
 from periodic.orbit import Orbit
@@ -54,7 +56,7 @@ def doubled(
         parameter=0.0,
         others=np.zeros(0),
     )
-    return _switched(system, twice, direction, parameter, determined or {}, distance)
+    return switched(system, twice, direction, parameter, determined or {}, distance)
 
 
 def branched(
@@ -64,17 +66,41 @@ def branched(
     *,
     determined: Mapping[str, Condition] | None = None,
     distance: float | None = None,
+    leaving: Orbit | None = None,
 ) -> Orbit:
     """Return an orbit of the branch that crosses another at a branch point (BP): a guess for `trace`.
 
-    Arguments as in `doubled`; a negative distance gives the orbit on the other side. Raises SwitchError.
+    Arguments as in `doubled`; a negative distance gives the orbit on the other side. Of two branches of
+    equilibria it is the one that leads away from `leaving`, a nearby equilibrium of the other; without one,
+    that along which the parameter changes less. Raises SwitchError.
     """
+    if orbit.equilibrium:
+        across = _across(system, orbit, index_of(system, parameter), leaving)
+        return switched(system, orbit, across, parameter, determined or {}, distance)
     autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
     direction = away(system, orbit, 1, autonomous)
-    return _switched(system, orbit, direction, parameter, determined or {}, distance)
+    return switched(system, orbit, direction, parameter, determined or {}, distance)
 
 
-def _switched(
+def _across(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Direction:
+    """The tangent of the other branch of equilibria at a branch point."""
+    found = tangents(system, orbit, index)
+    if not found:
+        raise SwitchError("no other branch of equilibria crosses there")
+    if leaving is None:
+        return found[0]
+    jump = float(leaving.parameter[index] - orbit.parameter[index])
+    way = replace(found[0], profile=leaving.nodes[0] - orbit.nodes, parameter=jump)
+    metric = Metric(1.0)
+
+    def aligned(tangent: Direction) -> float:
+        length = np.sqrt(metric.dot(orbit, tangent, tangent))
+        return abs(metric.dot(orbit, tangent, way)) / float(length)
+
+    return min(found, key=aligned)
+
+
+def switched(
     system: System,
     origin: Orbit,
     direction: Direction,
@@ -82,15 +108,16 @@ def _switched(
     determined: Mapping[str, Condition],
     distance: float | None,
 ) -> Orbit:
-    """Solve on the plane across a direction, some way along it."""
+    """Solve on the plane across a direction, some way along it. Raises SwitchError."""
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     length = FAR * origin.span() if distance is None else distance
     metric = Metric(1.0)
     direction = replace(direction, others=np.zeros(len(determined)))
     direction = direction.scaled(1 / float(np.sqrt(metric.dot(origin, direction, direction))))
     plane = Plane(origin, direction, length, metric, free[0])
-    closing = [*closures(list(determined.values()), free[1:], origin), plane]
-    found = correct(system, along(system, free, origin, direction, length), free, closing)
+    guess = along(system, free, origin, direction, length)
+    closing = [*closures(list(determined.values()), free[1:], guess), plane]
+    found = correct(system, guess, free, closing, increment=increment if origin.equilibrium else None)
     if found.outcome is not Outcome.CONVERGED:
         raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
     return found.orbit

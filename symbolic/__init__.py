@@ -1,9 +1,11 @@
 """What the equations are: coordinates, parameters, parts, models, and their compilation to a System."""
 
+from symbolic import functions
 from symbolic.compile import CompiledSystem, compile
 from symbolic.model import Model, Part, combine
 from symbolic.parts.cavitation import CavitatingFilm
 from symbolic.parts.contact import ContactDamping, ContactPair, Hertz, Preload, Waviness
+from symbolic.parts.equations import Equations
 from symbolic.parts.film import QuasistaticFilm, SqueezeFilm
 from symbolic.parts.mechanics import (
     Coupling,
@@ -41,6 +43,7 @@ __all__ = [
     "Coupling",
     "CubicSpring",
     "Damper",
+    "Equations",
     "ExplicitSqueezeFilm",
     "GivenThickness",
     "HamrockDowsonThickness",
@@ -66,5 +69,6 @@ __all__ = [
     "combine",
     "compile",
     "coordinate",
+    "functions",
     "parameter",
 ]

@@ -246,21 +246,27 @@ def _motion_rows(assembly: Assembly) -> list[ca.SX]:
         inertia = motion.mass * assembly.omega**2
         if motion.mass.is_zero() or not assembly.nominal(motion.mass) > 0:
             raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
-        if not 0 < assembly.nominal(assembly.omega) < math.inf:
-            raise ValueError(
-                f"the frequency of the excitation is {assembly.nominal(assembly.omega)} rad/s; "
-                f"its nominal value must be greater than 0"
-            )
+        _check_frequency(assembly)
         scale = assembly.nominal(inertia) * motion.position.scale
         rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
         rows.append((inertia * motion.velocity.derivative - motion.force) / scale)
     return rows
 
 
+def _check_frequency(assembly: Assembly) -> None:
+    """Refuse a nominal omega that is not positive; a model without excitation gets omega as a parameter."""
+    omega = assembly.nominal(assembly.omega)
+    if not 0 < omega < math.inf:
+        raise ValueError(
+            f"the frequency of the excitation is {omega} rad/s; its nominal value must be greater than 0"
+        )
+
+
 def _system(assembly: Assembly) -> CompiledSystem:
     positions = [motion.position for motion in assembly.motions.values()]
     outputs = [(Variable(x.name, x.unit), x.symbol) for x in positions] + assembly.outputs
     rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
+    _check_frequency(assembly)
     states = assembly.states
     rate, state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
     scales = ca.vertcat(*[s.scale for s in states])

@@ -47,9 +47,12 @@ class Collocation:
 
     def adopted(self, system: System, settings: MeshSettings, guess: Orbit, parameter: Array) -> Orbit:
         """Return a guess in the settings' scheme, its hard intervals solved locally."""
+        if guess.equilibrium:
+            guess = transfer(guess, uniform(settings.scheme, settings.ntst), guess.phases)
         old = guess.mesh
         mesh = Mesh(settings.scheme, old.breaks, old.anchors, old.period)
-        return relax(system, replace(transfer(guess, mesh, guess.phases), parameter=parameter))
+        adopted = replace(transfer(guess, mesh, guess.phases), parameter=parameter, equilibrium=False)
+        return relax(system, adopted)
 
     def correct(
         self,
@@ -102,7 +105,7 @@ class Collocation:
 
     def resolved(self, base: Correction, new: Correction) -> bool:
         """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base.fundamental, new.fundamental)
+        return rotation.is_resolved(base, new)
 
 
 def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:

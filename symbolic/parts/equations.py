@@ -1,0 +1,163 @@
+"""Differential equations of the first order written as a function, perhaps with algebraic ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+
+from symbolic.assembly import Assembly
+from symbolic.model import Part
+from symbolic.variables import Coordinate, Value
+
+
+class Names:
+    """Symbols by name, as attributes or items; `kind` is what an error calls them."""
+
+    def __init__(self, kind: str, symbols: Mapping[str, ca.SX]) -> None:
+        self._kind, self._symbols = kind, dict(symbols)
+
+    def __getitem__(self, name: str) -> ca.SX:
+        if name not in self._symbols:
+            raise ValueError(
+                f"the equations use {self._kind}.{name}; {self._kind} has {_listed(self._symbols)}"
+            )
+        return self._symbols[name]
+
+    def __getattr__(self, name: str) -> ca.SX:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self[name]
+
+
+Function = Callable[..., Mapping[str, Any]]
+"""(x, p), or (x, p, wave) of a forced system, to expressions by name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Options:
+    """What most equations do without; see `Equations`."""
+
+    unknowns: Mapping[str, float] = field(default_factory=dict)
+    coordinates: Sequence[Coordinate] = ()
+    frequency: str | None = None
+    scales: Mapping[str, float] = field(default_factory=dict)
+    outputs: Function | None = None
+
+
+@dataclass(frozen=True)
+class Equations(_Options, Part):
+    """dx/dt = f(x, p), and 0 = g(x, z, p) with unknowns z.
+
+    `function` is called once, with symbols as attributes: x.NAME of states and unknowns, p.NAME of the
+    parameters. It returns the rate (SI, per s) of each state by its name, and under the name of each unknown
+    what shall vanish. `states` and `unknowns` give the values from which the search for a rest starts,
+    `parameters` the nominal values, as numbers or `symbolic.parameter`s.
+
+    `frequency` names the parameter that is the angular frequency Omega (rad/s) of an excitation; the
+    functions then get a third argument with wave.sin and wave.cos of tau = Omega t. Of `coordinates` of other
+    parts they see the position x.NAME (SI) and the speed x.NAME_dot, and may return a force under NAME.
+    `scales` are the sizes (SI) of states taken as one inside. `outputs` returns further outputs by name; each
+    state is one. Raises ValueError on compilation, in one sentence, for names or values that do not fit.
+    """
+
+    function: Function
+    states: Mapping[str, float]
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        groups = (self.states, self.unknowns, [c.name for c in self.coordinates])
+        names = [name for group in groups for name in group]
+        for name in (*names, *self.parameters):
+            if not name.isidentifier() or name.startswith("_"):
+                raise ValueError(f"name of a variable is {name!r}; it must be one that Python allows")
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"{name!r} is the name of two variables; every one needs its own")
+        for kind, values in (("rest value", {**self.states, **self.unknowns}), ("scale", self.scales)):
+            for name, value in values.items():
+                if not math.isfinite(value) or (kind == "scale" and value <= 0):
+                    allowed = "a positive" if kind == "scale" else "a finite"
+                    raise ValueError(f"{kind} of {name} is {value}; it must be {allowed} number")
+        _fitting("scales", self.scales, self.states, all_needed=False)
+        if self.frequency is not None and self.frequency not in self.parameters:
+            raise ValueError(
+                f"frequency is {self.frequency!r}; it must be one of the parameters "
+                f"{_listed(self.parameters)}"
+            )
+        if self.frequency is None and "omega" in self.parameters:
+            raise ValueError(
+                "parameter 'omega' is 2 pi / period of the orbits of equations without excitation; "
+                "name yours otherwise"
+            )
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the states with their rows, the unknowns with theirs, forces on coordinates, and outputs."""
+        p = {name: assembly.parameter(value, name) for name, value in self.parameters.items()}
+        if self.frequency is not None:
+            assembly.excite(p[self.frequency])
+        states = {
+            name: assembly.state(name, "", float(self.scales.get(name, 1.0)), ca.SX(float(rest)))
+            for name, rest in self.states.items()
+        }
+        symbols = {name: state.symbol for name, state in states.items()}
+        symbols |= {name: assembly.algebraic(name, ca.SX(float(z))) for name, z in self.unknowns.items()}
+        for q in self.coordinates:
+            symbols |= {q.name: assembly.motion(q).position.symbol, f"{q.name}_dot": assembly.speed_of(q)}
+        arguments = [Names("x", symbols), Names("p", p)]
+        if self.frequency is not None:
+            arguments.append(Names("wave", {"sin": assembly.sine, "cos": assembly.cosine}))
+
+        found = _expressions("function", self.function(*arguments))
+        wanted = [*states, *self.unknowns]
+        _fitting("the function's result", found, wanted, [q.name for q in self.coordinates])
+        for name, state in states.items():
+            row = assembly.omega * state.derivative - found[name]
+            assembly.differential_rows.append(row / state.scale)
+            assembly.output(name, "", state.symbol)
+        assembly.algebraic_rows.extend(found[name] for name in self.unknowns)
+        for q in self.coordinates:
+            assembly.motion(q).force += found.get(q.name, ca.SX(0))
+        if self.outputs is not None:
+            for name, expression in _expressions("outputs", self.outputs(*arguments)).items():
+                assembly.output(name, "", expression)
+
+
+def _expressions(name: str, found: object) -> dict[str, ca.SX]:
+    """What a function returned, as expressions. Raises ValueError for anything else."""
+    if not isinstance(found, Mapping):
+        raise ValueError(
+            f"{name} returned a {type(found).__name__}; it must return a mapping of names to expressions"
+        )
+    for key, value in found.items():
+        scalar = isinstance(value, int | float) or (isinstance(value, ca.SX) and value.is_scalar())
+        if not scalar:
+            raise ValueError(
+                f"{name} returned {value!r} for {key!r}; it must be one number or one expression"
+            )
+    return {str(key): ca.SX(value) for key, value in found.items()}
+
+
+def _fitting(
+    kind: str,
+    given: Iterable[str],
+    wanted: Iterable[str],
+    optional: Iterable[str] = (),
+    *,
+    all_needed: bool = True,
+) -> None:
+    """Raise ValueError for names that are not wanted, or wanted ones that are missing."""
+    allowed = [*wanted, *optional]
+    for name in given:
+        if name not in allowed:
+            raise ValueError(f"{kind} has {name!r}; it must be one of {_listed(allowed)}")
+    missing = [name for name in wanted if name not in given] if all_needed else []
+    if missing:
+        raise ValueError(f"{kind} has no {_listed(missing)}; it must have {_listed(wanted)}")
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names) or "none"
