@@ -4,6 +4,8 @@ from periodic.branch import Branch, BranchFileError
 from periodic.closure import PhaseCondition
 from periodic.continuation import Run
 from periodic.measure import extrema, outputs
+from periodic.methods.collocation import Collocation
+from periodic.methods.shooting import Shooting
 from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
 from periodic.plotting import plot
@@ -20,6 +22,7 @@ __all__ = [
     "Accuracy",
     "Branch",
     "BranchFileError",
+    "Collocation",
     "Family",
     "Label",
     "MeshSettings",
@@ -31,6 +34,7 @@ __all__ = [
     "Run",
     "Scheme",
     "Settings",
+    "Shooting",
     "StepSettings",
     "Stop",
     "SwitchError",

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.closure import Row
 from periodic.orbit import Orbit
@@ -27,12 +28,27 @@ class Condensed:
     """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
 
     algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one.
+    Fulfils `periodic.bordered.Condensed`.
     """
 
+    orbit: Orbit
     step: Array
     stages: Array
     algebraic: Array
     residual: float
+
+    @property
+    def origin(self) -> NDArray[np.int_]:
+        """Each mesh point follows from the one before it."""
+        return np.arange(len(self.step))
+
+    def reduced(self, row: Row) -> Row:
+        """See `reduced`."""
+        return reduced(self.orbit, self, row)
+
+    def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
+        """See `recover`."""
+        return recover(self.orbit, self, nodes, outer, constant)
 
 
 def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
@@ -50,7 +66,8 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     start = local[..., 1 : 1 + n] * weights[:, :, :1, None]
     right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
     stages = solve_stages(local, right, weights)
-    return Condensed(_steps(orbit, stages), stages, algebraic.reshape(count, ncol, -1, width), residual)
+    steps = _steps(orbit, stages)
+    return Condensed(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), residual)
 
 
 def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
