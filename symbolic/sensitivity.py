@@ -30,6 +30,9 @@ EPSILON = 1e-10
 STEPS = 100_000
 """Most steps from one phase of output to the next."""
 
+TIGHTER = (1.0, 0.1, 0.01)
+"""Tolerances tried in turn, as parts of the wanted one."""
+
 KEPT = 64
 """How many integrators are kept; each is for certain phases."""
 
@@ -81,16 +84,32 @@ class SensitiveFlow:
         """
         n, width = len(state), 1 + len(state) + len(free)
         start = self._start(state, algebraic, parameter, float(phase[0]), free)
-        try:
-            found = self._cvodes(free, tuple(phase), tolerance)(x0=start, p=parameter)["xf"]
-        except RuntimeError as error:  # what CasADi raises for every failure of CVODES
-            where = f"between tau = {phase[0]:.6g} and {phase[-1]:.6g}"
-            raise IntegrationError(f"CVODES failed {where}") from error
-        values = np.column_stack([start, np.array(found)])
-        if not np.isfinite(values).all():
-            raise IntegrationError(f"the solution from tau = {phase[0]:.6g} is not finite")
+        later = self._integrated(start, parameter, tuple(phase), free, tolerance)
+        values = np.column_stack([start, later])
         both = values.T.reshape(len(phase), width, -1).swapaxes(1, 2)
         return Sensitivities(both[:, :n, 0], both[:, n:, 0], both[:, :n, 1:], both[:, n:, 1:])
+
+    def _integrated(
+        self,
+        start: Array,
+        parameter: Array,
+        phase: tuple[float, ...],
+        free: tuple[int, ...],
+        tolerance: float,
+    ) -> Array:
+        """All but the first values, a column each.
+
+        CVODES gives up where a step runs too far into a sudden touch-down. A tighter tolerance shortens it.
+        """
+        for factor in TIGHTER:
+            try:
+                found = self._cvodes(free, phase, factor * tolerance)(x0=start, p=parameter)["xf"]
+            except RuntimeError:  # what CasADi raises for every failure of CVODES
+                continue
+            later: Array = np.array(found)
+            if np.isfinite(later).all():
+                return later
+        raise IntegrationError(f"CVODES failed between tau = {phase[0]:.6g} and {phase[-1]:.6g}")
 
     def _start(
         self, state: Array, algebraic: Array, parameter: Array, phase: float, free: tuple[int, ...]
