@@ -142,7 +142,10 @@ def constraint_rows(system: CompiledSystem) -> list[int]:
 
 
 def explicit_rates(system: CompiledSystem, sensitivity: float = SENSITIVITY) -> ca.SX:
-    """Return (x', z') as an expression in states, unknowns, phase and parameters."""
+    """Return (x', z') as an expression in states, unknowns, phase and parameters.
+
+    Raises ValueError for a system whose rows are not linear in x'.
+    """
     e, constraints = system.expressions, constraint_rows(system)
     rate = ca.SX.sym("algebraic_rate", len(system.algebraics))
     rows = []
@@ -157,5 +160,7 @@ def explicit_rates(system: CompiledSystem, sensitivity: float = SENSITIVITY) -> 
             row += sensitivity * rate[constraints.index(i)]
         rows.append(row)
     rates, stacked = ca.vertcat(e.rate, rate), ca.vertcat(*rows)
+    if ca.depends_on(ca.jacobian(stacked, rates), rates):
+        raise ValueError("the rows of the system are not linear in its rates; time integration needs them so")
     rest = ca.substitute(stacked, rates, ca.SX.zeros(rates.size1()))
     return ca.solve(ca.jacobian(stacked, rates), -rest)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EPSILON = 1e-10
 """Added to the derivative of each constraint in its unknown, with which it rises."""
 
-STEPS = 100_000
+STEPS = 20_000
 """Most steps from one phase of output to the next."""
 
 TIGHTER = (1.0, 0.1, 0.01)

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 TIGHTER = 0.1
 """Tolerance of the integration that an orbit is held against, as a part of its own."""
 
+MARGIN = 1e-3
+"""How far the integrator's tolerance must lie below that of the orbits: its errors add up over the period."""
+
 APART = 1e-12
 """Breaks closer than this, as a part of the period, are one."""
 
@@ -42,8 +45,8 @@ class Shooting:
     """See `periodic.methods.protocol.Method`. The System must have `flow`: see `periodic.system.Flowing`.
 
     segments: how many trajectories make up an orbit; more of them where perturbations grow strongly.
-    tolerance: of the integrator, relative and absolute in scaled variables. It must lie well below those of
-    the orbits (`MeshSettings.tolerance`) and of Newton's iteration.
+    tolerance: of the integrator, relative and absolute in scaled variables; at most MARGIN times that of the
+    orbits (`MeshSettings.tolerance`), and well below Newton's.
     """
 
     segments: int = 1
@@ -59,11 +62,12 @@ class Shooting:
 
     def rest(self, system: System, settings: MeshSettings, parameter: Array) -> Orbit:
         """Return the constant orbit at the system's rest values. Raises ValueError for one without `flow`."""
-        return at_rest(_flowing(system), uniform(settings.scheme, settings.ntst), parameter)
+        self._check(system, settings)
+        return at_rest(system, uniform(settings.scheme, settings.ntst), parameter)
 
     def adopted(self, system: System, settings: MeshSettings, guess: Orbit, parameter: Array) -> Orbit:
         """Return a guess on a mesh without anchors. Raises ValueError for a system without `flow`."""
-        _flowing(system)
+        self._check(system, settings)
         period = guess.mesh.period
         places = np.sort(np.mod(guess.mesh.nodes(guess.phases) / period, 1.0))
         breaks = np.concatenate([[0.0], places[(places > APART) & (places < 1 - APART)], [1.0]])
@@ -113,6 +117,14 @@ class Shooting:
     def resolved(self, base: Correction, new: Correction) -> bool:
         """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
         return rotation.is_resolved(base.fundamental, new.fundamental)
+
+    def _check(self, system: System, settings: MeshSettings) -> None:
+        _flowing(system)
+        if self.tolerance > MARGIN * settings.tolerance:
+            raise ValueError(
+                f"tolerance of Shooting is {self.tolerance:g}; for orbits to {settings.tolerance:g} "
+                f"it must be at most {MARGIN * settings.tolerance:g}"
+            )
 
     def _condense(self, tolerance: float) -> Condense:
         def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> shooting.Condensed:
