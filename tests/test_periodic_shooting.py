@@ -136,7 +136,7 @@ def test_linear_oscillator(segments: int) -> None:
 @pytest.mark.parametrize("segments", [1, 4])
 def test_duffing_folds(segments: int) -> None:
     """Assert the folds of problem A, by one segment and by several."""
-    method = per.Shooting(segments)
+    method = per.Shooting(segments, tolerance=1e-11)
     branch = per.trace(duffing_system(*DUFFING_A), "Omega", (1.3, 2.4), method=method, accuracy=DRAFT)
     folds = branch.labelled(per.Label.FOLD)
     assert [p.parameter for p in folds] == pytest.approx(DUFFING_FOLDS, rel=1e-8)
@@ -164,10 +164,8 @@ def test_folds_of_the_disc() -> None:
 
     Shooting's orbits do not depend on the mesh that interpolates them: a coarse one will do.
     """
-    method = per.Shooting(segments=3, tolerance=1e-11)
-    branch = per.trace(
-        disc_scene(), "speed", (235 * RPM, 500 * RPM), start=500 * RPM, method=method, accuracy=DRAFT
-    )
+    method, bounds = per.Shooting(tolerance=1e-11), (235 * RPM, 300 * RPM)
+    branch = per.trace(disc_scene(), "speed", bounds, start=300 * RPM, method=method, accuracy=DRAFT)
     assert branch.stop.reason is per.Reason.BOUND
     assert fold_speeds(branch) == pytest.approx(DISC_FOLDS, rel=1e-8)
     assert fold_speeds(branch) == pytest.approx(fold_speeds(by_collocation()), rel=1e-8)
@@ -199,8 +197,8 @@ def test_autonomous() -> None:
 def test_doubling_of_an_autonomous_orbit() -> None:
     """Assert the doubling of the feedback control system, and the doubled orbits that begin there."""
     method, system = per.Shooting(), sym.compile(FEEDBACK)
-    guess = numpy_feedback(0.7).simulated([0.3, 0.0, 0.0], 1000.0, crossing=0)
-    branch = per.trace(system, "alpha", (0.61, 0.7), guess=guess, determined=AUTONOMOUS, method=method)
+    guess = numpy_feedback(0.65).simulated([0.3, 0.0, 0.0], 1000.0, crossing=0)
+    branch = per.trace(system, "alpha", (0.61, 0.65), guess=guess, determined=AUTONOMOUS, method=method)
     (doubling,) = branch.labelled(per.Label.DOUBLING)
     assert doubling.parameter == pytest.approx(0.630302006160, rel=1e-9)
     assert 2 * np.pi / doubling.orbit.parameter[0] == pytest.approx(6.364071339441, rel=1e-9)
