@@ -19,6 +19,8 @@ from periodic.functionals import (
 )
 from periodic.label import Label
 from periodic.measure import extrema, outputs
+from periodic.methods.collocation import Collocation
+from periodic.methods.shooting import Shooting
 from periodic.newton import NewtonSettings
 from periodic.normalform import first_lyapunov
 from periodic.onset import eigenvalues, hopf, mode
@@ -53,6 +55,7 @@ __all__ = [
     "sensitivities",
     "Branch",
     "BranchFileError",
+    "Collocation",
     "Conservative",
     "Family",
     "Label",
@@ -65,6 +68,7 @@ __all__ = [
     "Run",
     "Scheme",
     "Settings",
+    "Shooting",
     "StepSettings",
     "Stop",
     "SwitchError",

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic import collocation
 from periodic.closure import Condition, Plane, closures
-from periodic.newton import Outcome, at_fixed_phase, linear_step
+from periodic.newton import Condense, Outcome, at_fixed_phase, linear_step
 from periodic.orbit import Orbit, bisect
 from periodic.scheme import Array
 from periodic.system import System
@@ -48,16 +49,22 @@ def estimate(
     plane: Plane | None,
     free: tuple[int, ...] = (),
     conditions: Sequence[Condition] = (),
+    condense: Condense = collocation.condense,
 ) -> ErrorEstimate:
-    """Estimate the errors of a converged orbit: of fixed parameters, or of `free` ones on a plane."""
+    """Estimate the errors of a converged orbit: of fixed parameters, or of `free` ones on a plane.
+
+    `condense` are the equations that it is held against on the halved mesh.
+    """
     fine = bisect(orbit)
     closing = [] if plane is None else [*closures(conditions, free[1:], fine), _moved(plane, fine)]
-    step = linear_step(system, fine, free, closing)
+    step = linear_step(system, fine, free, closing, condense)
     if isinstance(step, Outcome):
         return ErrorEstimate(np.inf, np.inf)
     moved = step.outer[: len(fine.phases)]
-    change = np.abs(at_fixed_phase(fine, step.nodes, moved)).max()
-    change = max(change, np.abs(step.stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
+    nodes = step.orbit.nodes - fine.nodes + step.nodes
+    stages = step.orbit.stages - fine.stages + step.stages
+    change = np.abs(at_fixed_phase(fine, nodes, moved)).max()
+    change = max(change, np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
     span = max(orbit.span(), LEAST_SPAN)
     multiplier = _spectral_distance(step.fundamental[-1], monodromy)
     return ErrorEstimate(float(change) / span, multiplier)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic import bordered, collocation
+from periodic import bordered
 from periodic.closure import Row
 from periodic.collocation import Condensed, condense
 from periodic.orbit import Orbit
@@ -77,14 +77,14 @@ class Linear:
         n, k = self.orbit.nodes.shape[1], len(self.orbit.phases)
         outer = np.concatenate([np.zeros(k), unknown[n:]])
         nodes = self.columns(self.maps) @ unknown
-        stages, algebraic = collocation.recover(self.orbit, self.condensed, nodes, outer, 0.0)
+        stages, algebraic = self.condensed.recover(nodes, outer, 0.0)
         parameter = np.zeros_like(self.orbit.parameter)
         parameter[list(self.free)] = unknown[n:]
         return Tangent(nodes, stages, algebraic, parameter)
 
     def functional(self, row: Row) -> Array:
         """Return a row as a functional of (v_0, v_y)."""
-        return self.columns(bordered.reduced(collocation.reduced(self.condensed, row), self.maps))
+        return self.columns(bordered.reduced(self.condensed.reduced(row), self.maps))
 
     def source(self, end: Array) -> Row:
         """Return the functional end . v_N."""

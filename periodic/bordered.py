@@ -8,12 +8,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.closure import Row
-from periodic.collocation import Condensed
+from periodic.orbit import Orbit
 from periodic.scheme import Array
+
+
+class Condensed(Protocol):
+    """Linearised equations with what is local eliminated: each mesh point follows from an earlier one.
+
+        dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
+
+    orbit is the one linearised at, residual the largest of its equations.
+    """
+
+    @property
+    def orbit(self) -> Orbit: ...
+    @property
+    def step(self) -> Array: ...
+    @property
+    def origin(self) -> NDArray[np.int_]: ...
+    @property
+    def residual(self) -> float: ...
+
+    def reduced(self, row: Row) -> Row:
+        """Return a closure in mesh-point states and y alone, its stages eliminated."""
+
+    def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
+        """Return the increments of stages and unknowns that go with node increments and dy = `outer`.
+
+        constant is 1 for a Newton step, 0 for a direction along the solution set.
+        """
 
 
 @dataclass(frozen=True)
@@ -40,8 +69,9 @@ def chain(condensed: Condensed) -> Array:
     linear = np.ascontiguousarray(condensed.step[:, :, 1 : 1 + n])
     rest = condensed.step.copy()
     rest[:, :, 1 : 1 + n] = 0.0
+    origin = condensed.origin
     for j in range(count):
-        np.matmul(linear[j], maps[j], out=maps[j + 1])
+        np.matmul(linear[j], maps[origin[j]], out=maps[j + 1])
         maps[j + 1] += rest[j]
     return maps
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.closure import Row
 from periodic.orbit import Orbit
@@ -27,12 +28,40 @@ class Condensed:
     """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
 
     algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one.
+    Fulfils `periodic.bordered.Condensed`.
     """
 
+    orbit: Orbit
     step: Array
     stages: Array
     algebraic: Array
     residual: float
+
+    @property
+    def origin(self) -> NDArray[np.int_]:
+        """Each mesh point follows from the one before it."""
+        return np.arange(len(self.step))
+
+    def reduced(self, row: Row) -> Row:
+        """Return a closure in mesh-point states and y alone, its stages eliminated."""
+        if row.stages is None:
+            return row
+        n = row.nodes.shape[1]
+        each = np.einsum("jln,jlnw->jw", row.stages, self.stages)
+        nodes = row.nodes.copy()
+        nodes[:-1] += each[:, 1 : 1 + n]
+        return Row(row.value + float(each[:, 0].sum()), nodes, row.outer + each[:, 1 + n :].sum(axis=0))
+
+    def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
+        """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
+        orbit, (count, ncol, _) = self.orbit, self.orbit.stages.shape
+        one, dy = np.full((count, 1), constant), np.broadcast_to(outer, (count, len(outer)))
+        stages = np.einsum("jlnw,jw->jln", self.stages, np.concatenate([one, nodes[:-1], dy], axis=1))
+        knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
+        rates = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
+        around = [np.repeat(part[:, None], ncol, axis=1) for part in (one, dy)]
+        inner = np.concatenate([around[0], rates, stages, around[1]], axis=2)
+        return stages, -np.einsum("jlmw,jlw->jlm", self.algebraic, inner)
 
 
 def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
@@ -50,7 +79,8 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     start = local[..., 1 : 1 + n] * weights[:, :, :1, None]
     right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
     stages = solve_stages(local, right, weights)
-    return Condensed(_steps(orbit, stages), stages, algebraic.reshape(count, ncol, -1, width), residual)
+    steps = _steps(orbit, stages)
+    return Condensed(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), residual)
 
 
 def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
@@ -139,40 +169,3 @@ def _steps(orbit: Orbit, stages: Array) -> Array:
     steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
     steps[:, :, 0] += end @ orbit.knots - orbit.nodes[1:]
     return steps
-
-
-def recover(
-    orbit: Orbit, condensed: Condensed, nodes: Array, outer: Array, constant: float
-) -> tuple[Array, Array]:
-    """Return the increments of stages and unknowns that go with node increments and dy = `outer`.
-
-    constant is 1 for a Newton step, 0 for a direction along the solution set.
-    """
-    count, ncol, n = orbit.stages.shape
-    head = np.concatenate(
-        [np.full((count, 1), constant), nodes[:-1], np.broadcast_to(outer, (count, len(outer)))], axis=1
-    )
-    stages = np.einsum("jlnw,jw->jln", condensed.stages, head)
-    knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
-    rates = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-    inner = np.concatenate(
-        [
-            np.full((count, ncol, 1), constant),
-            rates,
-            stages,
-            np.broadcast_to(outer, (count, ncol, len(outer))),
-        ],
-        axis=2,
-    )
-    return stages, -np.einsum("jlmw,jlw->jlm", condensed.algebraic, inner)
-
-
-def reduced(condensed: Condensed, row: Row) -> Row:
-    """Return a closure in mesh-point states and y alone, its stages eliminated."""
-    if row.stages is None:
-        return row
-    n = row.nodes.shape[1]
-    each = np.einsum("jln,jlnw->jw", row.stages, condensed.stages)
-    nodes = row.nodes.copy()
-    nodes[:-1] += each[:, 1 : 1 + n]
-    return Row(row.value + float(each[:, 0].sum()), nodes, row.outer + each[:, 1 + n :].sum(axis=0))

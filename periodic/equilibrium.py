@@ -106,7 +106,9 @@ def increment(
     size, length = sizes(orbit, step.nodes, step.stages, change, outer, free, effect)
     along = direction(orbit, kernel, len(free)) if free else None
     residual = float(np.abs(rows.residual).max())
-    return Step(step.nodes, step.stages, step.algebraic, outer, size, length, residual, jacobian[None], along)
+    return Step(
+        orbit, step.nodes, step.stages, step.algebraic, outer, size, length, residual, jacobian[None], along
+    )
 
 
 def _flat(closure: Closure, system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[float, Array]:

@@ -1,4 +1,4 @@
-"""Damped Newton on the collocation equations and their closures."""
+"""Damped Newton on the equations of an orbit, condensed by collocation or shooting, and their closures."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from periodic.closure import Closure, Direction, Event, node_phase_gradient
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
+
+Condense = Callable[[System, Orbit, tuple[int, ...]], bordered.Condensed]
+"""Linearises the equations at an orbit, free parameters included, and eliminates what is local."""
 
 MAX_CHANGE = 2.0
 """Largest relative change in one iteration; longer Newton steps are cut to it."""
@@ -33,6 +36,7 @@ class Outcome(Enum):
     TOO_MANY = "Newton did not converge within its iterations"
     NOT_FINITE = "the equations were not finite near the iterate"
     SINGULAR = "the linear system was singular"
+    NOT_INTEGRATED = "time integration failed near the iterate"
     ANCHORS_CROSSED = "two anchors of the mesh met"
     COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
@@ -78,8 +82,9 @@ class Correction:
 
 @dataclass(frozen=True)
 class Step:
-    """One Newton increment, with the kernel direction of the same linearisation."""
+    """One Newton increment from `orbit`, with the kernel direction of the same linearisation."""
 
+    orbit: Orbit
     nodes: Array
     stages: Array
     algebraic: Array
@@ -109,22 +114,22 @@ def correct(
     """
     settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
-    base: tuple[Orbit, Step] | None = None
+    base: Step | None = None
     factor = 1.0
     while iterations < settings.max_iterations:
         iterations += 1
         trial = increment(system, orbit, free, closures)
-        worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
+        worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base.length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
             factor /= 4
-            orbit = _advance(system, *base, free, factor)
+            orbit = _advance(system, base, free, factor)
             continue
         if isinstance(trial, Outcome):
             outcome = trial
             break
-        step, base = trial, (orbit, trial)
+        step = base = trial
         factor = min(1.0, MAX_CHANGE / max(step.length, np.finfo(float).tiny))
-        orbit = _advance(system, orbit, step, free, factor)
+        orbit = _advance(system, step, free, factor)
         if step.size < settings.tolerance:
             outcome = Outcome.CONVERGED
             break
@@ -139,33 +144,41 @@ def correct(
         if isinstance(last, Outcome):
             outcome = last
         else:
-            step = replace(last, size=step.size)
+            orbit, step = last.orbit, replace(last, size=step.size)
     return Correction(orbit, outcome, iterations, step.size, step.residual, step.fundamental, step.kernel)
 
 
 def linear_step(
-    system: System, orbit: Orbit, free: tuple[int, ...], closures: Sequence[Closure]
+    system: System,
+    orbit: Orbit,
+    free: tuple[int, ...],
+    closures: Sequence[Closure],
+    condense: Condense = collocation.condense,
 ) -> Step | Outcome:
     """Return one Newton increment, or why there is none."""
     if (orbit.mesh.segment_lengths(orbit.phases) <= 0).any():
         return Outcome.ANCHORS_CROSSED
     events = [Event(i) for i in range(len(orbit.phases))]
     try:
-        condensed = collocation.condense(system, orbit, free)
+        condensed = condense(system, orbit, free)
+        orbit = condensed.orbit
         every = (c.linearise(system, orbit, free) for c in (*events, *closures))
-        rows = [collocation.reduced(condensed, row) for row in every]
+        rows = [condensed.reduced(row) for row in every]
         gap = orbit.nodes[-1] - orbit.nodes[0]
         solution = bordered.solve(condensed, gap, rows, with_kernel=bool(closures))
     except FloatingPointError:
         return Outcome.NOT_FINITE
+    except ArithmeticError:
+        return Outcome.NOT_INTEGRATED
     except np.linalg.LinAlgError:
         return Outcome.SINGULAR
-    stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
+    stages, algebraic = condensed.recover(solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
-    effect = orbit.mesh.ntst * np.abs(condensed.stages[..., 1 + orbit.nodes.shape[1] :]).max(axis=(0, 1, 2))
+    effect = _effect(condensed)
     size, length = sizes(orbit, solution.nodes, stages, change, solution.outer, free, effect)
-    kernel = _direction(orbit, condensed, solution) if closures else None
+    kernel = _direction(condensed, solution) if closures else None
     return Step(
+        orbit,
         solution.nodes,
         stages,
         algebraic,
@@ -209,6 +222,12 @@ def sizes(
     return max(regular, left), max(regular, change)
 
 
+def _effect(condensed: bordered.Condensed) -> Array:
+    """How much the states change with each of y over a period, about; shape (q,)."""
+    n = condensed.step.shape[1]
+    return len(np.unique(condensed.origin)) * np.abs(condensed.step[:, :, 1 + n :]).max(axis=(0, 1))
+
+
 def moved(system: System, algebraic: Array, increment: Array) -> Array:
     """Return unknowns of shape (N, ncol, m) after an increment."""
     flat = (algebraic.shape[0] * algebraic.shape[1], algebraic.shape[2])
@@ -217,8 +236,8 @@ def moved(system: System, algebraic: Array, increment: Array) -> Array:
     return system.move(algebraic.reshape(flat), increment.reshape(flat)).reshape(algebraic.shape)
 
 
-def _advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
-    k = len(orbit.phases)
+def _advance(system: System, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+    orbit, k = step.orbit, len(step.orbit.phases)
     parameter = orbit.parameter.copy()
     parameter[list(free)] += factor * step.outer[k:]
     return replace(
@@ -231,14 +250,12 @@ def _advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], fa
     )
 
 
-def _direction(
-    orbit: Orbit, condensed: collocation.Condensed, solution: bordered.BorderedSolution
-) -> Direction:
+def _direction(condensed: bordered.Condensed, solution: bordered.BorderedSolution) -> Direction:
     """The kernel direction with stages and unknowns recovered; not yet of unit length."""
     assert solution.kernel_nodes is not None and solution.kernel_outer is not None
-    k = len(orbit.phases)
+    orbit, k = condensed.orbit, len(condensed.orbit.phases)
     nodes, outer = solution.kernel_nodes, solution.kernel_outer
-    stages, algebraic = collocation.recover(orbit, condensed, nodes, outer, 0.0)
+    stages, algebraic = condensed.recover(nodes, outer, 0.0)
     profile = at_fixed_phase(orbit, nodes, outer[:k])
     return Direction(nodes, stages, algebraic, outer[:k], profile, float(outer[k]), outer[k + 1 :])
 

@@ -48,7 +48,7 @@ def sensitivities(
     top[:, :n] -= np.eye(n)
 
     def flat(row: Row) -> Array:
-        return bordered.reduced(collocation.reduced(condensed, row), maps)[1:]
+        return bordered.reduced(condensed.reduced(row), maps)[1:]
 
     matrix = np.concatenate([top, *(flat(row)[None] for row in rows)])
     moved = -np.linalg.solve(matrix[:, :inner], matrix[:, inner:])

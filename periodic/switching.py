@@ -144,7 +144,7 @@ def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Dir
     fundamental = bordered.chain(condensed)[:, :, 1 : 1 + orbit.nodes.shape[1]]
     flow = orbit.node_rates[0] if autonomous and multiplier == 1 else None
     nodes = fundamental @ _kept(fundamental[-1] - multiplier * np.eye(len(fundamental[-1])), flow)
-    stages, algebraic = collocation.recover(orbit, condensed, nodes, np.zeros(len(orbit.phases)), 0.0)
+    stages, algebraic = condensed.recover(nodes, np.zeros(len(orbit.phases)), 0.0)
     return Direction(nodes, stages, algebraic, np.zeros(len(orbit.phases)), nodes, 0.0, np.zeros(0))
 
 

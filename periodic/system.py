@@ -157,6 +157,40 @@ def differentiable(system: System) -> Differentiable:
     return cast(Differentiable, system)
 
 
+class FlowLike(Protocol):
+    """A trajectory at K phases: state (K, n), algebraic (K, m), and their derivatives in the first state and
+    then in the free parameters, state_gradient (K, n, n+q), algebraic_gradient (K, m, n+q).
+    """
+
+    @property
+    def state(self) -> Array: ...
+    @property
+    def algebraic(self) -> Array: ...
+    @property
+    def state_gradient(self) -> Array: ...
+    @property
+    def algebraic_gradient(self) -> Array: ...
+
+
+class Flowing(System, Protocol):
+    """A system that can also integrate itself in time, which shooting needs."""
+
+    def flow(
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        free: tuple[int, ...],
+        tolerance: float,
+    ) -> FlowLike:
+        """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
+
+        algebraic (m,) is a guess of the unknowns at phase[0]; `free` are the parameters to differentiate in;
+        tolerance is relative and absolute. Raises ArithmeticError where the integration fails.
+        """
+
+
 def index_of(system: System, parameter: str) -> int:
     """Return the index of a parameter. Raises ValueError for a name that is none."""
     names = [p.name for p in system.parameters]

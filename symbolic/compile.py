@@ -21,6 +21,7 @@ from symbolic.kernel import batch, build, points, vector
 from symbolic.model import Model, Part
 from symbolic.parts.contact import Junction
 from symbolic.second import Gradient, Symbols, contraction
+from symbolic.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.variables import SwitchInfo, Variable
 
 Array = NDArray[np.float64]
@@ -155,6 +156,22 @@ class CompiledSystem:
         with np.errstate(all="ignore"):
             self._switch_gradient_kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
+
+    def flow(
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        free: tuple[int, ...],
+        tolerance: float,
+    ) -> Sensitivities:
+        """Integrate with sensitivities: see `periodic.system.Flowing`. Raises ArithmeticError."""
+        return self._flow.run(state, algebraic, parameter, phase, free, tolerance)
+
+    @cached_property
+    def _flow(self) -> SensitiveFlow:
+        return SensitiveFlow(self)
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""

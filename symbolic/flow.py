@@ -15,12 +15,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from symbolic.compile import Array, CompiledSystem
+if TYPE_CHECKING:
+    from symbolic.compile import Array, CompiledSystem
 
 SENSITIVITY = 1e-8
 """Added to the derivative of each constraint in its unknown, with which it rises."""
@@ -118,7 +120,7 @@ class Flow:
     @cached_property
     def _constraints(self) -> ca.Function:
         e = self.system.expressions
-        rows = ca.vertcat(ca.SX(0, 1), *[e.residual[i] for i in _constraint_rows(self.system)])
+        rows = ca.vertcat(ca.SX(0, 1), *[e.residual[i] for i in constraint_rows(self.system)])
         y = ca.vertcat(e.state, e.algebraic)
         return ca.Function("constraints", [y, e.phase, e.parameter], [rows, ca.jacobian(rows, y)])
 
@@ -132,15 +134,19 @@ class Flow:
         return y
 
 
-def _constraint_rows(system: CompiledSystem) -> list[int]:
+def constraint_rows(system: CompiledSystem) -> list[int]:
+    """Return the indices of the rows without any derivative."""
     e = system.expressions
     pattern = ca.jacobian(e.residual, e.rate)
     return [i for i in range(e.residual.size1()) if pattern[i, :].nnz() == 0]
 
 
-def explicit_rates(system: CompiledSystem) -> ca.SX:
-    """Return (x', z') as an expression in states, unknowns, phase and parameters."""
-    e, constraints = system.expressions, _constraint_rows(system)
+def explicit_rates(system: CompiledSystem, sensitivity: float = SENSITIVITY) -> ca.SX:
+    """Return (x', z') as an expression in states, unknowns, phase and parameters.
+
+    Raises ValueError for a system whose rows are not linear in x'.
+    """
+    e, constraints = system.expressions, constraint_rows(system)
     rate = ca.SX.sym("algebraic_rate", len(system.algebraics))
     rows = []
     for i in range(e.residual.size1()):
@@ -151,8 +157,10 @@ def explicit_rates(system: CompiledSystem) -> ca.SX:
                 + ca.jtimes(row, e.algebraic, rate)
                 + ca.jacobian(row, e.phase)
             )
-            row += SENSITIVITY * rate[constraints.index(i)]
+            row += sensitivity * rate[constraints.index(i)]
         rows.append(row)
     rates, stacked = ca.vertcat(e.rate, rate), ca.vertcat(*rows)
+    if ca.depends_on(ca.jacobian(stacked, rates), rates):
+        raise ValueError("the rows of the system are not linear in its rates; time integration needs them so")
     rest = ca.substitute(stacked, rates, ca.SX.zeros(rates.size1()))
     return ca.solve(ca.jacobian(stacked, rates), -rest)
