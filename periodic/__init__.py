@@ -4,6 +4,8 @@ from periodic.branch import Branch, BranchFileError
 from periodic.closure import PhaseCondition
 from periodic.continuation import Run
 from periodic.measure import extrema, outputs
+from periodic.methods.collocation import Collocation
+from periodic.methods.harmonic import HarmonicBalance
 from periodic.newton import NewtonSettings
 from periodic.orbit import Orbit
 from periodic.plotting import plot
@@ -20,7 +22,9 @@ __all__ = [
     "Accuracy",
     "Branch",
     "BranchFileError",
+    "Collocation",
     "Family",
+    "HarmonicBalance",
     "Label",
     "MeshSettings",
     "NewtonSettings",

@@ -78,7 +78,7 @@ class Run:
             self.stop = Stop.no_start(base)
             return
         if base.error.orbit > task.settings.mesh.tolerance:
-            self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
+            self.stop = Stop.inaccurate(task.method.shortfall(task, base))
             return
         if repeats(task, base):
             raise ValueError(

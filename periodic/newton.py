@@ -1,8 +1,8 @@
-"""Damped Newton on the collocation equations and their closures."""
+"""Damped Newton on a discretisation's equations, those of collocation by default, and their closures."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -84,35 +84,41 @@ class Step:
     kernel: Direction | None
 
 
+Increment = Callable[[System, Orbit, tuple[int, ...], Sequence[Closure]], "Step | Outcome"]
+"""What linearises the equations at an orbit: one Newton increment, or why there is none."""
+
+
 def correct(
     system: System,
     guess: Orbit,
     free: tuple[int, ...] = (),
     closures: Sequence[Closure] = (),
     settings: NewtonSettings | None = None,
+    increment: Increment | None = None,
 ) -> Correction:
     """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
 
-    The outcome is on the result; nothing is raised for a numerical failure.
+    `increment` linearises the equations (default: those of collocation). The outcome is on the result; nothing
+    is raised for a numerical failure.
     """
-    settings = settings or NewtonSettings()
+    settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
     base: tuple[Orbit, Step] | None = None
     factor = 1.0
     while iterations < settings.max_iterations:
         iterations += 1
-        trial = linear_step(system, orbit, free, closures)
+        trial = increment(system, orbit, free, closures)
         worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base[1].length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
             factor /= 4
-            orbit = _advance(system, *base, free, factor)
+            orbit = advance(system, *base, free, factor)
             continue
         if isinstance(trial, Outcome):
             outcome = trial
             break
         step, base = trial, (orbit, trial)
         factor = min(1.0, MAX_CHANGE / max(step.length, np.finfo(float).tiny))
-        orbit = _advance(system, orbit, step, free, factor)
+        orbit = advance(system, orbit, step, free, factor)
         if step.size < settings.tolerance:
             outcome = Outcome.CONVERGED
             break
@@ -123,7 +129,7 @@ def correct(
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
     if outcome is Outcome.CONVERGED:
-        last = linear_step(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+        last = increment(system, orbit, free, closures)  # multipliers and tangent of the final orbit
         if isinstance(last, Outcome):
             outcome = last
         else:
@@ -150,7 +156,7 @@ def linear_step(
         return Outcome.SINGULAR
     stages, algebraic = collocation.recover(orbit, condensed, solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
-    size, length = _sizes(orbit, solution.nodes, stages, change, solution.outer, free)
+    size, length = sizes(orbit, solution.nodes, stages, change, solution.outer, free)
     kernel = _direction(orbit, condensed, solution) if closures else None
     return Step(
         solution.nodes,
@@ -165,7 +171,7 @@ def linear_step(
     )
 
 
-def _sizes(
+def sizes(
     orbit: Orbit, nodes: Array, stages: Array, algebraic: Array, outer: Array, free: tuple[int, ...]
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
@@ -195,7 +201,8 @@ def moved(system: System, algebraic: Array, increment: Array) -> Array:
     return system.move(algebraic.reshape(flat), increment.reshape(flat)).reshape(algebraic.shape)
 
 
-def _advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+def advance(system: System, orbit: Orbit, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+    """Return the orbit after a part of a Newton increment."""
     k = len(orbit.phases)
     parameter = orbit.parameter.copy()
     parameter[list(free)] += factor * step.outer[k:]

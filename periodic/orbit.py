@@ -86,6 +86,10 @@ class Orbit:
         """How many periods of the excitation the orbit takes to come back."""
         return round(self.mesh.period / FORCED)
 
+    def collocated(self) -> Orbit:
+        """The orbit as a piecewise polynomial on the same mesh points: itself."""
+        return self
+
     def span(self) -> float:
         """Largest peak-to-peak value of the scaled states: what errors are compared with."""
         flat = self.knots.reshape(-1, self.knots.shape[2])
@@ -112,13 +116,13 @@ def transfer(orbit: Orbit, mesh: Mesh, phases: Array) -> Orbit:
     tau = (grid.left[:, None] + grid.width[:, None] * mesh.scheme.points).ravel()
     inside = tau - 1e-9 * np.repeat(grid.width, mesh.scheme.ncol)
     shape = (mesh.ntst, mesh.scheme.ncol, -1)
-    return replace(
-        orbit,
-        mesh=mesh,
-        nodes=orbit.state(mesh.nodes(phases)),
-        stages=orbit.state(tau).reshape(shape),
-        algebraic=orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
-        phases=phases,
+    return Orbit(
+        mesh,
+        orbit.state(mesh.nodes(phases)),
+        orbit.state(tau).reshape(shape),
+        orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
+        phases,
+        orbit.parameter,
     )
 
 

@@ -62,6 +62,6 @@ class Stop:
         return cls(Reason.NO_START, outcome.value)
 
     @classmethod
-    def inaccurate(cls, error: float, ntst: int) -> Stop:
-        """The first orbit misses the tolerance."""
-        return cls(Reason.INACCURATE, f"error estimate {error:.1e} with {ntst} intervals")
+    def inaccurate(cls, shortfall: str) -> Stop:
+        """An orbit misses the tolerance."""
+        return cls(Reason.INACCURATE, shortfall)

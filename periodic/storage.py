@@ -18,6 +18,7 @@ import xarray as xr
 
 from periodic.accuracy import ErrorEstimate
 from periodic.branch import Branch, BranchFileError, Layout, Quantity
+from periodic.fourier import FourierOrbit
 from periodic.mesh import Anchor, Mesh
 from periodic.orbit import Orbit
 from periodic.point import Label, Point
@@ -214,7 +215,8 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     breaks = np.split(data["sigma"].values, np.cumsum(data["break_count"].values)[:-1])
     algebraic = data["stage_algebraic"].values if m else np.zeros((data.sizes.get("stage", 0), 0))
     segment = anchor = node = stage = 0
-    orbits = []
+    kind = FourierOrbit if scheme.family is Family.EQUIDISTANT else Orbit
+    orbits: list[Orbit] = []
     for i in range(data.sizes["point"]):
         segments, anchors = int(data["segment_count"].values[i]), int(data["anchor_count"].values[i])
         mine = tuple(breaks[segment : segment + segments])
@@ -230,7 +232,7 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
         count = mesh.ntst
         rows = slice(stage, stage + count * ncol)
         orbits.append(
-            Orbit(
+            kind(
                 mesh,
                 data["node_state"].values[node : node + count + 1],
                 data["stage_state"].values[rows].reshape(count, ncol, n),

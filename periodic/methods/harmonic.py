@@ -1,0 +1,174 @@
+"""Harmonic balance: the quick method for smooth orbits, with as many harmonics as each needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from periodic import balance, events, newton, rotation
+from periodic.accuracy import LEAST_SPAN, ErrorEstimate, spectral_distance
+from periodic.anchors import Crossing
+from periodic.closure import Closure, Plane
+from periodic.dense import algebraic_at
+from periodic.fourier import NO_PHASES, FourierOrbit, harmonics_of, mesh_for, series, tail
+from periodic.hill import floquet
+from periodic.mesh import Mesh
+from periodic.newton import Correction, NewtonSettings, Outcome
+from periodic.orbit import FORCED, Orbit, at_rest
+from periodic.scheme import Array
+from periodic.settings import MeshSettings
+from periodic.system import System
+
+if TYPE_CHECKING:
+    from periodic.solve import Solved, Task
+
+AIM = 0.1
+"""The part of the tolerance that a new number of harmonics aims at."""
+
+LEAST = 3
+"""Fewest harmonics that an orbit is given, unless it begins with fewer."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicBalance:
+    """See `periodic.methods.protocol.Method`. harmonics: of the excitation frequency, to begin with.
+
+    They become fewer or more, up to `most`, as the tolerance asks for; with most = harmonics = H there are
+    never more than H, and a tolerance that they do not meet is refused.
+    """
+
+    harmonics: int = 8
+    most: int = 64
+    passages = events.PASSAGES
+    branching = (events.BRANCHING,)
+
+    def __post_init__(self) -> None:
+        for name in ("harmonics", "most"):
+            value = getattr(self, name)
+            if not (value >= 1 and float(value).is_integer()):
+                raise ValueError(f"{name} is {value}; it must be a whole number of at least 1")
+        if self.harmonics > self.most:
+            raise ValueError(f"harmonics is {self.harmonics}; it must be at most most = {self.most}")
+
+    def rest(self, system: System, settings: MeshSettings, parameter: Array) -> Orbit:
+        """Return the constant orbit at the system's rest values."""
+        mesh = mesh_for(self.harmonics, FORCED)
+        return series(at_rest(system, mesh, parameter), mesh)
+
+    def adopted(self, system: System, settings: MeshSettings, guess: Orbit, parameter: Array) -> Orbit:
+        """Return a guess as a series of as many harmonics as it seems to need, at given parameters."""
+        least, most = self.harmonics * guess.periods, self.most * guess.periods
+        full = series(guess, mesh_for(most, guess.mesh.period))
+        large = np.flatnonzero(full.amplitudes > settings.tolerance * max(full.span(), LEAST_SPAN))
+        wanted = int(np.clip(1 + large.max(initial=0), least, most))
+        fitted = series(full, mesh_for(wanted, guess.mesh.period))
+        return _with_unknowns(system, replace(fitted, parameter=parameter))
+
+    def correct(
+        self,
+        system: System,
+        guess: Orbit,
+        free: tuple[int, ...],
+        closures: Sequence[Closure],
+        settings: NewtonSettings,
+    ) -> Correction:
+        """Solve for the orbit near `guess`; its fundamental matrices are Hill's."""
+        found = newton.correct(system, guess, free, closures, settings, balance.increment)
+        if found.outcome is not Outcome.CONVERGED:
+            return found
+        assert isinstance(found.orbit, FourierOrbit)
+        try:
+            return replace(found, fundamental=floquet(system, found.orbit).fundamental)
+        except FloatingPointError:
+            return replace(found, outcome=Outcome.NOT_FINITE)
+        except np.linalg.LinAlgError:
+            return replace(found, outcome=Outcome.SINGULAR)
+
+    def estimate(self, task: Task, correction: Correction, plane: Plane) -> ErrorEstimate:
+        """Estimate the errors by a Newton step with half as many harmonics again (deferred correction)."""
+        from periodic.solve import on_mesh
+
+        orbit = correction.orbit
+        more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
+        fine = _with_unknowns(task.system, series(orbit, mesh_for(more, orbit.mesh.period)))
+        across = Plane(fine, on_mesh(plane.direction, orbit, fine), 0.0, plane.metric, plane.index)
+        closures = [*(condition.at(fine) for condition in task.conditions), across]
+        step = balance.increment(task.system, fine, task.free, closures)
+        if isinstance(step, Outcome):
+            return ErrorEstimate(np.inf, np.inf)
+        error = float(np.abs(step.stages).max()) / max(orbit.span(), LEAST_SPAN)
+        better = newton.advance(task.system, fine, step, task.free, min(1.0, newton.MAX_CHANGE / step.length))
+        assert isinstance(better, FourierOrbit)
+        try:
+            found = floquet(task.system, better)
+        except (FloatingPointError, np.linalg.LinAlgError):
+            return ErrorEstimate(error, np.inf)
+        distance = spectral_distance(found.fundamental[-1], correction.monodromy)
+        return ErrorEstimate(error, distance if found.resolved else np.inf)
+
+    def wanted(self, task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
+        """Return no crossings: a series cannot be tied to them."""
+        return []
+
+    def genuine(self, system: System, orbit: Orbit) -> bool:
+        """There is nothing that might not be genuine."""
+        return True
+
+    def exhausted(self, settings: MeshSettings, orbit: Orbit) -> bool:
+        """Whether an orbit has the largest number of harmonics."""
+        return harmonics_of(orbit.mesh) >= self.most * orbit.periods
+
+    def shortfall(self, task: Task, solved: Solved) -> str:
+        """Say how far the spectrum has fallen."""
+        orbit = solved.orbit
+        assert isinstance(orbit, FourierOrbit)
+        left = tail(orbit, LEAST_SPAN)
+        return (
+            f"the spectrum's tail is {left:.1e} at {orbit.harmonics} harmonics (error estimate "
+            f"{solved.error.orbit:.1e}); the tolerance is {task.settings.mesh.tolerance:g}"
+        )
+
+    def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
+        """Yield the mesh for the number of harmonics that the orbit needs."""
+        yield self.mesh_for(task, solved), NO_PHASES
+
+    def mesh_for(self, task: Task, new: Solved) -> Mesh:
+        """Return the mesh for the number of harmonics that an orbit needs."""
+        orbit = new.orbit
+        assert isinstance(orbit, FourierOrbit)
+        least, most = min(LEAST, self.harmonics) * orbit.periods, self.most * orbit.periods
+        goal = AIM * task.settings.mesh.tolerance
+        wanted = int(np.clip(needed(orbit, new.error.worst, goal), least, most))
+        return mesh_for(wanted, orbit.mesh.period)
+
+    def guesses(self, task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+        """Yield the series cut or filled up with zeros, its unknowns solved for."""
+        yield _with_unknowns(task.system, series(old, mesh))
+
+    def resolved(self, base: Correction, new: Correction) -> bool:
+        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
+        return rotation.is_resolved(base.fundamental, new.fundamental)
+
+
+def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
+    """The number of harmonics that brings an error to its goal, if the spectrum falls on as it has fallen.
+
+    From half to twice as many as there are.
+    """
+    present, amplitudes = orbit.harmonics, orbit.amplitudes
+    if not np.isfinite(error):
+        return 2 * present
+    floor = np.finfo(float).tiny
+    top, last = amplitudes.max(), max(float(amplitudes[-max(present // 4, min(2, present)) :].max()), floor)
+    rate = max(float(np.log(max(top, floor) / last)) / present, 0.01)
+    change = np.log(max(error, floor) / goal) / rate
+    return int(np.ceil(np.clip(present + change, present / 2, 2 * present)))
+
+
+def _with_unknowns(system: System, orbit: FourierOrbit) -> FourierOrbit:
+    """Solve for the unknowns at the samples."""
+    unknowns = algebraic_at(system, orbit, orbit.stage_phases.ravel())
+    return replace(orbit, algebraic=unknowns.reshape(orbit.algebraic.shape))
