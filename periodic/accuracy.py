@@ -59,7 +59,7 @@ def estimate(
     change = np.abs(at_fixed_phase(fine, step.nodes, moved)).max()
     change = max(change, np.abs(step.stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
     span = max(orbit.span(), LEAST_SPAN)
-    multiplier = spectral_distance(step.fundamental[-1], monodromy)
+    multiplier = _spectral_distance(step.fundamental[-1], monodromy)
     return ErrorEstimate(float(change) / span, multiplier)
 
 
@@ -70,7 +70,7 @@ def _stage_shift(orbit: Orbit, moved: Array) -> Array:
     return (left[:, None] + stretch[:, None] * points)[:, :, None]
 
 
-def spectral_distance(a: Array, b: Array) -> float:
+def _spectral_distance(a: Array, b: Array) -> float:
     """Distance of two spectra in the sums of their first and second powers, over the largest multiplier.
 
     Unlike the multipliers themselves these stay smooth where two of them meet.

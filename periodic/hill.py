@@ -22,24 +22,26 @@ from numpy.typing import NDArray
 from scipy import linalg
 
 from periodic.balance import projected, sampled
-from periodic.fourier import FourierOrbit, transform
+from periodic.fourier import FourierOrbit, basis, basis_slope, transform
 from periodic.scheme import Array
 from periodic.system import System
 
 Complex = NDArray[np.complex128]
 
-DENSE = 40
-"""Up to so many harmonic coefficients 2H+1 all eigenvalues are found; beyond, those near 0 (Arnoldi)."""
+DENSE = 15
+"""Up to so many harmonics all eigenvalues are found; beyond, those near 0 (Arnoldi)."""
 
 SHIFT = 0.2137
 """Near which they are looked for: real, and no likely exponent itself."""
 
-BLOCKS = (10, 16, 24)
+BLOCKS = (12, 18, 27)
 """Sizes of the Krylov space in blocks of n vectors, tried in turn."""
 
-CLOSE = 1e-10
-"""Largest residual of Ritz vectors, relative to their eigenvalue."""
+CLOSE = 1e-11
+"""Largest residual of an eigenvector from a Krylov space, relative to its eigenvalue."""
 
+DEPENDENT = 1e-4
+"""Eigenvectors whose singular values spread more are replaced by Schur vectors."""
 
 NEAR = 1.5
 """Centroids nearer to 0 than this tell where the window ends."""
@@ -47,52 +49,92 @@ NEAR = 1.5
 
 @dataclass(frozen=True)
 class Floquet:
-    """Fundamental matrices at the mesh points (N+1, n, n), and whether the exponents could be told apart."""
+    """Floquet's form of the fundamental matrices: coefficients of P (2H+1, n, n), and B (n, n).
 
-    fundamental: Array
+    resolved: whether the exponents could be told from their copies.
+    """
+
+    shape: Complex
+    rate: Complex
+    period: float
     resolved: bool
+
+    def fundamental(self, orbit: FourierOrbit) -> Array:
+        """Return Phi at the mesh points, (N+1, n, n). Raises numpy.linalg.LinAlgError where P(0) is singular."""
+        shapes = np.tensordot(transform(orbit.harmonics).nodes, self.shape, 1)
+        step = linalg.expm(self.rate * self.period / orbit.mesh.ntst)
+        growth = np.empty_like(shapes)
+        growth[0] = np.linalg.inv(shapes[0])
+        for j in range(orbit.mesh.ntst):
+            growth[j + 1] = step @ growth[j]
+        fundamental = (shapes @ growth).real
+        if not np.isfinite(fundamental).all():
+            raise np.linalg.LinAlgError("the vectors at the first mesh point are dependent")
+        return fundamental
+
+    def error(self, system: System, fine: FourierOrbit) -> float:
+        """Estimate the error of the multipliers from what is left of P's equation along a better orbit.
+
+        With P^-1 (J P - P' - P B) = G the sums of powers of the multipliers are off by
+        tr M^k: k period tr(exp(k period B) mean G), to first order; they are measured as in
+        `periodic.accuracy`.
+        """
+        if not self.resolved:
+            return np.inf
+        angle = fine.frequency * fine.stage_phases.ravel()
+        harmonics = (len(self.shape) - 1) // 2
+        P = np.tensordot(basis(harmonics, angle), self.shape, 1)
+        slope = fine.frequency * np.tensordot(basis_slope(harmonics, angle), self.shape, 1)
+        left = np.linalg.solve(P, jacobian(system, fine) @ P - slope - P @ self.rate).mean(axis=0)
+        once = linalg.expm(self.rate * self.period)
+        scale = max(1.0, float(np.abs(np.linalg.eigvals(once)).max()))
+        sums = [np.trace(power @ left) for power in (once / scale, once @ once / scale**2)]
+        return float(self.period * np.abs(sums).max())
+
+
+def jacobian(system: System, orbit: FourierOrbit) -> Array:
+    """J at the samples, shape (S, n, n).
+
+    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where E is singular.
+    """
+    samples = sampled(system, orbit, ())
+    return -np.linalg.solve(samples.d_rate, samples.d_state)
 
 
 def floquet(system: System, orbit: FourierOrbit) -> Floquet:
-    """Return the fundamental matrices of an orbit.
-
-    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where E or P(0) is
-    singular.
-    """
+    """Return Floquet's form of the fundamental matrices of an orbit. Raises as `jacobian` does."""
     n = orbit.nodes.shape[1]
-    samples = sampled(system, orbit, ())
-    jacobian = -np.linalg.solve(samples.d_rate, samples.d_state)
-    unit = np.broadcast_to(np.eye(n), jacobian.shape)
-    matrix = projected(-unit, jacobian, orbit.frequency)
-    vectors, rate, resolved = _genuine(matrix, n)
-    shapes = np.tensordot(transform(orbit.harmonics).nodes, vectors.reshape(-1, n, n), 1)
-    step = linalg.expm(rate * orbit.mesh.period / orbit.mesh.ntst)
-    growth = np.empty_like(shapes)
-    growth[0] = np.linalg.inv(shapes[0])
-    for j in range(orbit.mesh.ntst):
-        growth[j + 1] = step @ growth[j]
-    fundamental = (shapes @ growth).real
-    if not np.isfinite(fundamental).all():
-        raise np.linalg.LinAlgError("the eigenvectors at the first mesh point are dependent")
-    return Floquet(fundamental, resolved)
+    J = jacobian(system, orbit)
+    matrix = projected(np.broadcast_to(-np.eye(n), J.shape), J, orbit.frequency)
+    found = _krylov(matrix, n) if orbit.harmonics > DENSE else _dense(matrix, n)
+    return Floquet(found.vectors.reshape(-1, n, n), found.rate, orbit.mesh.period, found.resolved)
 
 
-def _genuine(matrix: Array, n: int) -> tuple[Complex, Complex, bool]:
-    """The invariant subspace (size, n) of the genuine exponents, B, and whether there were just n of them."""
-    if len(matrix) > DENSE * n:
-        found = _krylov(matrix, n)
-        if found is not None:
-            return found
-    vectors, rate, resolved = _subspace(matrix, np.eye(len(matrix)), n)
-    return vectors, rate, resolved
+@dataclass(frozen=True)
+class _Subspace:
+    """The invariant subspace (size, n) of the chosen exponents, B, and whether there were just n of them."""
+
+    vectors: Complex
+    rate: Complex
+    resolved: bool
 
 
-def _krylov(matrix: Array, n: int) -> tuple[Complex, Complex, bool] | None:
-    """The same from a Krylov space of (matrix - SHIFT)^-1; None where it is not accurate or complete."""
-    size = len(matrix)
+def _dense(matrix: Array, n: int) -> _Subspace:
+    """The subspace of the exponents whose centroids lie nearest to 0, from all eigenvalues."""
+    values, vectors = np.linalg.eig(matrix)
+    chosen, resolved = in_window(centroids(vectors, n), n)
+    return _spanned(matrix, values, vectors, chosen, resolved)
+
+
+def _krylov(matrix: Array, n: int) -> _Subspace:
+    """The subspace of the exponents whose imaginary parts lie nearest to 0.
+
+    They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
+    """
+    size, far = len(matrix), len(matrix) // n / 4
     factors = linalg.lu_factor(matrix - SHIFT * np.eye(size))
-    block = np.linalg.qr(np.random.default_rng(0).standard_normal((size, n)))[0]
-    space, images = block, np.zeros((size, 0))
+    space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, n)))[0]
+    images = np.zeros((size, 0))
     for blocks in BLOCKS:
         while images.shape[1] < blocks * n:
             image = linalg.lu_solve(factors, space[:, -n:])
@@ -100,25 +142,36 @@ def _krylov(matrix: Array, n: int) -> tuple[Complex, Complex, bool] | None:
             for _ in range(2):
                 image = image - space @ (space.T @ image)
             space = np.concatenate([space, np.linalg.qr(image)[0]], axis=1)
-        basis = space[:, :-n]
-        vectors, inverse, resolved = _subspace(basis.T @ images, basis, n, inverted=True)
-        rate = np.linalg.inv(inverse) + SHIFT * np.eye(n)
-        error = np.abs(matrix @ vectors - vectors @ rate).max()
-        if resolved and error < CLOSE * max(1.0, np.abs(rate).max()):
-            return vectors, rate, True
-    return None
+        known = space[:, :-n]
+        inside = known.T @ images
+        values, vectors = np.linalg.eig(inside)
+        ritz = known @ vectors
+        left = np.linalg.norm(images @ vectors - ritz * values, axis=0)
+        good = np.flatnonzero((left < CLOSE * np.abs(values)) & (np.abs(centroids(ritz, n)) < far))
+        chosen = np.zeros(len(values), dtype=bool)
+        chosen[good], resolved = in_window((1 / values[good]).imag, n)
+        if resolved:
+            found = _spanned(inside, values, vectors, chosen, resolved)
+            rate = np.linalg.inv(found.rate) + SHIFT * np.eye(n)
+            return _Subspace(known @ found.vectors, rate, found.resolved)
+    return _dense(matrix, n)
 
 
-def _subspace(matrix: Array, basis: Array, n: int, *, inverted: bool = False) -> tuple[Complex, Complex, bool]:
-    """Choose among the eigenvalues of `matrix`, whose vectors are coordinates in `basis`."""
-    values, vectors = np.linalg.eig(matrix)
-    chosen, resolved = chosen_by_centroid(centroids(basis @ vectors, n), n)
+def _spanned(
+    matrix: Array, values: Complex, vectors: Complex, chosen: NDArray[np.bool_], resolved: bool
+) -> _Subspace:
+    """The invariant subspace of the chosen eigenvalues of a matrix."""
+    mine = vectors[:, chosen]
+    spread = np.linalg.svd(mine, compute_uv=False)
+    if spread[-1] > DEPENDENT * spread[0]:
+        return _Subspace(mine, np.diag(values[chosen]), resolved)
 
     def is_chosen(value: complex) -> bool:
         return bool(chosen[np.abs(values - value).argmin()])
 
+    n = int(chosen.sum())
     triangle, turned, count = linalg.schur(matrix, output="complex", sort=is_chosen)
-    return basis @ turned[:, :n], triangle[:n, :n], resolved and count == n
+    return _Subspace(turned[:, :n], triangle[:n, :n], resolved and count == n)
 
 
 def centroids(vectors: Complex, n: int) -> Array:
@@ -132,20 +185,20 @@ def centroids(vectors: Complex, n: int) -> Array:
     return np.arange(1, harmonics + 1) @ (up - down) / whole
 
 
-def chosen_by_centroid(centroid: Array, n: int) -> tuple[NDArray[np.bool_], bool]:
-    """Which of the columns lie in a window of width 1 about 0, and whether these are just n.
+def in_window(places: Array, n: int) -> tuple[NDArray[np.bool_], bool]:
+    """Which of the places (of copies, one apart) lie in a window of width 1 about 0, and whether just n do.
 
-    The window ends in the widest gap between the centroids near 0, taken modulo 1.
+    Else the n nearest to its middle. The window ends in the widest gap between the places near 0, modulo 1.
     """
-    near = np.sort(np.mod(centroid[np.abs(centroid) <= NEAR], 1.0))
+    near = np.sort(np.mod(places[np.abs(places) <= NEAR], 1.0))
     if len(near) == 0:
         near = np.zeros(1)
     gaps = np.diff(near, append=near[0] + 1)
     widest = int(gaps.argmax())
     end = float(np.mod(near[widest] + gaps[widest] / 2, 1.0))
-    window = (centroid > end - 1) & (centroid <= end)
+    window = (places > end - 1) & (places <= end)
     if window.sum() == n:
         return window, True
-    nearest = np.zeros(len(centroid), dtype=bool)
-    nearest[np.abs(centroid - (end - 0.5)).argsort(kind="stable")[:n]] = True
+    nearest = np.zeros(len(places), dtype=bool)
+    nearest[np.abs(places - (end - 0.5)).argsort(kind="stable")[:n]] = True
     return nearest, False

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic import balance, events, newton, rotation
-from periodic.accuracy import LEAST_SPAN, ErrorEstimate, spectral_distance
+from periodic.accuracy import LEAST_SPAN, ErrorEstimate
 from periodic.anchors import Crossing
 from periodic.closure import Closure, Plane
 from periodic.dense import algebraic_at
 from periodic.fourier import NO_PHASES, FourierOrbit, harmonics_of, mesh_for, series, tail
-from periodic.hill import floquet
+from periodic.hill import Floquet, floquet
 from periodic.mesh import Mesh
 from periodic.newton import Correction, NewtonSettings, Outcome
 from periodic.orbit import FORCED, Orbit, at_rest
@@ -30,6 +30,27 @@ AIM = 0.1
 
 LEAST = 3
 """Fewest harmonics that an orbit is given, unless it begins with fewer."""
+
+
+@dataclass(frozen=True)
+class FourierCorrection(Correction):
+    """A correction that knows Floquet's form of its fundamental matrices."""
+
+    floquet: Floquet
+
+    @classmethod
+    def of(cls, found: Correction, form: Floquet, fundamental: Array) -> FourierCorrection:
+        """Add it, and the fundamental matrices themselves, to a correction."""
+        return cls(
+            found.orbit,
+            found.outcome,
+            found.iterations,
+            found.increment,
+            found.residual,
+            fundamental,
+            found.kernel,
+            form,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +102,8 @@ class HarmonicBalance:
             return found
         assert isinstance(found.orbit, FourierOrbit)
         try:
-            return replace(found, fundamental=floquet(system, found.orbit).fundamental)
+            form = floquet(system, found.orbit)
+            return FourierCorrection.of(found, form, form.fundamental(found.orbit))
         except FloatingPointError:
             return replace(found, outcome=Outcome.NOT_FINITE)
         except np.linalg.LinAlgError:
@@ -91,6 +113,7 @@ class HarmonicBalance:
         """Estimate the errors by a Newton step with half as many harmonics again (deferred correction)."""
         from periodic.solve import on_mesh
 
+        assert isinstance(correction, FourierCorrection)
         orbit = correction.orbit
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
         fine = _with_unknowns(task.system, series(orbit, mesh_for(more, orbit.mesh.period)))
@@ -103,11 +126,9 @@ class HarmonicBalance:
         better = newton.advance(task.system, fine, step, task.free, min(1.0, newton.MAX_CHANGE / step.length))
         assert isinstance(better, FourierOrbit)
         try:
-            found = floquet(task.system, better)
+            return ErrorEstimate(error, correction.floquet.error(task.system, better))
         except (FloatingPointError, np.linalg.LinAlgError):
             return ErrorEstimate(error, np.inf)
-        distance = spectral_distance(found.fundamental[-1], correction.monodromy)
-        return ErrorEstimate(error, distance if found.resolved else np.inf)
 
     def wanted(self, task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
         """Return no crossings: a series cannot be tied to them."""
