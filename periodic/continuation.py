@@ -34,7 +34,7 @@ from periodic.solve import (
     same,
     settle,
 )
-from periodic.stop import Stop
+from periodic.stop import Reason, Stop
 from periodic.switching import away
 
 WINDOW = 1 / 60
@@ -56,6 +56,17 @@ ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
 
+NEARLY = 1e-2
+"""How near to where the method's reach ends a branch is followed, in first steps."""
+
+LOOSE = 1e-2
+"""Tolerance of the way to a first orbit that is beyond the method's reach."""
+
+
+class BeyondError(RejectedError):
+    """A step to an orbit that the method's finest mesh does not resolve."""
+
+
 @dataclass
 class Run:
     """A continuation under way: where it stands and why it stopped.
@@ -69,13 +80,14 @@ class Run:
     search: bool = True
     stop: Stop | None = None
     _since_remesh: int = field(default=0, repr=False)
+    _shortfall: str = field(default="", repr=False)
 
     def points(self, start: Orbit, sign: int) -> Iterator[Point]:
         """Yield points from a start orbit, first towards `sign` times the parameter, until `stop` is set."""
         task, step = self.task, self.task.settings.step
         base = self._first(start, float(sign))
         if isinstance(base, Outcome):
-            self.stop = Stop.no_start(base)
+            self.stop = Stop.no_start(self._shortfall or base.value)
             return
         if base.error.orbit > task.settings.mesh.tolerance:
             self.stop = Stop.inaccurate(task.method.shortfall(task, base))
@@ -96,8 +108,9 @@ class Run:
                 specials = special_points(task, base, new, ds, self.bounds, sought, since)
             except RejectedError as rejected:
                 ds /= 2
-                if ds < step.ds_min:
-                    self.stop = Stop.small_step(str(rejected))
+                beyond = isinstance(rejected, BeyondError)
+                if ds < (max(step.ds_min, NEARLY * step.ds) if beyond else step.ds_min):
+                    self.stop = Stop.inaccurate(str(rejected)) if beyond else Stop.small_step(str(rejected))
                     yield describe(task, base, Label.FAILED)
                     return
                 continue
@@ -132,8 +145,8 @@ class Run:
             return self._at_turn(start, sign, first)
         for factor in ELSEWHERE:
             orbit = self._approached(start, factor)
-            if orbit is not None:
-                return settle(task, at_parameter(task, orbit, sign), fixed=True)
+            if orbit is not None or self._shortfall:
+                return first if orbit is None else settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
 
     def _at_turn(self, start: Orbit, sign: float, failed: Outcome) -> Solved | Outcome:
@@ -157,9 +170,14 @@ class Run:
         if isinstance(first, Outcome) or far == wanted:
             return None
         bounds = (min(wanted, far), max(wanted, far))
-        approach = Run(replace(task, metric=Metric(abs(wanted - far))), bounds, search=False)
-        points = list(approach.points(first.orbit, int(sign)))
-        return points[-1].orbit if points and points[-1].parameter == wanted else None
+        nearer = replace(task, metric=Metric(abs(wanted - far)))
+        orbit, stop = _followed(nearer, bounds, first.orbit, int(sign))
+        if stop.reason is Reason.INACCURATE and orbit is not None:
+            self._shortfall = f"at {orbit.parameter[task.index]:.6g}, on the way there, {stop.detail}"
+            mesh = replace(task.settings.mesh, tolerance=max(LOOSE, task.settings.mesh.tolerance))
+            loose = replace(nearer, settings=replace(task.settings, mesh=mesh))
+            orbit, _ = _followed(loose, bounds, orbit, int(sign))
+        return orbit if orbit is not None and orbit.parameter[task.index] == wanted else None
 
     def _next_size(self, ds: float, new: Solved) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step
@@ -172,7 +190,7 @@ class Run:
         The mesh is made anew up to MESHES times; where then only the multipliers' error still exceeds its
         bound the point stands, and tells it.
         """
-        tolerance = self.task.settings.mesh.tolerance
+        task, tolerance = self.task, self.task.settings.mesh.tolerance
         for _ in range(MESHES):
             new = self._attempt(base, ds)
             if new.error.worst <= tolerance:
@@ -180,6 +198,8 @@ class Run:
             base = self._base_on_mesh_for(base, new)
         new = self._attempt(base, ds)
         if new.error.orbit > tolerance:
+            if task.method.exhausted(task.settings.mesh, new.orbit):
+                raise BeyondError(task.method.shortfall(task, new))
             raise RejectedError("the error estimate exceeds the tolerance")
         return base, new
 
@@ -232,6 +252,14 @@ class Run:
             return new
         self._since_remesh = 0
         return better
+
+
+def _followed(task: Task, bounds: tuple[float, float], start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
+    """Follow a branch; return its last orbit and why it ends."""
+    run = Run(task, bounds, search=False)
+    points = list(run.points(start, sign))
+    assert run.stop is not None
+    return (points[-1].orbit if points else None), run.stop
 
 
 def _value(task: Task, solved: Solved) -> float:

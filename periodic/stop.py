@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from periodic.newton import Outcome
-
 
 class Reason(Enum):
     """Named reasons; `numerical` tells those that cut a branch short of what was asked."""
@@ -57,9 +55,9 @@ class Stop:
         return cls(Reason.SMALL_STEP, why)
 
     @classmethod
-    def no_start(cls, outcome: Outcome) -> Stop:
+    def no_start(cls, why: str) -> Stop:
         """No first orbit."""
-        return cls(Reason.NO_START, outcome.value)
+        return cls(Reason.NO_START, why)
 
     @classmethod
     def inaccurate(cls, shortfall: str) -> Stop:
