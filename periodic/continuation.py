@@ -16,6 +16,7 @@ import numpy as np
 
 from periodic.closure import Metric, Plane
 from periodic.locate import RejectedError, special_points
+from periodic.mesh import Mesh
 from periodic.newton import Outcome
 from periodic.orbit import Orbit
 from periodic.point import Label, Point, describe
@@ -187,16 +188,18 @@ class Run:
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
         """Take one step; return base and new solution on one mesh. Raises RejectedError.
 
-        The mesh is made anew up to MESHES times; where then only the multipliers' error still exceeds its
+        The mesh is made anew up to MESHES times, while it changes; where then only the multipliers' error still exceeds its
         bound the point stands, and tells it.
         """
         task, tolerance = self.task, self.task.settings.mesh.tolerance
-        for _ in range(MESHES):
+        for left in reversed(range(MESHES + 1)):
             new = self._attempt(base, ds)
             if new.error.worst <= tolerance:
                 return base, new
-            base = self._base_on_mesh_for(base, new)
-        new = self._attempt(base, ds)
+            mesh = task.method.mesh_for(task, new)
+            if left == 0 or mesh.matches(base.orbit.mesh):
+                break
+            base = self._on_mesh(base, mesh)
         if new.error.orbit > tolerance:
             if task.method.exhausted(task.settings.mesh, new.orbit):
                 raise BeyondError(task.method.shortfall(task, new))
@@ -228,11 +231,9 @@ class Run:
         difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
         return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
 
-    def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved:
+    def _on_mesh(self, base: Solved, mesh: Mesh) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
-        task = self.task
-        mesh = task.method.mesh_for(task, new)
-        moved = carried(task, base, mesh, base.orbit.phases, base.tangent)
+        moved = carried(self.task, base, mesh, base.orbit.phases, base.tangent)
         if isinstance(moved, Outcome):
             raise RejectedError(f"the mesh could not be adapted: {moved.value}")
         return moved

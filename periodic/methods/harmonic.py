@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 AIM = 0.1
 """The part of the tolerance that a new number of harmonics aims at."""
 
+ROUGHLY = 1e-4
+"""Harmonics of a guess that are smaller, as a part of its peak to peak, are left to Newton."""
+
 LEAST = 3
 """Fewest harmonics that an orbit is given, unless it begins with fewer."""
 
@@ -83,7 +86,7 @@ class HarmonicBalance:
         """Return a guess as a series of as many harmonics as it seems to need, at given parameters."""
         least, most = self.harmonics * guess.periods, self.most * guess.periods
         full = series(guess, mesh_for(most, guess.mesh.period))
-        large = np.flatnonzero(full.amplitudes > settings.tolerance * max(full.span(), LEAST_SPAN))
+        large = np.flatnonzero(full.amplitudes > ROUGHLY * max(full.span(), LEAST_SPAN))
         wanted = int(np.clip(1 + large.max(initial=0), least, most))
         fitted = series(full, mesh_for(wanted, guess.mesh.period))
         return _with_unknowns(system, replace(fitted, parameter=parameter))
