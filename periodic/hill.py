@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy import linalg
 
 from periodic.balance import projected, sampled
-from periodic.fourier import FourierOrbit, basis, basis_slope, transform
+from periodic.fourier import FourierOrbit, basis, basis_slope
 from periodic.scheme import Array
 from periodic.system import System
 
@@ -59,9 +59,14 @@ class Floquet:
     period: float
     resolved: bool
 
+    @property
+    def harmonics(self) -> int:
+        """Harmonics of P."""
+        return (len(self.shape) - 1) // 2
+
     def fundamental(self, orbit: FourierOrbit) -> Array:
         """Return Phi at the mesh points, (N+1, n, n). Raises numpy.linalg.LinAlgError where P(0) is singular."""
-        shapes = np.tensordot(transform(orbit.harmonics).nodes, self.shape, 1)
+        shapes = np.tensordot(basis(self.harmonics, orbit.frequency * orbit.mesh.nodes(orbit.phases)), self.shape, 1)
         step = linalg.expm(self.rate * self.period / orbit.mesh.ntst)
         growth = np.empty_like(shapes)
         growth[0] = np.linalg.inv(shapes[0])
@@ -82,9 +87,8 @@ class Floquet:
         if not self.resolved:
             return np.inf
         angle = fine.frequency * fine.stage_phases.ravel()
-        harmonics = (len(self.shape) - 1) // 2
-        P = np.tensordot(basis(harmonics, angle), self.shape, 1)
-        slope = fine.frequency * np.tensordot(basis_slope(harmonics, angle), self.shape, 1)
+        P = np.tensordot(basis(self.harmonics, angle), self.shape, 1)
+        slope = fine.frequency * np.tensordot(basis_slope(self.harmonics, angle), self.shape, 1)
         left = np.linalg.solve(P, jacobian(system, fine) @ P - slope - P @ self.rate).mean(axis=0)
         once = linalg.expm(self.rate * self.period)
         scale = max(1.0, float(np.abs(np.linalg.eigvals(once)).max()))

@@ -31,6 +31,12 @@ AIM = 0.1
 ROUGHLY = 1e-4
 """Harmonics of a guess that are smaller, as a part of its peak to peak, are left to Newton."""
 
+KNOWN = 1e-2
+"""Error of the multipliers above which they tell no special points."""
+
+HILL = 8
+"""Fewest harmonics (of the excitation frequency) that Hill's method is given, beyond the orbit's own zeros."""
+
 LEAST = 3
 """Fewest harmonics that an orbit is given, unless it begins with fewer."""
 
@@ -56,6 +62,15 @@ class FourierCorrection(Correction):
         )
 
 
+def _where_known(test: events.Test) -> events.Test:
+    """The test, believed where the multipliers are known well enough: those of few harmonics may jump."""
+
+    def genuine(task: Task, solved: Solved) -> bool:
+        return solved.error.multiplier < KNOWN and test.genuine(task, solved)
+
+    return replace(test, genuine=genuine)
+
+
 @dataclass(frozen=True, kw_only=True)
 class HarmonicBalance:
     """See `periodic.methods.protocol.Method`. harmonics: of the excitation frequency, to begin with.
@@ -66,8 +81,8 @@ class HarmonicBalance:
 
     harmonics: int = 8
     most: int = 64
-    passages = events.PASSAGES
-    branching = (events.BRANCHING,)
+    passages = tuple(_where_known(test) for test in events.PASSAGES)
+    branching = (_where_known(events.BRANCHING),)
 
     def __post_init__(self) -> None:
         for name in ("harmonics", "most"):
@@ -105,7 +120,7 @@ class HarmonicBalance:
             return found
         assert isinstance(found.orbit, FourierOrbit)
         try:
-            form = floquet(system, found.orbit)
+            form = floquet(system, _at_least(system, found.orbit, HILL * found.orbit.periods))
             return FourierCorrection.of(found, form, form.fundamental(found.orbit))
         except FloatingPointError:
             return replace(found, outcome=Outcome.NOT_FINITE)
@@ -190,6 +205,13 @@ def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
     rate = max(float(np.log(max(top, floor) / last)) / present, 0.01)
     change = np.log(max(error, floor) / goal) / rate
     return int(np.ceil(np.clip(present + change, present / 2, 2 * present)))
+
+
+def _at_least(system: System, orbit: FourierOrbit, harmonics: int) -> FourierOrbit:
+    """The same orbit with at least so many harmonics, the further ones zero."""
+    if orbit.harmonics >= harmonics:
+        return orbit
+    return _with_unknowns(system, series(orbit, mesh_for(harmonics, orbit.mesh.period)))
 
 
 def _with_unknowns(system: System, orbit: FourierOrbit) -> FourierOrbit:
