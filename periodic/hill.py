@@ -28,14 +28,17 @@ from periodic.system import System
 
 Complex = NDArray[np.complex128]
 
-DENSE = 15
-"""Up to so many harmonics all eigenvalues are found; beyond, those near 0 (Arnoldi)."""
+DENSE = 64
+"""Of matrices up to this size all eigenvalues are found; of larger ones those near 0 (block Arnoldi)."""
 
 SHIFT = 0.2137
-"""Near which they are looked for: real, and no likely exponent itself."""
+"""Near which they are looked for, in units of w: real, and no likely exponent itself."""
 
-BLOCKS = (12, 18, 27)
-"""Sizes of the Krylov space in blocks of n vectors, tried in turn."""
+BLOCKS = (12, 18, 27, 40)
+"""Sizes of the Krylov space in blocks, tried in turn."""
+
+BLOCK = 4
+"""A block has one vector for so many states, at least two."""
 
 CLOSE = 1e-11
 """Largest residual of an eigenvector from a Krylov space, relative to its eigenvalue."""
@@ -108,15 +111,15 @@ def jacobian(system: System, orbit: FourierOrbit) -> Array:
 def floquet(system: System, orbit: FourierOrbit) -> Floquet:
     """Return Floquet's form of the fundamental matrices of an orbit. Raises as `jacobian` does."""
     n = orbit.nodes.shape[1]
-    J = jacobian(system, orbit)
-    matrix = projected(np.broadcast_to(-np.eye(n), J.shape), J, orbit.frequency)
-    found = _krylov(matrix, n) if orbit.harmonics > DENSE else _dense(matrix, n)
-    return Floquet(found.vectors.reshape(-1, n, n), found.rate, orbit.mesh.period, found.resolved)
+    J = jacobian(system, orbit) / orbit.frequency
+    matrix = projected(np.broadcast_to(-np.eye(n), J.shape), J, 1.0)
+    found = _krylov(matrix, n) if len(matrix) > DENSE else _dense(matrix, n)
+    return Floquet(found.vectors.reshape(-1, n, n), orbit.frequency * found.rate, orbit.mesh.period, found.resolved)
 
 
 @dataclass(frozen=True)
 class _Subspace:
-    """The invariant subspace (size, n) of the chosen exponents, B, and whether there were just n of them."""
+    """The invariant subspace (size, n) of the chosen exponents, B / w, and whether there were just n of them."""
 
     vectors: Complex
     rate: Complex
@@ -135,18 +138,20 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
 
     They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
     """
-    size, far = len(matrix), len(matrix) // n / 4
+    size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // BLOCK)
     factors = linalg.lu_factor(matrix - SHIFT * np.eye(size))
-    space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, n)))[0]
+    space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, each)))[0]
     images = np.zeros((size, 0))
     for blocks in BLOCKS:
-        while images.shape[1] < blocks * n:
-            image = linalg.lu_solve(factors, space[:, -n:])
+        if (blocks + 1) * each > size:
+            break
+        while images.shape[1] < blocks * each:
+            image = linalg.lu_solve(factors, space[:, -each:])
             images = np.concatenate([images, image], axis=1)
             for _ in range(2):
                 image = image - space @ (space.T @ image)
             space = np.concatenate([space, np.linalg.qr(image)[0]], axis=1)
-        known = space[:, :-n]
+        known = space[:, :-each]
         inside = known.T @ images
         values, vectors = np.linalg.eig(inside)
         ritz = known @ vectors
