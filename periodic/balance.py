@@ -65,9 +65,9 @@ def projected(d_rate: Array, d_state: Array, frequency: float) -> Array:
     count, n, _ = d_rate.shape
     harmonics = count // 4 - 1
     E, A = (np.fft.fft(np.roll(a, 1, axis=0), axis=0) / count for a in (d_rate, d_state))
-    l = np.arange(-harmonics, harmonics + 1)
-    gap = np.arange(harmonics + 1)[:, None] - l
-    blocks = A[gap] + 1j * frequency * l[:, None, None] * E[gap]
+    column = np.arange(-harmonics, harmonics + 1)
+    gap = np.arange(harmonics + 1)[:, None] - column
+    blocks = A[gap] + 1j * frequency * column[:, None, None] * E[gap]
     plus, minus = blocks[:, harmonics + 1 :], blocks[:, :harmonics][:, ::-1]
     columns = np.concatenate(
         [blocks[:, harmonics : harmonics + 1], (plus + minus) / 2, (plus - minus) / 2j], axis=1

@@ -188,8 +188,8 @@ class Run:
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
         """Take one step; return base and new solution on one mesh. Raises RejectedError.
 
-        The mesh is made anew up to MESHES times, while it changes; where then only the multipliers' error still exceeds its
-        bound the point stands, and tells it.
+        The mesh is made anew up to MESHES times, while it changes; where then only the multipliers' error
+        still exceeds its bound the point stands, and tells it.
         """
         task, tolerance = self.task, self.task.settings.mesh.tolerance
         for left in reversed(range(MESHES + 1)):

@@ -49,7 +49,10 @@ def basis_slope(harmonics: int, angle: Array) -> Array:
 
 @dataclass(frozen=True)
 class Transform:
-    """Between coefficients and S samples: values and slopes (S, 2H+1), analysis (2H+1, S), nodes (N+1, 2H+1)."""
+    """Values and slopes of the basis at S samples (S, 2H+1) and at mesh points (N+1, 2H+1), and the way back.
+
+    analysis (2H+1, S) takes samples to coefficients.
+    """
 
     values: Array
     slopes: Array
@@ -73,7 +76,9 @@ class FourierOrbit(Orbit):
     """An orbit that is evaluated as the Fourier series through its samples."""
 
     def __repr__(self) -> str:
-        return f"FourierOrbit({self.harmonics} harmonics, {self.nodes.shape[1]} states, {self.periods} periods)"
+        return (
+            f"FourierOrbit({self.harmonics} harmonics, {self.nodes.shape[1]} states, {self.periods} periods)"
+        )
 
     @property
     def harmonics(self) -> int:
@@ -128,7 +133,7 @@ def series(orbit: Orbit, mesh: Mesh) -> FourierOrbit:
     """Return any orbit as the Fourier series that a mesh carries, fitted to its values at the samples."""
     samples = transform(harmonics_of(mesh))
     count = len(samples.values)
-    tau = mesh.period / count * np.arange(1, count + 1)
+    tau: Array = mesh.period / count * np.arange(1, count + 1)
     coefficients = samples.analysis @ orbit.state(tau)
     return FourierOrbit(
         mesh,
@@ -141,6 +146,6 @@ def series(orbit: Orbit, mesh: Mesh) -> FourierOrbit:
 
 
 def tail(orbit: FourierOrbit, least: float) -> float:
-    """Peak to peak of the largest of the last quarter of the harmonics, as a part of the orbit's (or `least`)."""
+    """Peak to peak of the largest of the last quarter of the harmonics, over that of the orbit (or `least`)."""
     last = max(orbit.harmonics // 4, min(2, orbit.harmonics))
     return float(2 * orbit.amplitudes[-last:].max() / max(orbit.span(), least))

@@ -68,8 +68,13 @@ class Floquet:
         return (len(self.shape) - 1) // 2
 
     def fundamental(self, orbit: FourierOrbit) -> Array:
-        """Return Phi at the mesh points, (N+1, n, n). Raises numpy.linalg.LinAlgError where P(0) is singular."""
-        shapes = np.tensordot(basis(self.harmonics, orbit.frequency * orbit.mesh.nodes(orbit.phases)), self.shape, 1)
+        """Return Phi at the mesh points, (N+1, n, n).
+
+        Raises numpy.linalg.LinAlgError where P(0) is singular.
+        """
+        shapes = np.tensordot(
+            basis(self.harmonics, orbit.frequency * orbit.mesh.nodes(orbit.phases)), self.shape, 1
+        )
         step = linalg.expm(self.rate * self.period / orbit.mesh.ntst)
         growth = np.empty_like(shapes)
         growth[0] = np.linalg.inv(shapes[0])
@@ -102,10 +107,12 @@ class Floquet:
 def jacobian(system: System, orbit: FourierOrbit) -> Array:
     """J at the samples, shape (S, n, n).
 
-    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where E is singular.
+    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where E is
+    singular.
     """
     samples = sampled(system, orbit, ())
-    return -np.linalg.solve(samples.d_rate, samples.d_state)
+    result: Array = -np.linalg.solve(samples.d_rate, samples.d_state)
+    return result
 
 
 def floquet(system: System, orbit: FourierOrbit) -> Floquet:
@@ -114,12 +121,14 @@ def floquet(system: System, orbit: FourierOrbit) -> Floquet:
     J = jacobian(system, orbit) / orbit.frequency
     matrix = projected(np.broadcast_to(-np.eye(n), J.shape), J, 1.0)
     found = _krylov(matrix, n) if len(matrix) > DENSE else _dense(matrix, n)
-    return Floquet(found.vectors.reshape(-1, n, n), orbit.frequency * found.rate, orbit.mesh.period, found.resolved)
+    return Floquet(
+        found.vectors.reshape(-1, n, n), orbit.frequency * found.rate, orbit.mesh.period, found.resolved
+    )
 
 
 @dataclass(frozen=True)
 class _Subspace:
-    """The invariant subspace (size, n) of the chosen exponents, B / w, and whether there were just n of them."""
+    """The invariant subspace (size, n) of the chosen exponents, B / w, and whether just n were chosen."""
 
     vectors: Complex
     rate: Complex
@@ -161,7 +170,7 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
         chosen[good], resolved = in_window((1 / values[good]).imag, n)
         if resolved:
             found = _spanned(inside, values, vectors, chosen, resolved)
-            rate = np.linalg.inv(found.rate) + SHIFT * np.eye(n)
+            rate: Complex = np.linalg.inv(found.rate) + SHIFT * np.eye(n)
             return _Subspace(known @ found.vectors, rate, found.resolved)
     return _dense(matrix, n)
 
@@ -179,7 +188,7 @@ def _spanned(
         return bool(chosen[np.abs(values - value).argmin()])
 
     n = int(chosen.sum())
-    triangle, turned, count = linalg.schur(matrix, output="complex", sort=is_chosen)
+    triangle, turned, count = linalg.schur(matrix.astype(complex), output="complex", sort=is_chosen)
     return _Subspace(turned[:, :n], triangle[:n, :n], resolved and count == n)
 
 

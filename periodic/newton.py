@@ -98,8 +98,8 @@ def correct(
 ) -> Correction:
     """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
 
-    `increment` linearises the equations (default: those of collocation). The outcome is on the result; nothing
-    is raised for a numerical failure.
+    `increment` linearises the equations (default: those of collocation). The outcome is on the result;
+    nothing is raised for a numerical failure.
     """
     settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0

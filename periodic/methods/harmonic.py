@@ -35,7 +35,7 @@ KNOWN = 1e-2
 """Error of the multipliers above which they tell no special points."""
 
 HILL = 8
-"""Fewest harmonics (of the excitation frequency) that Hill's method is given, beyond the orbit's own zeros."""
+"""Fewest harmonics (of the excitation frequency) that Hill's method is given; the orbit's may be fewer."""
 
 LEAST = 3
 """Fewest harmonics that an orbit is given, unless it begins with fewer."""
