@@ -133,7 +133,7 @@ def series(orbit: Orbit, mesh: Mesh) -> FourierOrbit:
     """Return any orbit as the Fourier series that a mesh carries, fitted to its values at the samples."""
     samples = transform(harmonics_of(mesh))
     count = len(samples.values)
-    tau: Array = mesh.period / count * np.arange(1, count + 1)
+    tau = float(mesh.period / count) * np.arange(1, count + 1).astype(float)
     coefficients = samples.analysis @ orbit.state(tau)
     return FourierOrbit(
         mesh,
@@ -146,6 +146,6 @@ def series(orbit: Orbit, mesh: Mesh) -> FourierOrbit:
 
 
 def tail(orbit: FourierOrbit, least: float) -> float:
-    """Peak to peak of the largest of the last quarter of the harmonics, over that of the orbit (or `least`)."""
+    """Peak to peak of the largest of the last quarter of the harmonics over the orbit's (or `least`)."""
     last = max(orbit.harmonics // 4, min(2, orbit.harmonics))
     return float(2 * orbit.amplitudes[-last:].max() / max(orbit.span(), least))

@@ -111,8 +111,7 @@ def jacobian(system: System, orbit: FourierOrbit) -> Array:
     singular.
     """
     samples = sampled(system, orbit, ())
-    result: Array = -np.linalg.solve(samples.d_rate, samples.d_state)
-    return result
+    return -np.linalg.solve(samples.d_rate, samples.d_state).astype(float, copy=False)
 
 
 def floquet(system: System, orbit: FourierOrbit) -> Floquet:
@@ -170,7 +169,9 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
         chosen[good], resolved = in_window((1 / values[good]).imag, n)
         if resolved:
             found = _spanned(inside, values, vectors, chosen, resolved)
-            rate: Complex = np.linalg.inv(found.rate) + SHIFT * np.eye(n)
+            rate = np.linalg.inv(found.rate).astype(np.complex128, copy=False) + SHIFT * np.eye(
+                n, dtype=complex
+            )
             return _Subspace(known @ found.vectors, rate, found.resolved)
     return _dense(matrix, n)
 
@@ -188,7 +189,7 @@ def _spanned(
         return bool(chosen[np.abs(values - value).argmin()])
 
     n = int(chosen.sum())
-    triangle, turned, count = linalg.schur(matrix.astype(complex), output="complex", sort=is_chosen)
+    triangle, turned, count = linalg.schur(matrix, "complex", sort=is_chosen)  # type: ignore[call-overload]
     return _Subspace(turned[:, :n], triangle[:n, :n], resolved and count == n)
 
 
