@@ -111,7 +111,10 @@ def jacobian(system: System, orbit: FourierOrbit) -> Array:
     singular.
     """
     samples = sampled(system, orbit, ())
-    return -np.linalg.solve(samples.d_rate, samples.d_state).astype(float, copy=False)
+    result = -np.linalg.solve(samples.d_rate, samples.d_state).astype(float, copy=False)
+    if not np.isfinite(result).all():
+        raise FloatingPointError("the Jacobian of the explicit equation is not finite")
+    return result
 
 
 def floquet(system: System, orbit: FourierOrbit) -> Floquet:

@@ -223,6 +223,28 @@ def test_doubling_of_a_flow_and_its_branch() -> None:
     assert period(mine) == pytest.approx(period(other), rel=1e-8)
 
 
+class Mathieu(LinearOscillator):
+    """Omega^2 x'' + (1 - 2 depth cos tau) x = 0."""
+
+    def __init__(self, depth: float) -> None:
+        super().__init__(zeta=0.0, F=0.0)
+        self.depth = depth
+
+    def restoring(self, x: Array, phase: Array) -> tuple[Array, Array, Array]:
+        """Return r, dr/dx, dr/dtau."""
+        stiffness = 1 - 2 * self.depth * np.cos(phase)
+        return stiffness * x, stiffness, 2 * self.depth * np.sin(phase) * x
+
+
+@pytest.mark.parametrize("q, a", [(1.0, 1.859108072514), (5.0, 1.858187541548)])
+def test_mathieu(q: float, a: float) -> None:
+    """Assert the tabulated boundary a1(q) of stability, where the multipliers meet at -1 in a double root."""
+    Omega = 2 / np.sqrt(a)
+    branch = per.trace(Mathieu(q / a), "Omega", (0.97 * Omega, 1.03 * Omega), method=HB(), accuracy=FINE)
+    (doubling,) = branch.labelled(per.Label.DOUBLING)
+    assert doubling.parameter == pytest.approx(Omega, rel=1e-9)
+
+
 def test_subharmonics_of_a_forced_oscillator() -> None:
     """Assert that doublings and doubled orbits agree with collocation, each method on its own."""
     system, found = Helmholtz(zeta=0.05, F=0.6), []

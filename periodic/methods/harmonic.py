@@ -20,6 +20,7 @@ from periodic.newton import Correction, NewtonSettings, Outcome
 from periodic.orbit import FORCED, Orbit, at_rest
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
+from periodic.solve import on_mesh
 from periodic.system import System
 
 if TYPE_CHECKING:
@@ -129,8 +130,6 @@ class HarmonicBalance:
 
     def estimate(self, task: Task, correction: Correction, plane: Plane) -> ErrorEstimate:
         """Estimate the errors by a Newton step with half as many harmonics again (deferred correction)."""
-        from periodic.solve import on_mesh
-
         assert isinstance(correction, FourierCorrection)
         orbit = correction.orbit
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
@@ -141,7 +140,8 @@ class HarmonicBalance:
         if isinstance(step, Outcome):
             return ErrorEstimate(np.inf, np.inf)
         error = float(np.abs(step.stages).max()) / max(orbit.span(), LEAST_SPAN)
-        better = newton.advance(task.system, fine, step, task.free, min(1.0, newton.MAX_CHANGE / step.length))
+        factor = min(1.0, newton.MAX_CHANGE / max(step.length, np.finfo(float).tiny))
+        better = newton.advance(task.system, fine, step, task.free, factor)
         assert isinstance(better, FourierOrbit)
         try:
             return ErrorEstimate(error, correction.floquet.error(task.system, better))
