@@ -15,10 +15,22 @@ import numpy as np
 
 from periodic.mesh import Mesh, uniform
 from periodic.orbit import Orbit, transfer
-from periodic.scheme import Array, Family, Scheme
+from periodic.scheme import Array, Scheme
 
-SAMPLES = Scheme(Family.EQUIDISTANT, 2)
-"""An interval's samples: its middle and its right end."""
+
+@dataclass(frozen=True)
+class Halves(Scheme):
+    """An interval's samples: its middle and its right end. They are no points to collocate at."""
+
+    ncol: int = 2
+
+    @cached_property
+    def points(self) -> Array:
+        """The samples' places, shape (2,)."""
+        return np.array([0.5, 1.0])
+
+
+SAMPLES = Halves()
 
 NO_PHASES = np.zeros(0)
 """The anchors of a Fourier series: it has none."""

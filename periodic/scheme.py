@@ -2,7 +2,7 @@
 
 Radau IIA (right end included) is stiffly accurate and keeps multipliers right through loss of contact;
 Gauss points give the higher order 2 ncol at mesh points for smooth problems (Hairer & Wanner, Solving
-ODEs II, IV.5). Equidistant ones are the samples of a Fourier series.
+ODEs II, IV.5).
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ class Family(Enum):
 
     RADAU = "Radau IIA"
     GAUSS = "Gauss"
-    EQUIDISTANT = "equidistant"
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,6 @@ class Scheme:
         """Collocation points c, shape (ncol,)."""
         if self.family is Family.GAUSS:
             return (special.roots_legendre(self.ncol)[0] + 1) / 2
-        if self.family is Family.EQUIDISTANT:
-            return np.arange(1, self.ncol + 1) / self.ncol
         interior = special.roots_jacobi(self.ncol - 1, 1, 0)[0]
         return np.append((interior + 1) / 2, 1.0)
 

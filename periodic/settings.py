@@ -29,8 +29,6 @@ class MeshSettings:
     def __post_init__(self) -> None:
         if not 1e-13 <= self.tolerance <= 1e-1:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.1")
-        if self.scheme.family is Family.EQUIDISTANT:
-            raise ValueError("scheme is equidistant; collocation points must be of Radau IIA or Gauss")
         for name in ("ntst", "ntst_min", "ntst_max"):
             if not (getattr(self, name) >= 1 and float(getattr(self, name)).is_integer()):
                 raise ValueError(f"{name} is {getattr(self, name)}; it must be a whole number of at least 1")

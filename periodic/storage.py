@@ -18,7 +18,7 @@ import xarray as xr
 
 from periodic.accuracy import ErrorEstimate
 from periodic.branch import Branch, BranchFileError, Layout, Quantity
-from periodic.fourier import FourierOrbit
+from periodic.fourier import SAMPLES, FourierOrbit
 from periodic.mesh import Anchor, Mesh
 from periodic.orbit import Orbit
 from periodic.point import Label, Point
@@ -26,6 +26,9 @@ from periodic.scheme import Family, Scheme
 from periodic.stop import Reason, Stop
 
 FORMAT = "orbitrace branch 2"
+
+FOURIER = "Fourier series"
+"""Stands for the scheme of orbits that are such series."""
 
 
 def save(branch: Branch, path: Path) -> None:
@@ -150,7 +153,7 @@ def _attributes(branch: Branch) -> dict[str, Any]:
         "format": FORMAT,
         "parameter": branch.parameter,
         "layout": json.dumps(quantities),
-        "scheme": scheme.family.value,
+        "scheme": FOURIER if scheme == SAMPLES else scheme.family.value,
         "ncol": scheme.ncol,
         "stop": json.dumps([branch.stop.reason.name, branch.stop.detail]),
         "stop_backwards": json.dumps([backwards.reason.name, backwards.detail] if backwards else None),
@@ -203,7 +206,8 @@ def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
 
 def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     """Cut the ragged arrays into orbits."""
-    scheme = Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
+    series = data.attrs["scheme"] == FOURIER
+    scheme = SAMPLES if series else Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
     n, m, ncol = len(layout.states), len(layout.algebraics), scheme.ncol
     for dimension, counts in (
         ("segment", "segment_count"),
@@ -215,7 +219,7 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     breaks = np.split(data["sigma"].values, np.cumsum(data["break_count"].values)[:-1])
     algebraic = data["stage_algebraic"].values if m else np.zeros((data.sizes.get("stage", 0), 0))
     segment = anchor = node = stage = 0
-    kind = FourierOrbit if scheme.family is Family.EQUIDISTANT else Orbit
+    kind = FourierOrbit if series else Orbit
     orbits: list[Orbit] = []
     for i in range(data.sizes["point"]):
         segments, anchors = int(data["segment_count"].values[i]), int(data["anchor_count"].values[i])

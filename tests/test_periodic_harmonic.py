@@ -389,9 +389,3 @@ def test_refused_settings(settings: dict[str, float], sentence: str) -> None:
     """Assert that settings that make no sense are refused in one sentence."""
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
         HB(**settings)  # type: ignore[arg-type]
-
-
-def test_equidistant_points_are_not_for_collocation() -> None:
-    """Assert that the samples of a Fourier series are refused as collocation points."""
-    with pytest.raises(ValueError, match=r"^scheme is equidistant; .*Radau IIA or Gauss$"):
-        per.MeshSettings(scheme=per.Scheme(per.Family.EQUIDISTANT, 3))
