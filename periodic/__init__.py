@@ -20,6 +20,7 @@ from periodic.functionals import (
 from periodic.label import Label
 from periodic.measure import extrema, outputs
 from periodic.methods.collocation import Collocation
+from periodic.methods.harmonic import HarmonicBalance
 from periodic.methods.shooting import Shooting
 from periodic.newton import NewtonSettings
 from periodic.normalform import first_lyapunov
@@ -58,6 +59,7 @@ __all__ = [
     "Collocation",
     "Conservative",
     "Family",
+    "HarmonicBalance",
     "Label",
     "MeshSettings",
     "NewtonSettings",

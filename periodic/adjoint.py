@@ -20,7 +20,7 @@ from periodic.closure import Row
 from periodic.collocation import Condensed, condense
 from periodic.orbit import Orbit
 from periodic.pointwise import Points, Slopes, collocation_points, gathered, solved
-from periodic.scheme import Array
+from periodic.scheme import Array, Family, Scheme
 from periodic.system import Differentiable, LinearisationLike
 
 
@@ -57,7 +57,14 @@ class Linear:
 
     @staticmethod
     def about(system: Differentiable, orbit: Orbit, free: tuple[int, ...]) -> Linear:
-        """Linearise; `free` are the parameters that tangents may change."""
+        """Linearise; `free` are the parameters that tangents may change.
+
+        Raises ValueError for an orbit that is no piecewise polynomial.
+        """
+        if orbit.mesh.scheme not in (Scheme(f, orbit.mesh.scheme.ncol) for f in Family):
+            raise ValueError(
+                f"orbit is a {orbit!r}; derivatives of multipliers need one found by Collocation or Shooting"
+            )
         condensed = condense(system, orbit, free)
         return Linear(system, orbit, free, condensed, bordered.chain(condensed))
 

@@ -70,7 +70,7 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
     matrix is singular.
     """
-    rows, residual = _rows(system, orbit, free)
+    rows, residual = linearised(system, orbit, free)
     count, ncol, n = orbit.stages.shape
     reduced, algebraic = eliminate(rows, n)
     width = reduced.shape[2]
@@ -114,7 +114,7 @@ class Rows:
     d_algebraic: Array
 
 
-def _rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, float]:
+def linearised(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, float]:
     """Linearise at the collocation points of an orbit; also the largest residual."""
     count, ncol, n = orbit.stages.shape
     rate = orbit.knot_rates[:, 1:]

@@ -18,6 +18,7 @@ from periodic.checkpoint import Checkpoint
 from periodic.closure import Metric, Plane
 from periodic.label import Label
 from periodic.locate import Found, RejectedError, special_points
+from periodic.mesh import Mesh
 from periodic.newton import Outcome
 from periodic.orbit import Orbit
 from periodic.point import Point, describe
@@ -79,6 +80,17 @@ class State:
     kept: int
 
 
+NEARLY = 1e-2
+"""How near to where the method's reach ends a branch is followed, in first steps."""
+
+LOOSE = 1e-2
+"""Tolerance of the way to a first orbit that is beyond the method's reach."""
+
+
+class BeyondError(RejectedError):
+    """A step to an orbit that the method's finest mesh does not resolve."""
+
+
 @dataclass
 class Run:
     """A continuation under way: its points, where it stands and why it stopped.
@@ -97,16 +109,17 @@ class Run:
     ended: Checkpoint | None = field(default=None, repr=False)
     _since_remesh: int = field(default=0, repr=False)
     _count: dict[str, int] = field(default_factory=dict, repr=False)
+    _shortfall: str = field(default="", repr=False)
 
     def points(self, start: Orbit, sign: int) -> Iterator[Point]:
         """Yield points from a start orbit, first towards `sign` times the parameter, until `stop` is set."""
         task = self.task
         base = self._first(start, float(sign))
         if isinstance(base, Outcome):
-            self.stop = Stop.no_start(base)
+            self.stop = Stop.no_start(self._shortfall or base.value)
             return
         if base.error.orbit > task.settings.mesh.tolerance:
-            self.stop = Stop.inaccurate(base.error.orbit, base.orbit.mesh.ntst)
+            self.stop = Stop.inaccurate(task.method.shortfall(task, base))
             return
         if repeats(task, base):
             raise ValueError(
@@ -129,7 +142,7 @@ class Run:
         again = on_plane(task, last, Plane(last, direction, 0.0, task.metric, task.index))
         for found in (begun, again):
             if isinstance(found, Outcome):
-                self.stop = Stop.no_start(found)
+                self.stop = Stop.no_start(found.value)
                 return
         assert isinstance(begun, Solved) and isinstance(again, Solved)
         self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
@@ -177,8 +190,9 @@ class Run:
                 return new, ds, special_points(self.task, base, new, ds, self.bounds, sought, since)
             except RejectedError as rejected:
                 ds /= 2
-                if ds < self.task.settings.step.ds_min:
-                    return Stop.small_step(str(rejected))
+                beyond, step = isinstance(rejected, BeyondError), self.task.settings.step
+                if ds < (max(step.ds_min, NEARLY * step.ds) if beyond else step.ds_min):
+                    return Stop.inaccurate(str(rejected)) if beyond else Stop.small_step(str(rejected))
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -236,8 +250,8 @@ class Run:
             return self._at_turn(start, sign, first)
         for factor in ELSEWHERE:
             orbit = self._approached(start, factor)
-            if orbit is not None:
-                return settle(task, at_parameter(task, orbit, sign), fixed=True)
+            if orbit is not None or self._shortfall:
+                return first if orbit is None else settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
 
     def _collapsed(self, start: Orbit, first: Solved) -> bool:
@@ -266,9 +280,14 @@ class Run:
         if isinstance(first, Outcome) or far == wanted:
             return None
         bounds = (min(wanted, far), max(wanted, far))
-        approach = Run(replace(task, metric=Metric(abs(wanted - far))), bounds, search=False)
-        points = list(approach.points(first.orbit, int(sign)))
-        return points[-1].orbit if points and points[-1].parameter == wanted else None
+        nearer = replace(task, metric=Metric(abs(wanted - far)))
+        orbit, stop = _followed(nearer, bounds, first.orbit, int(sign))
+        if stop.reason is Reason.INACCURATE and orbit is not None:
+            self._shortfall = f"at {orbit.parameter[task.index]:.6g}, on the way there, {stop.detail}"
+            mesh = replace(task.settings.mesh, tolerance=max(LOOSE, task.settings.mesh.tolerance))
+            loose = replace(nearer, settings=replace(task.settings, mesh=mesh))
+            orbit, _ = _followed(loose, bounds, orbit, int(sign))
+        return orbit if orbit is not None and orbit.parameter[task.index] == wanted else None
 
     def _next_size(self, ds: float, new: Solved) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step
@@ -278,17 +297,21 @@ class Run:
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
         """Take one step; return base and new solution on one mesh. Raises RejectedError.
 
-        The mesh is made anew up to MESHES times; where then only the multipliers' error still exceeds its
-        bound the point stands, and tells it.
+        The mesh is made anew up to MESHES times, while it changes; where then only the multipliers' error
+        still exceeds its bound the point stands, and tells it.
         """
-        tolerance = self.task.settings.mesh.tolerance
-        for _ in range(MESHES):
+        task, tolerance = self.task, self.task.settings.mesh.tolerance
+        for left in reversed(range(MESHES + 1)):
             new = self._attempt(base, ds)
             if new.error.worst <= tolerance:
                 return base, new
-            base = self._base_on_mesh_for(base, new)
-        new = self._attempt(base, ds)
+            mesh = task.method.mesh_for(task, new)
+            if left == 0 or mesh.matches(base.orbit.mesh):
+                break
+            base = self._on_mesh(base, mesh)
         if new.error.orbit > tolerance:
+            if task.method.exhausted(task.settings.mesh, new.orbit):
+                raise BeyondError(task.method.shortfall(task, new))
             raise RejectedError("the error estimate exceeds the tolerance")
         return base, new
 
@@ -317,11 +340,9 @@ class Run:
         difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
         return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
 
-    def _base_on_mesh_for(self, base: Solved, new: Solved) -> Solved:
+    def _on_mesh(self, base: Solved, mesh: Mesh) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
-        task = self.task
-        mesh = task.method.mesh_for(task, new)
-        moved = carried(task, base, mesh, base.orbit.phases, base.tangent)
+        moved = carried(self.task, base, mesh, base.orbit.phases, base.tangent)
         if isinstance(moved, Outcome):
             raise RejectedError(f"the mesh could not be adapted: {moved.value}")
         return moved
@@ -341,6 +362,14 @@ class Run:
             return new
         self._since_remesh = 0
         return better
+
+
+def _followed(task: Task, bounds: tuple[float, float], start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
+    """Follow a branch; return its last orbit and why it ends."""
+    run = Run(task, bounds, search=False)
+    points = list(run.points(start, sign))
+    assert run.stop is not None
+    return (points[-1].orbit if points else None), run.stop
 
 
 def _value(task: Task, solved: Solved) -> float:

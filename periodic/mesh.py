@@ -103,6 +103,11 @@ class Mesh:
         grid = self.grid(phases)
         return np.append(grid.left, grid.left[0] + self.period)
 
+    def matches(self, other: Mesh) -> bool:
+        """Whether another mesh has the same breaks and anchors."""
+        same = len(self.breaks) == len(other.breaks) and self.anchors == other.anchors
+        return same and all(np.array_equal(a, b) for a, b in zip(self.breaks, other.breaks, strict=True))
+
     def bisected(self) -> Mesh:
         """Return the mesh with every interval halved."""
         halves = tuple(np.sort(np.concatenate([b, (b[1:] + b[:-1]) / 2])) for b in self.breaks)

@@ -1,4 +1,4 @@
-"""Damped Newton on the equations of an orbit, condensed by collocation or shooting, and their closures."""
+"""Damped Newton on the equations of an orbit, those of collocation by default, and their closures."""
 
 from __future__ import annotations
 
@@ -97,6 +97,7 @@ class Step:
 
 
 LinearStep = Callable[[System, Orbit, tuple[int, ...], Sequence[Closure]], Step | Outcome]
+"""What linearises the equations at an orbit: one Newton increment, or why there is none."""
 
 
 def correct(
@@ -109,8 +110,8 @@ def correct(
 ) -> Correction:
     """Solve for the orbit near `guess`, with the parameters `free` closed by as many closures.
 
-    `increment` gives one Newton step (default: that of the collocation equations). The outcome is on the
-    result; nothing is raised for a numerical failure.
+    `increment` linearises the equations (default: those of collocation). The outcome is on the result;
+    nothing is raised for a numerical failure.
     """
     settings, increment = settings or NewtonSettings(), increment or linear_step
     orbit, outcome, step, iterations = guess, Outcome.TOO_MANY, None, 0
@@ -122,14 +123,14 @@ def correct(
         worse = isinstance(trial, Outcome) or (base is not None and trial.length > 2 * base.length)
         if worse and base is not None and factor > 0.5**settings.max_halvings:
             factor /= 4
-            orbit = _advance(system, base, free, factor)
+            orbit = advance(system, base, free, factor)
             continue
         if isinstance(trial, Outcome):
             outcome = trial
             break
         step = base = trial
         factor = min(1.0, MAX_CHANGE / max(step.length, np.finfo(float).tiny))
-        orbit = _advance(system, step, free, factor)
+        orbit = advance(system, step, free, factor)
         if step.size < settings.tolerance:
             outcome = Outcome.CONVERGED
             break
@@ -236,7 +237,8 @@ def moved(system: System, algebraic: Array, increment: Array) -> Array:
     return system.move(algebraic.reshape(flat), increment.reshape(flat)).reshape(algebraic.shape)
 
 
-def _advance(system: System, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+def advance(system: System, step: Step, free: tuple[int, ...], factor: float) -> Orbit:
+    """Return the orbit after a part of a Newton increment."""
     orbit, k = step.orbit, len(step.orbit.phases)
     parameter = orbit.parameter.copy()
     parameter[list(free)] += factor * step.outer[k:]

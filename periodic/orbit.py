@@ -81,6 +81,22 @@ class Orbit:
         index, theta = self.locate(tau)
         return np.einsum("tl,tln->tn", self.mesh.scheme.basis(theta), self.knot_rates[index])
 
+    def spread(
+        self, index: NDArray[np.int_], theta: Array, by_state: Array, by_rate: Array
+    ) -> tuple[Array, Array]:
+        """Turn derivatives in states and rates at points into derivatives in mesh points and stages.
+
+        index, theta (P,) place the points; by_state, by_rate (P, n); their anchors' phases are held.
+        """
+        scheme, width = self.mesh.scheme, self.grid.width[index]
+        basis = scheme.basis(theta)
+        rates = basis @ scheme.differentiation / width[:, None]
+        knots = np.zeros_like(self.knots)
+        np.add.at(knots, index, basis[:, :, None] * by_state[:, None] + rates[:, :, None] * by_rate[:, None])
+        nodes = np.zeros_like(self.nodes)
+        nodes[:-1] = knots[:, 0]
+        return nodes, knots[:, 1:]
+
     def algebraic_guess(self, tau: Array) -> Array:
         """Unknowns at phases tau, interpolated within each interval, shape (len(tau), m)."""
         index, theta = self.locate(tau)
@@ -90,6 +106,10 @@ class Orbit:
     def periods(self) -> int:
         """How many periods of the excitation the orbit takes to come back."""
         return round(self.mesh.period / FORCED)
+
+    def collocated(self) -> Orbit:
+        """The orbit as a piecewise polynomial on the same mesh points: itself."""
+        return self
 
     def span(self) -> float:
         """Largest peak-to-peak value of the scaled states: what errors are compared with.
@@ -126,13 +146,13 @@ def transfer(orbit: Orbit, mesh: Mesh, phases: Array) -> Orbit:
     tau = (grid.left[:, None] + grid.width[:, None] * mesh.scheme.points).ravel()
     inside = tau - 1e-9 * np.repeat(grid.width, mesh.scheme.ncol)
     shape = (mesh.ntst, mesh.scheme.ncol, -1)
-    return replace(
-        orbit,
-        mesh=mesh,
-        nodes=orbit.state(mesh.nodes(phases)),
-        stages=orbit.state(tau).reshape(shape),
-        algebraic=orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
-        phases=phases,
+    return Orbit(
+        mesh,
+        orbit.state(mesh.nodes(phases)),
+        orbit.state(tau).reshape(shape),
+        orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
+        phases,
+        orbit.parameter,
     )
 
 

@@ -1,10 +1,8 @@
 """Gradients at points along an orbit, gathered into a gradient in the orbit's own numbers.
 
-A point lies at theta in interval j. With B the Lagrange polynomials of the knots and D their derivatives,
-
-    x = B(theta) knots_j,   x' = B(theta) D knots_j / width_j,   tau = left_j + theta width_j,
-
-and z follows from the algebraic rows. Anchors move tau and stretch the intervals.
+A point lies at theta in interval j, tau = left_j + theta width_j; states and rates there are linear in the
+orbit's numbers (`Orbit.spread`), and z follows from the algebraic rows. Anchors move tau and stretch the
+intervals.
 """
 
 from __future__ import annotations
@@ -72,18 +70,12 @@ def gathered(system: System, orbit: Orbit, points: Points, slopes: Slopes, free:
     Raises numpy.linalg.LinAlgError where the algebraic rows do not determine z.
     """
     value, slopes = _without_algebraic(system, orbit, points, slopes, free)
-    scheme, width = orbit.mesh.scheme, orbit.grid.width[points.index]
-    basis = scheme.basis(points.theta)
-    rates = basis @ scheme.differentiation / width[:, None]
-    each = basis[:, :, None] * slopes.state[:, None] + rates[:, :, None] * slopes.rate[:, None]
-    knots = np.zeros_like(orbit.knots)
-    np.add.at(knots, points.index, each)
-    nodes = np.zeros_like(orbit.nodes)
-    nodes[:-1] = knots[:, 0]
+    nodes, stages = orbit.spread(points.index, points.theta, slopes.state, slopes.rate)
     left, stretch = orbit.grid.left_gradient[points.index], orbit.grid.width_gradient[points.index]
     moved = slopes.phase @ (left + points.theta[:, None] * stretch)
+    width = orbit.grid.width[points.index]
     shorter = (np.einsum("pn,pn->p", slopes.rate, points.rate) / width) @ stretch
-    return Row(value, nodes, np.append(moved - shorter, slopes.parameter), knots[:, 1:])
+    return Row(value, nodes, np.append(moved - shorter, slopes.parameter), stages)
 
 
 def _without_algebraic(

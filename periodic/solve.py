@@ -152,7 +152,7 @@ def settle(task: Task, solved: Solved | Outcome, *, fixed: bool = False) -> Solv
 def is_settled(task: Task, solved: Solved) -> bool:
     """Whether error estimate and anchors are as they should be, or cannot be bettered."""
     mesh = task.settings.mesh
-    exhausted = solved.orbit.mesh.ntst >= mesh.ntst_max
+    exhausted = task.method.exhausted(mesh, solved.orbit)
     return solved.anchored and (solved.error.worst <= mesh.tolerance or exhausted)
 
 

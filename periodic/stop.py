@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from periodic.newton import Outcome
-
 
 class Reason(Enum):
     """Named reasons; `numerical` tells those that cut a branch short of what was asked."""
@@ -74,11 +72,11 @@ class Stop:
         return cls(Reason.SMALL_STEP, why)
 
     @classmethod
-    def no_start(cls, outcome: Outcome) -> Stop:
+    def no_start(cls, why: str) -> Stop:
         """No first orbit."""
-        return cls(Reason.NO_START, outcome.value)
+        return cls(Reason.NO_START, why)
 
     @classmethod
-    def inaccurate(cls, error: float, ntst: int) -> Stop:
-        """The first orbit misses the tolerance."""
-        return cls(Reason.INACCURATE, f"error estimate {error:.1e} with {ntst} intervals")
+    def inaccurate(cls, shortfall: str) -> Stop:
+        """An orbit misses the tolerance."""
+        return cls(Reason.INACCURATE, shortfall)

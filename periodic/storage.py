@@ -20,6 +20,7 @@ import xarray as xr
 from periodic.accuracy import ErrorEstimate
 from periodic.branch import Branch, BranchFileError, Layout, Quantity
 from periodic.checkpoint import Checkpoint
+from periodic.fourier import SAMPLES, FourierOrbit
 from periodic.label import Label
 from periodic.mesh import Anchor, Mesh
 from periodic.orbit import Orbit
@@ -28,6 +29,9 @@ from periodic.scheme import Family, Scheme
 from periodic.stop import Reason, Stop
 
 FORMAT = "orbitrace branch 3"
+
+FOURIER = "Fourier series"
+"""Stands for the scheme of orbits that are such series."""
 
 
 def save(branch: Branch, path: Path) -> None:
@@ -161,7 +165,7 @@ def _attributes(branch: Branch) -> dict[str, Any]:
         "format": FORMAT,
         "parameter": branch.parameter,
         "layout": json.dumps(quantities),
-        "scheme": scheme.family.value,
+        "scheme": FOURIER if scheme == SAMPLES else scheme.family.value,
         "ncol": scheme.ncol,
         "stop": json.dumps([branch.stop.reason.name, branch.stop.detail]),
         "stop_backwards": json.dumps([backwards.reason.name, backwards.detail] if backwards else None),
@@ -239,7 +243,8 @@ def _flag(data: xr.Dataset, name: str, i: int) -> bool:
 
 def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     """Cut the ragged arrays into orbits."""
-    scheme = Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
+    series = data.attrs["scheme"] == FOURIER
+    scheme = SAMPLES if series else Scheme(Family(data.attrs["scheme"]), int(data.attrs["ncol"]))
     n, m, ncol = len(layout.states), len(layout.algebraics), scheme.ncol
     for dimension, counts in (
         ("segment", "segment_count"),
@@ -251,7 +256,8 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
     breaks = np.split(data["sigma"].values, np.cumsum(data["break_count"].values)[:-1])
     algebraic = data["stage_algebraic"].values if m else np.zeros((data.sizes.get("stage", 0), 0))
     segment = anchor = node = stage = 0
-    orbits = []
+    kind = FourierOrbit if series else Orbit
+    orbits: list[Orbit] = []
     for i in range(data.sizes["point"]):
         segments, anchors = int(data["segment_count"].values[i]), int(data["anchor_count"].values[i])
         mine = tuple(breaks[segment : segment + segments])
@@ -267,7 +273,7 @@ def _orbits(data: xr.Dataset, layout: Layout) -> list[Orbit]:
         count = mesh.ntst
         rows = slice(stage, stage + count * ncol)
         orbits.append(
-            Orbit(
+            kind(
                 mesh,
                 data["node_state"].values[node : node + count + 1],
                 data["stage_state"].values[rows].reshape(count, ncol, n),

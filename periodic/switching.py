@@ -44,6 +44,7 @@ def doubled(
     square of the scaled states; default: FAR times the largest peak to peak) away, at a parameter of its own.
     Raises SwitchError.
     """
+    orbit = orbit.collocated()
     once = away(system, orbit, -1, autonomous=False)
     twice = _twice(orbit)
     nodes = np.concatenate([once.nodes[:-1], -once.nodes])
@@ -78,6 +79,7 @@ def branched(
         across = _across(system, orbit, index_of(system, parameter), leaving)
         return switched(system, orbit, across, parameter, determined or {}, distance)
     autonomous = any(isinstance(c, PhaseCondition) for c in (determined or {}).values())
+    orbit = orbit.collocated()
     direction = away(system, orbit, 1, autonomous)
     return switched(system, orbit, direction, parameter, determined or {}, distance)
 
@@ -140,6 +142,7 @@ def _twice(orbit: Orbit) -> Orbit:
 
 def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Direction:
     """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
+    orbit = orbit.collocated()
     condensed = collocation.condense(system, orbit, ())
     fundamental = bordered.chain(condensed)[:, :, 1 : 1 + orbit.nodes.shape[1]]
     flow = orbit.node_rates[0] if autonomous and multiplier == 1 else None

@@ -81,6 +81,14 @@ class Collocation:
         """Whether every anchor is a crossing in its own direction."""
         return anchors.genuine(system, orbit)
 
+    def exhausted(self, settings: MeshSettings, orbit: Orbit) -> bool:
+        """Whether an orbit has the largest number of intervals."""
+        return orbit.mesh.ntst >= settings.ntst_max
+
+    def shortfall(self, task: Task, solved: Solved) -> str:
+        """Return error estimate and number of intervals."""
+        return f"error estimate {solved.error.orbit:.1e} with {solved.orbit.mesh.ntst} intervals"
+
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right anchors and number of intervals, then with shallower anchors."""
         old, shortest = solved.orbit, task.settings.mesh.shortest

@@ -82,6 +82,14 @@ class Equilibrium:
         """There is nothing that the mesh is tied to."""
         return True
 
+    def exhausted(self, settings: MeshSettings, orbit: Orbit) -> bool:
+        """There is no finer mesh."""
+        return True
+
+    def shortfall(self, task: Task, solved: Solved) -> str:
+        """Return the residual: nothing is discretised."""
+        return f"residual {solved.correction.residual:.1e}"
+
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield nothing: every equilibrium has the same mesh."""
         return iter(())

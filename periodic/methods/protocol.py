@@ -60,6 +60,12 @@ class Method(Protocol):
     def genuine(self, system: System, orbit: Orbit) -> bool:
         """Whether what the mesh is tied to is still there."""
 
+    def exhausted(self, settings: MeshSettings, orbit: Orbit) -> bool:
+        """Whether an orbit's mesh is the finest allowed."""
+
+    def shortfall(self, task: Task, solved: Solved) -> str:
+        """Say by how much an orbit misses the tolerance, and on which mesh."""
+
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes made for an orbit, with their anchors' phases, the best first."""
 

@@ -102,6 +102,14 @@ class Shooting:
         """Nothing to lose."""
         return True
 
+    def exhausted(self, settings: MeshSettings, orbit: Orbit) -> bool:
+        """Whether an orbit has the largest number of intervals."""
+        return orbit.mesh.ntst >= settings.ntst_max
+
+    def shortfall(self, task: Task, solved: Solved) -> str:
+        """Return error estimate and number of intervals."""
+        return f"error estimate {solved.error.orbit:.1e} with {solved.orbit.mesh.ntst} intervals"
+
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield the mesh that interpolates the orbit to its tolerance."""
         yield self.mesh_for(task, solved), NO_ANCHORS
