@@ -9,7 +9,7 @@ turns, where the parameter is monotone.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,8 @@ from periodic.closure import Plane
 from periodic.events import Test
 from periodic.label import Label
 from periodic.newton import Outcome
-from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, predict, settle
+from periodic.orbit import Orbit
+from periodic.solve import Solved, Task, at_parameter, cubic, from_itself, on_plane, predict, settle
 
 MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
@@ -37,6 +38,12 @@ ORBITS = 1e3
 
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
+
+LEFT = 0.5
+"""A function that is predicted to keep this part of its least value so far does not change sign."""
+
+DISTINCT = 1e-3
+"""Distance from an orbit already solved for, as a part of the step, at which another tells something new."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,42 @@ class _NoOrbitError(RejectedError):
         self.distance = distance
 
 
+@dataclass(frozen=True)
+class _Stretch:
+    """Orbits on planes at given distances from a step's base, each solved for once.
+
+    The guesses are cubics between the nearest orbits known, then the base's tangent.
+    """
+
+    task: Task
+    base: Solved
+    known: dict[float, Solved]
+
+    def at(self, distance: float) -> Solved:
+        """Return the orbit at a distance. Raises RejectedError where there is none."""
+        if distance not in self.known:
+            self.known[distance] = self._solved(distance)
+        return self.known[distance]
+
+    def _solved(self, distance: float) -> Solved:
+        task, base = self.task, self.base
+        plane = Plane(base.orbit, base.tangent, distance, task.metric, task.index)
+        failure = Outcome.TOO_MANY
+        for guess in self._guesses(distance):
+            solved = on_plane(task, guess, plane)
+            if isinstance(solved, Solved):
+                return solved
+            failure = solved
+        raise _NoOrbitError(failure.value, distance)
+
+    def _guesses(self, distance: float) -> Iterator[Orbit]:
+        further = [d for d in self.known if d * distance > 0 and abs(d) > abs(distance)]
+        if further:
+            end = min(further, key=abs)
+            yield cubic(self.task, self.base, self.known[end], end, distance)
+        yield predict(self.task, self.base.orbit, self.base.tangent, distance)
+
+
 def special_points(
     task: Task,
     base: Solved,
@@ -81,21 +124,22 @@ def special_points(
     up to which values have been looked for: that of the last point, from which the base may differ by its
     error where it was solved again on a new mesh. Raises RejectedError.
     """
+    stretch = _Stretch(task, base, {0.0: base, ds: new})
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    turns = [] if from_turn else _where(task, base, new, ds, events.TURN)
+    turns = [] if from_turn else _where(stretch, new, ds, events.TURN)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
     found = [_named(task, turn, base, new) for turn in turns]
     for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
-        found += _where(task, base, new, ds, test)
+        found += _where(stretch, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = _value(task, end.solved)
         bound = bounds[1] if last > first else bounds[0]
         for value, label in [*((v, Label.USER) for v in user), (bound, Label.END)]:
             if first < value <= last or last <= value < first:
-                found.append(_at_value(task, base, begin, end, value, label))
+                found.append(_at_value(stretch, begin, end, value, label))
     found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
     return found[: final[0] + 1] if final else found
@@ -117,46 +161,61 @@ def _value(task: Task, solved: Solved) -> float:
     return float(solved.orbit.parameter[task.index])
 
 
-def _where(task: Task, base: Solved, new: Solved, ds: float, test: Test) -> list[Found]:
+def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]:
     """Locate where a test function changes sign within a step, if it does."""
-    ends = [test.value(task, solved) for solved in (base, new)]
+    base = stretch.base
+
+    def value(solved: Solved) -> float:
+        return test.value(stretch.task, solved)
+
+    ends = [value(solved) for solved in (base, new)]
     if ends[0] * ends[1] < 0:
-        return _located(task, base, (0.0, ds), ds, test)
+        return _located(stretch, (0.0, ds), ds, test)
     if ends[0] * ends[1] == 0 or not test.twice(base, new):
         return []
-    between = _change(task, base, ds, lambda solved: np.sign(ends[0]) * test.value(task, solved))
+    sign = np.sign(ends[0])
+    between = _change(lambda distance: sign * value(stretch.at(distance)), ds, abs(ends[0]), abs(ends[1]))
     if between is None:
         return []
-    spans = ((0.0, between), (between, ds))
-    return [found for span in spans for found in _located(task, base, span, ds, test)]
+    return [found for span in ((0.0, between), (between, ds)) for found in _located(stretch, span, ds, test)]
 
 
-def _change(task: Task, base: Solved, ds: float, value: Callable[[Solved], float]) -> float | None:
-    """Return a distance within a step at which a function, positive at both ends, is negative, if any."""
-    found: list[float] = []
+def _change(value: Callable[[float], float], ds: float, begin: float, end: float) -> float | None:
+    """Return a distance within a step at which a function, positive at both ends, is negative, if any.
 
-    def positive(distance: float) -> float:
-        result = value(_at_distance(task, base, distance))
-        if result < 0:
-            found.append(distance)
-            raise StopIteration
-        return result
-
-    with contextlib.suppress(StopIteration):
-        optimize.minimize_scalar(
-            positive, bounds=(0.0, ds), method="bounded", options={"maxiter": TRIALS, "xatol": 0.0}
+    Parabolas through its least value and the neighbours lead to its minimum, as far as they fall.
+    """
+    known = {0.0: begin, ds: end}
+    place = ds / (1 + np.sqrt(end / begin))  # of a parabola that touches zero
+    for _ in range(TRIALS):
+        known[place] = value(place)
+        if known[place] < 0:
+            return float(place)
+        at = sorted(known)
+        middle = min(max(1, at.index(min(at, key=lambda d: known[d]))), len(at) - 2)
+        bend, slope, level = np.polyfit(
+            [d - at[middle] for d in at[middle - 1 : middle + 2]],
+            [known[d] for d in at[middle - 1 : middle + 2]],
+            2,
         )
-    return found[0] if found else None
+        if bend <= 0:
+            return None
+        place = at[middle] - slope / (2 * bend)
+        falls = level - slope**2 / (4 * bend) < LEFT * min(known.values())
+        if not 0 < place < ds or not falls or min(abs(place - d) for d in known) < DISTINCT * ds:
+            return None
+    return None
 
 
-def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, test: Test) -> list[Found]:
+def _located(stretch: _Stretch, span: tuple[float, float], ds: float, test: Test) -> list[Found]:
     """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
+    task, base = stretch.task, stretch.base
 
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
     precision, crossed = test.precision * ds, test is not events.TURN
-    distance, solved = _root(task, base, span, value, precision, aside=crossed)
+    distance, solved = _root(stretch, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
         raise RejectedError("a special point of another branch was met")
@@ -165,10 +224,11 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
         return [Found(test.label, distance, solved, test.name)]
+    around = _Stretch(task, refined, {0.0: refined})
     for reach in (0.05 * ds, 0.5 * ds):
-        ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
+        ends = [around.at(side) for side in (-reach, reach)]
         if value(ends[0]) * value(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), value, precision, aside=crossed)[1]
+            solved = _root(around, (-reach, reach), value, precision, aside=crossed)[1]
             return [Found(test.label, distance, solved, test.name)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
@@ -203,10 +263,10 @@ def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
     return solved
 
 
-def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label) -> Found:
+def _at_value(stretch: _Stretch, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
-    ends = (begin.distance, end.distance)
-    distance, near = _root(task, base, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))
+    task, ends = stretch.task, (begin.distance, end.distance)
+    distance, near = _root(stretch, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))
     parameter = near.orbit.parameter.copy()
     parameter[task.index] = value
     guess = replace(near.orbit, parameter=parameter)
@@ -215,8 +275,7 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
 
 
 def _root(
-    task: Task,
-    base: Solved,
+    stretch: _Stretch,
     ends: tuple[float, float],
     test: Callable[[Solved], float],
     precision: float,
@@ -227,41 +286,29 @@ def _root(
 
     `aside` accepts a solution very near to it where there is none at the place itself.
     """
-    solutions: dict[float, Solved] = {}
 
     def value(distance: float) -> float:
-        solutions[distance] = _at_distance(task, base, distance)
-        return test(solutions[distance])
+        return test(stretch.at(distance))
 
     at_ends = [value(end) for end in ends]
     if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
         nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
-        return nearest, solutions[nearest]
+        return nearest, stretch.at(nearest)
     try:
         root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
-        return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+        return root, stretch.at(root)
     except _NoOrbitError as failed:
         if not aside:
             raise
-        return _aside(task, base, ends, failed)
+        return _aside(stretch, ends, failed)
 
 
-def _aside(
-    task: Task, base: Solved, ends: tuple[float, float], failed: _NoOrbitError
-) -> tuple[float, Solved]:
+def _aside(stretch: _Stretch, ends: tuple[float, float], failed: _NoOrbitError) -> tuple[float, Solved]:
     """Return the solution nearest to where there was none; raise what failed if there is none near."""
-    stretch = (ends[1] - ends[0]) * (1 if base.orbit.equilibrium else ORBITS)
+    length = (ends[1] - ends[0]) * (1 if stretch.base.orbit.equilibrium else ORBITS)
     for part in ASIDE:
-        distance = failed.distance + part * stretch
+        distance = failed.distance + part * length
         if min(ends) <= distance <= max(ends):
             with contextlib.suppress(_NoOrbitError):
-                return distance, _at_distance(task, base, distance)
+                return distance, stretch.at(distance)
     raise failed
-
-
-def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
-    guess = predict(task, base.orbit, base.tangent, distance)
-    solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
-    if isinstance(solved, Outcome):
-        raise _NoOrbitError(solved.value, distance)
-    return solved

@@ -116,8 +116,7 @@ class Shooting:
 
     def mesh_for(self, task: Task, new: Solved) -> Mesh:
         """Return the mesh that interpolates an orbit to its tolerance."""
-        interpolated = replace(new, error=ErrorEstimate(new.error.orbit, 0.0))  # no mesh betters multipliers
-        ntst = wanted_ntst(task, interpolated)
+        ntst = wanted_ntst(task, new.orbit, replace(new.error, multiplier=0.0))  # no mesh betters multipliers
         return redistribute(new.orbit, ntst, (), NO_ANCHORS, task.settings.mesh.shortest)
 
     def guesses(self, task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
