@@ -29,6 +29,10 @@ NEGLIGIBLE = 1e-3
 """Change of the scaled states that a parameter about zero is compared with."""
 
 
+CLOSE = 1e-2
+"""Increment, in tolerances, up to which a linearisation gives the multipliers of the orbit that it leads to."""
+
+
 class Outcome(Enum):
     """How a Newton iteration ended; the value says it in words."""
 
@@ -140,12 +144,13 @@ def correct(
         n = orbit.nodes.shape[1]
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
-    if outcome is Outcome.CONVERGED:
-        last = increment(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+    if outcome is Outcome.CONVERGED and step.length > CLOSE * settings.tolerance:
+        # The last linearisation was not close enough for multipliers and tangent.
+        last = increment(system, orbit, free, closures)
         if isinstance(last, Outcome):
             outcome = last
         else:
-            orbit, step = last.orbit, replace(last, size=step.size)
+            orbit, step = advance(system, last, free, 1.0), replace(last, size=step.size)
     return Correction(orbit, outcome, iterations, step.size, step.residual, step.fundamental, step.kernel)
 
 
