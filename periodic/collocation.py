@@ -54,14 +54,19 @@ class Condensed:
 
     def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
         """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
-        orbit, (count, ncol, _) = self.orbit, self.orbit.stages.shape
-        one, dy = np.full((count, 1), constant), np.broadcast_to(outer, (count, len(outer)))
-        stages = np.einsum("jlnw,jw->jln", self.stages, np.concatenate([one, nodes[:-1], dy], axis=1))
+        orbit, (count, ncol, n) = self.orbit, self.orbit.stages.shape
+        width, q = self.stages.shape[3], len(outer)
+        given = np.empty((count, width, 1))
+        given[:, 0, 0], given[:, 1 : 1 + n, 0], given[:, 1 + n :, 0] = constant, nodes[:-1], outer
+        stages = (self.stages.reshape(count, ncol * n, width) @ given).reshape(count, ncol, n)
+        if orbit.algebraic.shape[2] == 0:
+            return stages, np.zeros_like(orbit.algebraic)
+        inner = np.empty((count, ncol, 1 + 2 * n + q, 1))
         knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
-        rates = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-        around = [np.repeat(part[:, None], ncol, axis=1) for part in (one, dy)]
-        inner = np.concatenate([around[0], rates, stages, around[1]], axis=2)
-        return stages, -np.einsum("jlmw,jlw->jlm", self.algebraic, inner)
+        inner[..., 0, 0], inner[..., 1 + 2 * n :, 0] = constant, outer
+        inner[..., 1 : 1 + n, 0] = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
+        inner[..., 1 + n : 1 + 2 * n, 0] = stages
+        return stages, -(self.algebraic @ inner)[..., 0]
 
 
 def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
@@ -88,8 +93,16 @@ def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
 
     Returns the differential rows without z, (points, n, w), and -dz as a map of the columns, (points, m, w).
     """
-    algebraic = np.linalg.solve(rows.d_algebraic[:, n:], rows.columns[:, n:]).astype(float, copy=False)
-    return rows.columns[:, :n] - rows.d_algebraic[:, :n] @ algebraic, algebraic
+    unknown, columns = rows.d_algebraic, rows.columns
+    if unknown.shape[2] == 0:
+        return columns, columns[:, n:]
+    if unknown.shape[2] == 1:
+        if not unknown[:, n].all():
+            raise np.linalg.LinAlgError("an algebraic row does not depend on its unknown")
+        algebraic = columns[:, n:] / unknown[:, n:]
+        return columns[:, :n] - unknown[:, :n] * algebraic, algebraic
+    algebraic = np.linalg.solve(unknown[:, n:], columns[:, n:]).astype(float, copy=False)
+    return columns[:, :n] - unknown[:, :n] @ algebraic, algebraic
 
 
 def solve_stages(local: Array, right: Array, weights: Array) -> Array:
@@ -165,7 +178,10 @@ def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
 
 def _steps(orbit: Orbit, stages: Array) -> Array:
     end, n = orbit.mesh.scheme.end, orbit.nodes.shape[1]
-    steps = np.einsum("l,jlnw->jnw", end[1:], stages)
+    if end[-1] == 1.0 and not end[:-1].any():
+        steps = stages[:, -1].copy()
+    else:
+        steps = np.einsum("l,jlnw->jnw", end[1:], stages)
     steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
     steps[:, :, 0] += end @ orbit.knots - orbit.nodes[1:]
     return steps

@@ -33,7 +33,7 @@ STANDING = 1e-5
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
 
-ORBITS = 1e3
+ORBITS = 1e1
 """How many times as far that is of orbits, which have errors of their own."""
 
 TRIALS = 15
@@ -62,7 +62,14 @@ class Found:
 
 
 class RejectedError(Exception):
-    """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
+    """A step that cannot be taken, or inside which a plane could not be solved on; the message says why.
+
+    shorter: the part of it to be tried next.
+    """
+
+    def __init__(self, why: str, shorter: float = 0.5) -> None:
+        super().__init__(why)
+        self.shorter = shorter
 
 
 class _NoOrbitError(RejectedError):
@@ -77,12 +84,14 @@ class _NoOrbitError(RejectedError):
 class _Stretch:
     """Orbits on planes at given distances from a step's base, each solved for once.
 
-    The guesses are cubics between the nearest orbits known, then the base's tangent.
+    The guess is the cubic to the step's end, where there is one, then the base's tangent: orbits solved for
+    close to a singular one have lost digits that a guess must not carry on.
     """
 
     task: Task
     base: Solved
     known: dict[float, Solved]
+    end: float | None = None
 
     def at(self, distance: float) -> Solved:
         """Return the orbit at a distance. Raises RejectedError where there is none."""
@@ -102,10 +111,8 @@ class _Stretch:
         raise _NoOrbitError(failure.value, distance)
 
     def _guesses(self, distance: float) -> Iterator[Orbit]:
-        further = [d for d in self.known if d * distance > 0 and abs(d) > abs(distance)]
-        if further:
-            end = min(further, key=abs)
-            yield cubic(self.task, self.base, self.known[end], end, distance)
+        if self.end is not None:
+            yield cubic(self.task, self.base, self.known[self.end], self.end, distance)
         yield predict(self.task, self.base.orbit, self.base.tangent, distance)
 
 
@@ -124,7 +131,7 @@ def special_points(
     up to which values have been looked for: that of the last point, from which the base may differ by its
     error where it was solved again on a new mesh. Raises RejectedError.
     """
-    stretch = _Stretch(task, base, {0.0: base, ds: new})
+    stretch = _Stretch(task, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
     turns = [] if from_turn else _where(stretch, new, ds, events.TURN)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)

@@ -30,7 +30,7 @@ NEGLIGIBLE = 1e-3
 
 
 CLOSE = 1e-2
-"""Increment, in tolerances, up to which a linearisation gives the multipliers of the orbit that it leads to."""
+"""Increment, in tolerances, up to which a linearisation has the multipliers of the orbit it leads to."""
 
 
 class Outcome(Enum):
@@ -231,7 +231,8 @@ def sizes(
 def _effect(condensed: bordered.Condensed) -> Array:
     """How much the states change with each of y over a period, about; shape (q,)."""
     n = condensed.step.shape[1]
-    return len(np.unique(condensed.origin)) * np.abs(condensed.step[:, :, 1 + n :]).max(axis=(0, 1))
+    intervals = np.count_nonzero(np.bincount(condensed.origin))
+    return intervals * np.abs(condensed.step[:, :, 1 + n :]).max(axis=(0, 1), initial=0.0)
 
 
 def moved(system: System, algebraic: Array, increment: Array) -> Array:

@@ -14,7 +14,7 @@ from periodic.anchors import Crossing
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane, closures
 from periodic.mesh import Mesh
 from periodic.methods.protocol import Method
-from periodic.newton import Correction, Outcome, moved
+from periodic.newton import Correction, NewtonSettings, Outcome, at_fixed_phase, moved
 from periodic.orbit import FORCED, Orbit
 from periodic.scheme import Array
 from periodic.settings import Settings
@@ -116,10 +116,15 @@ def parameter_direction(orbit: Orbit, metric: Metric, others: int = 0) -> Direct
     )
 
 
-def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
-    """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
+def on_plane(
+    task: Task, guess: Orbit, plane: Plane, newton: NewtonSettings | None = None
+) -> Solved | Outcome:
+    """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side.
+
+    newton: settings other than the task's.
+    """
     closing = [*closures(task.conditions, task.others, plane.origin), plane]
-    result = task.method.correct(task.system, guess, task.free, closing, task.settings.newton)
+    result = task.method.correct(task.system, guess, task.free, closing, newton or task.settings.newton)
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
@@ -278,14 +283,14 @@ def cubic(task: Task, a: Solved, b: Solved, distance: float, place: float) -> Or
 
 
 def difference(task: Task, a: Orbit, b: Orbit) -> Direction:
-    """The way from a to b, on one mesh; its profile is that at fixed sigma."""
-    nodes = b.nodes - a.nodes
+    """The way from a to b, on one mesh."""
+    nodes, phases = b.nodes - a.nodes, b.phases - a.phases
     return Direction(
         nodes,
         b.stages - a.stages,
         b.algebraic - a.algebraic,
-        b.phases - a.phases,
-        nodes,
+        phases,
+        at_fixed_phase(a, nodes, phases),
         float(b.parameter[task.index] - a.parameter[task.index]),
         b.parameter[list(task.others)] - a.parameter[list(task.others)],
     )

@@ -17,6 +17,7 @@ from periodic.mesh import Mesh, uniform
 from periodic.newton import Correction, NewtonSettings, correct
 from periodic.orbit import Orbit, at_rest, transfer
 from periodic.relax import relax
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import DEEPEST, MeshSettings
 from periodic.system import System
@@ -116,9 +117,9 @@ class Collocation:
             shifted = phases + aside * task.settings.mesh.tolerance * deep
             yield relax(task.system, transfer(old, mesh, shifted))
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base, new)
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far lightly damped pairs of multipliers turn."""
+        return rotation.turned(base, new)
 
 
 def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:

@@ -22,6 +22,7 @@ from periodic.mesh import Mesh, uniform
 from periodic.methods.collocation import wanted_ntst
 from periodic.newton import Condense, Correction, NewtonSettings, correct, linear_step
 from periodic.orbit import Orbit, at_rest, transfer
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
 from periodic.system import Flowing, System
@@ -123,9 +124,9 @@ class Shooting:
         """Yield the orbit interpolated onto the mesh."""
         yield transfer(old, mesh, phases)
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base, new)
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far lightly damped pairs of multipliers turn."""
+        return rotation.turned(base, new)
 
     def _check(self, system: System, settings: MeshSettings) -> None:
         _flowing(system)
