@@ -40,10 +40,13 @@ TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
 LEFT = 0.5
-"""A function that is predicted to keep this part of its least value so far does not change sign."""
+"""A function that is as a parabola predicts, and keeps this part of its least value, does not change sign."""
 
-DISTINCT = 1e-3
-"""Distance from an orbit already solved for, as a part of the step, at which another tells something new."""
+CONFIRMED = 0.1
+"""How well, relatively, the parabola must predict it."""
+
+DISTINCT = 0.1
+"""A place to look at lies at least so far on the way from the least value to the next place known."""
 
 
 @dataclass(frozen=True)
@@ -102,9 +105,9 @@ class _Stretch:
     def _solved(self, distance: float) -> Solved:
         task, base = self.task, self.base
         plane = Plane(base.orbit, base.tangent, distance, task.metric, task.index)
-        failure = Outcome.TOO_MANY
+        newton, failure = replace(task.settings.newton, close=0.0), Outcome.TOO_MANY
         for guess in self._guesses(distance):
-            solved = on_plane(task, guess, plane)
+            solved = on_plane(task, guess, plane, newton)
             if isinstance(solved, Solved):
                 return solved
             failure = solved
@@ -190,28 +193,37 @@ def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]
 def _change(value: Callable[[float], float], ds: float, begin: float, end: float) -> float | None:
     """Return a distance within a step at which a function, positive at both ends, is negative, if any.
 
-    Parabolas through its least value and the neighbours lead to its minimum, as far as they fall.
+    Parabolas lead to its minimum until one has predicted it.
     """
     known = {0.0: begin, ds: end}
-    place = ds / (1 + np.sqrt(end / begin))  # of a parabola that touches zero
+    place, expected = ds / (1 + np.sqrt(end / begin)), np.nan  # where a parabola touches zero
     for _ in range(TRIALS):
-        known[place] = value(place)
-        if known[place] < 0:
+        least = min(known.values())
+        known[place] = found = value(place)
+        if found < 0:
             return float(place)
-        at = sorted(known)
-        middle = min(max(1, at.index(min(at, key=lambda d: known[d]))), len(at) - 2)
-        bend, slope, level = np.polyfit(
-            [d - at[middle] for d in at[middle - 1 : middle + 2]],
-            [known[d] for d in at[middle - 1 : middle + 2]],
-            2,
-        )
-        if bend <= 0:
+        if abs(found - expected) < CONFIRMED * found and found > LEFT * least:
             return None
-        place = at[middle] - slope / (2 * bend)
-        falls = level - slope**2 / (4 * bend) < LEFT * min(known.values())
-        if not 0 < place < ds or not falls or min(abs(place - d) for d in known) < DISTINCT * ds:
-            return None
+        place, expected = _lowest(known)
     return None
+
+
+def _lowest(known: dict[float, float]) -> tuple[float, float]:
+    """Return where to look for a function's minimum and what a parabola through its least values predicts.
+
+    That is the parabola's vertex, or halfway to its neighbour where an end is the least.
+    """
+    at = sorted(known)
+    least = at.index(min(at, key=lambda distance: known[distance]))
+    near = at[max(0, min(least - 1, len(at) - 3)) :][:3]
+    parabola = np.polynomial.Polynomial.fit(near, [known[distance] for distance in near], 2)
+    if 0 < least < len(at) - 1:
+        vertex, middle = float(parabola.deriv().roots()[0]), near[1]
+        gap = (near[2] if vertex > middle else near[0]) - middle
+        place = middle + gap * max((vertex - middle) / gap, DISTINCT)
+    else:
+        place = (at[least] + at[1 if least == 0 else -2]) / 2
+    return place, float(parabola(place))
 
 
 def _located(stretch: _Stretch, span: tuple[float, float], ds: float, test: Test) -> list[Found]:

@@ -29,10 +29,6 @@ NEGLIGIBLE = 1e-3
 """Change of the scaled states that a parameter about zero is compared with."""
 
 
-CLOSE = 1e-2
-"""Increment, in tolerances, up to which a linearisation has the multipliers of the orbit it leads to."""
-
-
 class Outcome(Enum):
     """How a Newton iteration ended; the value says it in words."""
 
@@ -48,15 +44,22 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonSettings:
-    """tolerance: largest relative increment of the last step, which is still taken."""
+    """tolerance: largest relative increment of the last step, which is still taken.
+
+    close: increment, in tolerances, up to which a linearisation has the multipliers and the tangent of the
+    orbit that it leads to; they take another one else.
+    """
 
     tolerance: float = 1e-8
+    close: float = 1e-2
     max_iterations: int = 12
     max_halvings: int = 6
 
     def __post_init__(self) -> None:
         if not 0 < self.tolerance < 1:
             raise ValueError(f"Newton tolerance is {self.tolerance}; it must lie between 0 and 1")
+        if not 0 <= self.close <= 1:
+            raise ValueError(f"close is {self.close}; it must lie from 0 to 1")
         if self.max_iterations < 1:
             raise ValueError(f"max_iterations is {self.max_iterations}; it must be at least 1")
 
@@ -144,8 +147,7 @@ def correct(
         n = orbit.nodes.shape[1]
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
-    if outcome is Outcome.CONVERGED and step.length > CLOSE * settings.tolerance:
-        # The last linearisation was not close enough for multipliers and tangent.
+    if outcome is Outcome.CONVERGED and step.length > settings.close * settings.tolerance:
         last = increment(system, orbit, free, closures)
         if isinstance(last, Outcome):
             outcome = last
