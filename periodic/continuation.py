@@ -41,14 +41,16 @@ from periodic.solve import (
 from periodic.stop import Reason, Stop
 from periodic.switching import away
 
+LARGE = 0.25
+"""The mesh is made anew where the error estimate reaches this part of the tolerance."""
+
 WINDOW = 1 / 60
-"""The mesh is made anew where the error estimate falls below this part of the tolerance."""
+"""... where it falls below this part, and a mesh of SMALLER times as many intervals would do."""
+
+SMALLER = 0.7
 
 ADAPT_EVERY = 10
 """... and every so many steps."""
-
-SMALLER = 0.7
-"""... if it then has at most this part of its intervals."""
 
 MESHES = 3
 """How many new meshes are tried for one step."""
@@ -381,7 +383,7 @@ class Run:
         task = self.task
         tolerance = task.settings.mesh.tolerance
         self._since_remesh += 1
-        due = self._since_remesh >= ADAPT_EVERY or new.error.worst >= 0.7 * tolerance
+        due = self._since_remesh >= ADAPT_EVERY or new.error.worst >= LARGE * tolerance
         if new.anchored and not due and not self._too_fine(new):
             return new
         better = remesh(task, new)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from periodic import codimension, events
 from periodic.closure import Plane
@@ -314,7 +314,7 @@ def _root(
         nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
         return nearest, stretch.at(nearest)
     try:
-        root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+        root = scipy.optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
         return root, stretch.at(root)
     except _NoOrbitError as failed:
         if not aside:
