@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.closure import Row
+from periodic.kinematic import kinematic, solve
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
@@ -108,9 +109,13 @@ def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
 def solve_stages(local: Array, right: Array, weights: Array) -> Array:
     """Solve each interval's rows for its stages: -right (N, ncol, n, w) over the stage matrix."""
     count, ncol, n, _ = local.shape
-    matrix = local[:, :, :, None, 1 : 1 + n] * weights[:, :, None, 1:, None]
+    by_rate, by_state = local[..., 1 : 1 + n], local[..., 1 + n : 1 + 2 * n]
+    found = kinematic(by_rate, by_state)
+    if found is not None:
+        return solve(found, by_rate, by_state, right, weights[:, :, 1:])
+    matrix = by_rate[:, :, :, None] * weights[:, :, None, 1:, None]
     each = np.arange(ncol)
-    matrix[:, each, :, each, :] += np.moveaxis(local[..., 1 + n : 1 + 2 * n], 1, 0)
+    matrix[:, each, :, each, :] += np.moveaxis(by_state, 1, 0)
     size = ncol * n
     solution = np.linalg.solve(matrix.reshape(count, size, size), -right.reshape(count, size, -1))
     return solution.reshape(count, ncol, n, -1).astype(float, copy=False)
