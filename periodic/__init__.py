@@ -35,7 +35,7 @@ from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
 from periodic.switching import SwitchError, branched, doubled
 from periodic.system import System
-from periodic.tracing import trace
+from periodic.tracing import ResumeError, trace
 
 __all__ = [
     "Accuracy",
@@ -67,6 +67,7 @@ __all__ = [
     "PhaseCondition",
     "Point",
     "Reason",
+    "ResumeError",
     "Run",
     "Scheme",
     "Settings",

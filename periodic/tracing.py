@@ -30,6 +30,10 @@ from periodic.watch import Watch
 Progress = Callable[[Point], None]
 
 
+class ResumeError(ValueError):
+    """A branch that is not one of the trace that it shall resume."""
+
+
 def trace(
     system: System,
     parameter: str,
@@ -144,15 +148,15 @@ def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, bef
 def _taken_up(
     runs: list[Run], signs: list[int], parameter: str, layout: Layout, branch: Branch
 ) -> list[Iterator[Point]]:
-    """The runs of an interrupted branch, each from where it stands. Raises ValueError for another one."""
+    """The runs of an interrupted branch, each from where it stands. Raises ResumeError for another one."""
     if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
-        raise ValueError(
+        raise ResumeError(
             f"resume is a branch in {branch.parameter} with {len(branch)} points; it must be one in "
             f"{parameter} of this system, with points"
         )
     begun = {c.sign: c for c in branch.checkpoints}
     if not set(begun) <= set(signs):
-        raise ValueError("resume is a branch with another start; start and bounds must be as before")
+        raise ResumeError("resume is a branch with another start; start and bounds must be as before")
     start = branch.points[branch.backwards]
     own = [[*branch.points[branch.backwards :]]]
     if branch.backwards:

@@ -42,6 +42,14 @@ class Effort(Enum):
     FINE = "fine"
 
 
+class Method(Enum):
+    """Discretisations by the names that they have here."""
+
+    COLLOCATION = "collocation"
+    SHOOTING = "shooting"
+    HARMONIC_BALANCE = "harmonic-balance"
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; bad input ends in one sentence on standard error."""
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
@@ -99,6 +107,10 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
 ]
+How = Annotated[Method, typer.Option("--method", help="How orbits are represented and solved for.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on from an interrupted trace in DIR; all else as it was.")
+]
 Sweep = Annotated[
     bool,
     typer.Option(
@@ -148,7 +160,9 @@ def trace(
     at: At = None,
     changes: Changes = None,
     accuracy: Dial = Effort.STANDARD,
+    method: How = Method.COLLOCATION,
     out: Out = None,
+    resume: Resume = False,
     sweep: Sweep = False,
     as_json: Json = False,
 ) -> int:
@@ -166,9 +180,10 @@ def trace(
     task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
     name = short_name(scene)
     folder = writable(out or Path("orbitrace-out", name))
+    before = run.interrupted(task, folder) if resume else None
     with heard_once():
         try:
-            branch = _traced(name, task, accuracy)
+            branch = _traced(name, task, accuracy, method, before)
             integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
             _say("interrupted before the first point; nothing was saved")
@@ -245,12 +260,17 @@ def _pair(change: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _traced(name: str, task: run.Task, accuracy: Effort) -> Branch:
-    from periodic import Accuracy, Reason
+def _traced(name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None) -> Branch:
+    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting
     from reports import console, run
 
+    methods = {
+        Method.COLLOCATION: Collocation,
+        Method.SHOOTING: Shooting,
+        Method.HARMONIC_BALANCE: HarmonicBalance,
+    }
     with console.progress(name, task.scene) as progress:
-        branch = run.trace(task, Accuracy[accuracy.name], progress)
+        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
     return branch
@@ -269,9 +289,9 @@ def _place(branch: Branch, folder: Path) -> Path:
     cut = branch.stop.reason.numerical or branch.stop.reason is Reason.INTERRUPTED
     if not (cut and (folder / "branch.nc").exists()):
         return folder
-    from reports.files import writable
+    from reports.files import INCOMPLETE, writable
 
-    return writable(folder / "incomplete")
+    return writable(folder / INCOMPLETE)
 
 
 def _swept(name: str, task: run.Task) -> run.Settlements | None:

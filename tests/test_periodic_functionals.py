@@ -63,6 +63,7 @@ def test_sensitivities_of_a_linear_oscillator() -> None:
             "modulus": per.Multiplier(),
             "real": per.Multiplier(0, "real"),
             "imaginary": per.Multiplier(0, "imaginary"),
+            "angle": per.Multiplier(0, "angle"),
         },
     )
 
@@ -76,7 +77,8 @@ def test_sensitivities_of_a_linear_oscillator() -> None:
             "lag": -float(np.angle(response)),
             "modulus": abs(multiplier),
             "real": multiplier.real,
-            "imaginary": abs(multiplier.imag),
+            "imaginary": multiplier.imag * math.copysign(1, multiplier.imag),
+            "angle": abs(float(np.angle(multiplier))),
         }
 
     values = {p.name: float(v) for p, v in zip(system.parameters, orbit.parameter, strict=True)}
@@ -283,8 +285,8 @@ def test_derivatives_need_a_differentiable_system() -> None:
 
 def test_part_of_a_multiplier_is_checked() -> None:
     """Assert the sentences about a multiplier that there is not."""
-    with pytest.raises(ValueError, match="part is 'angle'; it must be one of modulus, real, imaginary"):
-        per.Multiplier(0, "angle")
+    with pytest.raises(ValueError, match="part is 'size'; it must be one of modulus, angle, real, imaginary"):
+        per.Multiplier(0, "size")
     system, orbit = linear_orbit()
     with pytest.raises(ValueError, match="which is 2; the orbit has the multipliers 0 to 1"):
         per.Multiplier(2)(system, orbit)
