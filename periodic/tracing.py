@@ -129,14 +129,15 @@ def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> No
 def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
     """One branch out of one or two runs from the same start, and what was spent on it before."""
     reached = [run for run in runs if run.stop is not None]
-    last, first = reached[-1], _reversed(runs[0].collected) if len(reached) == 2 else []
+    two = len(reached) == 2 and len(runs[0].collected) > 0
+    last, first = reached[-1], _reversed(runs[0].collected) if two else []
     assert last.stop is not None
     return Branch(
         parameter=parameter,
         layout=layout_of(system),
         points=(*first, *(last.collected or runs[0].collected[:1])),
         stop=last.stop,
-        stop_backwards=runs[0].stop if len(reached) == 2 else None,
+        stop_backwards=runs[0].stop if two else None,
         newton_iterations=runs[0].task.work.iterations + (before.newton_iterations if before else 0),
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions=_versions("orbitrace", "numpy", "scipy"),
