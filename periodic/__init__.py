@@ -17,6 +17,7 @@ from periodic.functionals import (
     Value,
     mean,
 )
+from periodic.journal import JournalError, recovered
 from periodic.label import Label
 from periodic.measure import extrema, outputs
 from periodic.methods.collocation import Collocation
@@ -60,6 +61,7 @@ __all__ = [
     "Conservative",
     "Family",
     "HarmonicBalance",
+    "JournalError",
     "Label",
     "MeshSettings",
     "NewtonSettings",
@@ -86,6 +88,7 @@ __all__ = [
     "mode",
     "outputs",
     "plot",
+    "recovered",
     "sampled",
     "trace",
 ]

@@ -145,6 +145,9 @@ class Run:
                 self.stop = Stop.no_start(found.value)
                 return
         assert isinstance(begun, Solved) and isinstance(again, Solved)
+        # Newton has moved it by rounding; what follows shall be just what would have followed.
+        tangent = replace(again.tangent, profile=c.profile, parameter=c.slope)
+        again = replace(again, correction=replace(again.correction, orbit=last), tangent=tangent)
         self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
         self._since_remesh, self._count = c.since_remesh, dict(c.met)
         yield from self._onward(self._prepared(again) if c.steps else again)

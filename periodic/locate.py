@@ -156,7 +156,9 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
         return test.value(task, solved)
 
     precision = test.precision * ds
-    crossed = test is not events.TURN or task.autonomous  # where orbits shrink to an equilibrium there is none
+    crossed = (
+        test is not events.TURN or task.autonomous
+    )  # where orbits shrink to an equilibrium there is none
     distance, solved = _root(task, base, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -16,6 +18,8 @@ from periodic.closure import Condition, Metric
 from periodic.conditions import Level
 from periodic.continuation import Run
 from periodic.functionals import Functional
+from periodic.halves import Half, joined, turned
+from periodic.journal import Journal
 from periodic.methods.collocation import Collocation
 from periodic.methods.protocol import Method
 from periodic.orbit import Orbit
@@ -52,6 +56,7 @@ def trace(
     limits: Mapping[str, tuple[float, float]] | None = None,
     stop: Mapping[str, int] | None = None,
     resume: Branch | None = None,
+    journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Branch:
     """Trace the branch of periodic orbits through `start` within `bounds`.
@@ -71,8 +76,9 @@ def trace(
     Collocation()).
 
     An interrupt (Ctrl-C) returns the branch so far; `resume` takes such a branch up where it stands, with all
-    other arguments as before. A numerical failure is the branch's `stop`. Raises ValueError, in one sentence,
-    for a parameter, bound or value that is not allowed.
+    other arguments as before. `journal` is a file that keeps every step as it is done, for
+    `periodic.recovered` if the process is killed. A numerical failure is the branch's `stop`. Raises
+    ValueError, in one sentence, for a parameter, bound or value that is not allowed.
     """
     _checked(system, accuracy)
     index = index_of(system, parameter)
@@ -107,42 +113,43 @@ def trace(
         generators = [run.points(orbit, sign) for run, sign in zip(runs, signs, strict=True)]
     else:
         generators = _taken_up(runs, signs, parameter, layout_of(system), resume)
-    with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
+    keeping = nullcontext() if journal is None else Journal(Path(journal), parameter, layout_of(system))
+    with (
+        keeping as kept,
+        threadpool_limits(limits=1, user_api="blas"),
+    ):  # more only slow it down
         for run, points in zip(runs, generators, strict=True):
-            _collect(run, points, progress)
+            _collect(run, points, progress, kept)
             if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
                 break
     return _joined(system, parameter, runs, time.perf_counter() - clock, resume)
 
 
-def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> None:
+def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journal: Journal | None) -> None:
     """Let a run go on to its end, or to an interrupt: then what its last step began is left out."""
+    written = 0
     try:
         for point in points:
+            if journal is not None and run.state is not None and run.state.kept > written:
+                journal.add(run, run.collected[written : run.state.kept])
+                written = run.state.kept
             if progress is not None:
                 progress(point)
     except KeyboardInterrupt:
         del run.collected[run.state.kept if run.state else 1 :]
         run.stop = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
+    if journal is not None:
+        journal.add(run, run.collected[written:])
 
 
 def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
     """One branch out of one or two runs from the same start, and what was spent on it before."""
-    reached = [run for run in runs if run.stop is not None]
-    two = len(reached) == 2 and len(runs[0].collected) > 0
-    last, first = reached[-1], _reversed(runs[0].collected) if two else []
-    assert last.stop is not None
-    return Branch(
-        parameter=parameter,
-        layout=layout_of(system),
-        points=(*first, *(last.collected or runs[0].collected[:1])),
-        stop=last.stop,
-        stop_backwards=runs[0].stop if two else None,
+    halves = [Half(run.collected, run.stop, run.checkpoint) for run in runs if run.stop is not None]
+    return replace(
+        joined(parameter, layout_of(system), halves),
         newton_iterations=runs[0].task.work.iterations + (before.newton_iterations if before else 0),
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions=_versions("orbitrace", "numpy", "scipy"),
-        checkpoints=tuple(run.checkpoint for run in runs if run.checkpoint is not None),
-        backwards=len(first),
     )
 
 
@@ -160,8 +167,8 @@ def _taken_up(
         raise ResumeError("resume is a branch with another start; start and bounds must be as before")
     start = branch.points[branch.backwards]
     own = [[*branch.points[branch.backwards :]]]
-    if branch.backwards:
-        own.insert(0, [start, *_turned(branch.points[: branch.backwards])])
+    if branch.stop_backwards is not None:
+        own.insert(0, [start, *turned(branch.points[: branch.backwards])])
     stops = [branch.stop_backwards or branch.stop, branch.stop]
     generators: list[Iterator[Point]] = []
     for run, sign, stop in zip(runs, signs, stops, strict=False):
@@ -174,17 +181,6 @@ def _taken_up(
         else:
             generators.append(run.resumed(start.orbit, own.pop(0), checkpoint))
     return generators
-
-
-def _reversed(half: list[Point]) -> list[Point]:
-    """A half run backwards as the first part of a branch, without its start."""
-    start = half[0].parameter
-    return _turned([p for i, p in enumerate(half) if i > 1 or p.parameter != start])
-
-
-def _turned(points: Sequence[Point]) -> list[Point]:
-    """Points in the opposite order."""
-    return [replace(point, slope=-point.slope) for point in reversed(points)]
 
 
 def _versions(*names: str) -> dict[str, str]:

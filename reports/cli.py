@@ -183,13 +183,16 @@ def trace(
     before = run.interrupted(task, folder) if resume else None
     with heard_once():
         try:
-            branch = _traced(name, task, accuracy, method, before)
+            branch = _traced(name, task, accuracy, method, before, folder)
             integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
+            (folder / run.JOURNAL).unlink(missing_ok=True)
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
-        folder = _place(branch, folder)
-        _report(name, task, branch, integrated, folder, as_json)
+        journal, folder = folder / run.JOURNAL, _place(branch, folder)
+        files = run.save(folder, name, task.scene, branch, integrated)
+        journal.unlink(missing_ok=True)
+        _report(name, task, branch, files, as_json)
     return _verdict(branch, folder)
 
 
@@ -260,7 +263,9 @@ def _pair(change: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _traced(name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None) -> Branch:
+def _traced(
+    name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None, folder: Path
+) -> Branch:
     from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting
     from reports import console, run
 
@@ -270,7 +275,7 @@ def _traced(name: str, task: run.Task, accuracy: Effort, method: Method, before:
         Method.HARMONIC_BALANCE: HarmonicBalance,
     }
     with console.progress(name, task.scene) as progress:
-        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before)
+        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before, folder)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
     return branch
@@ -315,13 +320,11 @@ def _report(
     name: str,
     task: run.Task,
     branch: Branch,
-    integrated: run.Settlements | None,
-    folder: Path,
+    files: list[Path],
     as_json: bool,
 ) -> None:
-    from reports import console, run, summary
+    from reports import console, summary
 
-    files = run.save(folder, name, task.scene, branch, integrated)
     if as_json:
         typer.echo(summary.json_text(name, task.scene, branch), nl=False)
     else:

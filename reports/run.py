@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 BRANCH = "branch.nc"
 """File of a branch in its directory."""
 
+JOURNAL = "branch.journal"
+"""File that keeps each step of a trace under way; what is left of it was killed."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
@@ -87,15 +90,15 @@ def interrupted(task: Task, folder: Path) -> Branch:
 
     Raises InputError where there is none, or one of another scene.
     """
-    from periodic import Branch, BranchFileError
+    from periodic import Branch, BranchFileError, recovered
     from reports.build import build
 
-    places = [folder / INCOMPLETE / BRANCH, folder / BRANCH]
+    places = [folder / JOURNAL, folder / INCOMPLETE / BRANCH, folder / BRANCH]
     path = next((place for place in places if place.is_file()), None)
     if path is None:
         raise refused("--resume", str(folder), "a directory with the branch.nc of an interrupted trace")
     try:
-        branch = Branch.load(path)
+        branch = recovered(path) if path.name == JOURNAL else Branch.load(path)
     except BranchFileError as error:
         raise refused("--resume", str(path), f"a branch that can be read ({error})") from error
     parameter, system = view_of(task.scene).parameter, build(task.scene)
@@ -114,10 +117,11 @@ def trace(
     progress: Callable[[Point], None] | None = None,
     method: Method | None = None,
     resume: Branch | None = None,
+    folder: Path | None = None,
 ) -> Branch:
-    """Build the system of a scene and trace its branch over its range.
+    """Build the system of a scene and trace its branch over its range, with a journal in `folder`.
 
-    Raises InputError for a branch to resume that is another's, or a tolerance that the method cannot keep.
+    Raises InputError for a branch to resume that is another's, or a directory in use.
     """
     import periodic
     from reports.build import build
@@ -134,8 +138,12 @@ def trace(
             accuracy=accuracy,
             method=method,
             resume=resume,
+            journal=None if folder is None else folder / JOURNAL,
             progress=progress,
         )
+    except periodic.JournalError as error:
+        allowed = "it must be one that no other trace is writing to"
+        raise InputError("--out", f'is "{folder}"', allowed) from error
     except periodic.ResumeError as error:
         raise refused("--resume", "another branch", f"one of this scene ({error})") from error
 
