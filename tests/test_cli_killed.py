@@ -55,8 +55,8 @@ def check(folder: Path, whole: per.Branch, kills: int) -> None:
     assert main([*ARGUMENTS, "--out", str(folder), "--resume"]) == 0
     found = per.Branch.load(folder / "branch.nc")
     assert [p.label for p in found] == [p.label for p in whole]
-    # what is resumed differs by what Newton leaves, far below the tolerance of 1e-7
-    assert found.values == pytest.approx(whole.values, rel=1e-9)
+    # rounding may change a number of intervals; the orbits are to 1e-7
+    assert found.values == pytest.approx(whole.values, rel=1e-8)
     assert not (folder / "branch.journal").exists()
 
 
