@@ -136,7 +136,7 @@ class Run:
     def resumed(self, start: Orbit, points: list[Point], checkpoint: Checkpoint) -> Iterator[Point]:
         """Yield the points that follow those of an interrupted run, which began at `start`."""
         task, c = self.task, checkpoint
-        self.collected, last = points, points[-1].orbit
+        self.stop, last = None, points[-1].orbit
         begun = self._first(start, float(c.sign))
         direction = replace(parameter_direction(last, task.metric), profile=c.profile, parameter=c.slope)
         again = on_plane(task, last, Plane(last, direction, 0.0, task.metric, task.index))

@@ -64,14 +64,17 @@ def slope(task: Task, solved: Solved) -> float:
 
 def doubling(task: Task, solved: Solved) -> float:
     """prod (mu + 1) / (1 + |mu|)."""
-    found = multipliers(task, solved)
-    return float(np.prod((found + 1) / (1 + np.abs(found))).real)
+    return passing(multipliers(task, solved), -1)
 
 
 def branching(task: Task, solved: Solved) -> float:
     """prod (mu - 1) / (1 + |mu|)."""
-    found = multipliers(task, solved)
-    return float(np.prod((found - 1) / (1 + np.abs(found))).real)
+    return passing(multipliers(task, solved), 1)
+
+
+def passing(found: Complex, at: int) -> float:
+    """prod (mu - at) / (1 + |mu|) of given multipliers."""
+    return float(np.prod((found - at) / (1 + np.abs(found))).real)
 
 
 def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
@@ -81,17 +84,18 @@ def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
         return abs(branching(task, turn)) < TOUCHED * min(map(abs, values))
     if values[0] * values[1] < 0:
         return False
-    ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), _noise(end)) for end in (base, new)]
+    ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), noise(end)) for end in (base, new)]
     return all(distance > noise for distance, noise in ends)
 
 
-def _noise(solved: Solved) -> float:
+def noise(solved: Solved) -> float:
+    """What multipliers cannot be told apart by."""
     return CONSERVED * solved.error.multiplier + ROUNDING
 
 
 def torus(task: Task, solved: Solved) -> float:
     """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error."""
-    return torus_of(multipliers(task, solved), _noise(solved))
+    return torus_of(multipliers(task, solved), noise(solved))
 
 
 def torus_of(found: Complex, noise: float) -> float:
@@ -109,7 +113,11 @@ def _products(found: Complex) -> Complex:
 
 def _complex(task: Task, solved: Solved) -> bool:
     """Whether the pair whose product is nearest 1 is complex: else it is a neutral saddle."""
-    found = multipliers(task, solved)
+    return complex_pair(multipliers(task, solved))
+
+
+def complex_pair(found: Complex) -> bool:
+    """The same of given multipliers."""
     first, second = np.triu_indices(len(found), 1)
     nearest = np.abs(found[first] * found[second] - 1).argmin()
     return bool(found[first[nearest]].imag != 0)

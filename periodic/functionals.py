@@ -44,6 +44,13 @@ class Smooth(Functional, Protocol):
         """Return value and gradient in the orbit's numbers and the parameters `free`."""
 
 
+def apart(functional: Functional, value: float, level: float) -> float:
+    """Return value - level; of an angle the difference between -pi and pi."""
+    if getattr(functional, "angle", False):
+        return float(np.remainder(value - level + np.pi, 2 * np.pi) - np.pi)
+    return value - level
+
+
 def output_index(system: System, output: str) -> int:
     """Return the index of an output. Raises ValueError for a name that is none."""
     names = [o.name for o in system.outputs]
@@ -179,6 +186,7 @@ class PhaseLag:
 
     output: str
     order: float = 1.0
+    angle = True
 
     def __call__(self, system: System, orbit: Orbit) -> float:
         """Return the phase lag in rad."""
@@ -244,6 +252,11 @@ class Multiplier:
         row = gradient(linear, linear.tangent(right.real), source[0], free)
         row += gradient(linear, linear.tangent(right.imag), source[1], free)
         return Row(self._taken(value) + row.value, row.nodes, row.outer, row.stages)
+
+    @property
+    def angle(self) -> bool:
+        """Whether the value is an angle."""
+        return self.part == "angle"
 
     def _taken(self, value: complex) -> float:
         angle = float(np.angle(value))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from periodic.branch import Branch, Layout
 from periodic.checkpoint import Checkpoint
 from periodic.point import Point
-from periodic.stop import Stop
+from periodic.stop import Reason, Stop
 
 
 @dataclass(frozen=True)
@@ -20,8 +20,13 @@ class Half:
     checkpoint: Checkpoint | None
 
 
-def joined(parameter: str, layout: Layout, halves: Sequence[Half]) -> Branch:
-    """Return the branch of one or two halves that begin at the same point; the first is turned round."""
+def joined(parameter: str, layout: Layout, halves: Sequence[Half], made: dict[str, str]) -> Branch:
+    """Return the branch of two halves that begin at the same point, of one, or of none yet.
+
+    The first of two is turned round; `made` is what they were made with.
+    """
+    if not halves:
+        return Branch(parameter, layout, (), Stop(Reason.INTERRUPTED, "after 0 points"), made=made)
     two = len(halves) == 2 and len(halves[0].points) > 0
     last, first = halves[-1], _reversed(halves[0].points) if two else []
     return Branch(
@@ -32,6 +37,7 @@ def joined(parameter: str, layout: Layout, halves: Sequence[Half]) -> Branch:
         stop_backwards=halves[0].stop if two else None,
         checkpoints=tuple(half.checkpoint for half in halves if half.checkpoint is not None),
         backwards=len(first),
+        made=made,
     )
 
 

@@ -14,6 +14,7 @@ import struct
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
@@ -22,7 +23,7 @@ import numpy as np
 import xarray as xr
 
 from periodic import storage
-from periodic.branch import Branch, BranchFileError, Layout
+from periodic.branch import Branch, BranchFileError
 from periodic.halves import Half, joined
 from periodic.point import Point
 from periodic.stop import Reason, Stop
@@ -46,14 +47,19 @@ class JournalError(BranchFileError):
 class Journal:
     """An open journal, used as a context manager; what the file held before stays until the first step.
 
-    Raises JournalError for a file in use, OSError for one that cannot be made.
+    `empty` is the branch that its points will belong to. Raises JournalError for a file in use, OSError for
+    one that cannot be made.
     """
 
-    def __init__(self, path: Path, parameter: str, layout: Layout) -> None:
-        self._parameter, self._layout, self._path = parameter, layout, path
+    def __init__(self, path: Path, empty: Branch) -> None:
+        self._empty, self._path = empty, path
         self._part = path.with_name(f".{os.getpid()}-{path.name}")
         self._guard = _locked(path, "ab")
-        self._file = _locked(self._part, "wb")
+        try:
+            self._file = _locked(self._part, "wb")
+        except (OSError, JournalError):
+            self._guard.close()
+            raise
         self._broken = False
 
     def __enter__(self) -> Journal:
@@ -71,7 +77,7 @@ class Journal:
         """Add points that a run has completed, and where it stands."""
         stop = run.stop or Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
         checkpoints = () if run.checkpoint is None else (run.checkpoint,)
-        piece = Branch(self._parameter, self._layout, tuple(points), stop, checkpoints=checkpoints)
+        piece = replace(self._empty, points=tuple(points), stop=stop, checkpoints=checkpoints)
         payload = _packed(piece)
         if self._broken:
             return
@@ -117,7 +123,7 @@ def recovered(path: str | Path) -> Branch:
             halves.append(Half(piece.points, piece.stop, checkpoint))
         else:
             halves[-1] = Half([*before.points, *piece.points], piece.stop, checkpoint)
-    return joined(pieces[0].parameter, pieces[0].layout, halves)
+    return joined(pieces[0].parameter, pieces[0].layout, halves, pieces[0].made)
 
 
 def _packed(piece: Branch) -> bytes:

@@ -35,6 +35,9 @@ ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 ORBITS = 1e3
 """How many times as far that is of orbits, which have errors of their own."""
 
+JUMP = 1e-3
+"""What is left of a user's function where it vanishes, as a part of what it was at the step's base."""
+
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
@@ -163,7 +166,7 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
         raise RejectedError("a special point of another branch was met")
-    if not test.genuine(task, solved):
+    if not test.genuine(task, solved) or (test.name and _jumps(value, solved, base)):
         return []
     shrunk = task.autonomous and solved.orbit.span() < MERGED * base.orbit.span()
     refined = solved if shrunk else _accepted(task, settle(task, solved))
@@ -175,6 +178,11 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
             solved = _root(task, refined, (-reach, reach), value, precision, aside=crossed)[1]
             return [Found(test.label, distance, solved, test.name)]
     raise RejectedError("a special point was not found again on a finer mesh")
+
+
+def _jumps(value: Callable[[Solved], float], solved: Solved, base: Solved) -> bool:
+    """Whether a function does not vanish where it changes sign."""
+    return abs(value(solved)) > JUMP * abs(value(base))
 
 
 def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:

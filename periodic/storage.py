@@ -183,6 +183,7 @@ def attributes(branch: Branch) -> dict[str, Any]:
         "columns": json.dumps(list(branch.points[0].columns) if branch.points else []),
         "checkpoints": json.dumps([_progress(c) for c in branch.checkpoints]),
         "backwards": branch.backwards,
+        "made": json.dumps(branch.made),
     }
 
 
@@ -207,6 +208,7 @@ def branch_of(data: xr.Dataset) -> Branch:
         versions=json.loads(data.attrs["versions"]),
         checkpoints=_checkpoints(data),
         backwards=int(data.attrs["backwards"]),
+        made=json.loads(data.attrs["made"]),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
@@ -94,6 +95,16 @@ def trace(
         if not low <= value <= high:
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     determined = determined or {}
+    for name, condition in determined.items():
+        if isinstance(condition, type) or not hasattr(condition, "at"):
+            raise ValueError(
+                f"determined has {condition!r} for {name}; it must be a condition, as FoldCondition() is"
+            )
+        if name == parameter or (guess is not None and name in (values or {})):
+            place = "the parameter continued in" if name == parameter else "in values"
+            raise ValueError(f"determined has {name!r}, which is also {place}; it must be one or the other")
+    if method is not None and (isinstance(method, type) or not hasattr(method, "correct")):
+        raise ValueError(f"method is {method!r}; it must be Collocation(), Shooting() or HarmonicBalance()")
     watch = Watch(columns or {}, events or {}, limits or {}, stop or {})
     task = Task(
         system,
@@ -108,21 +119,22 @@ def trace(
     clock = time.perf_counter()
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), user, search=guess is None) for _ in signs]
+    first = _parameters(system, base, {**(values or {}), parameter: begin})
+    made = _made(task, (low, high), user, first)
     if resume is None:
-        orbit = _start(task, guess, _parameters(system, base, {**(values or {}), parameter: begin}))
+        orbit = _start(task, guess, first)
         generators = [run.points(orbit, sign) for run, sign in zip(runs, signs, strict=True)]
     else:
-        generators = _taken_up(runs, signs, parameter, layout_of(system), resume)
-    keeping = nullcontext() if journal is None else Journal(Path(journal), parameter, layout_of(system))
-    with (
-        keeping as kept,
-        threadpool_limits(limits=1, user_api="blas"),
-    ):  # more only slow it down
+        _check_made(resume, parameter, layout_of(system), made)
+        generators = _taken_up(runs, signs, resume)
+    empty = joined(parameter, layout_of(system), [], made)
+    keeping = nullcontext() if journal is None else Journal(Path(journal), empty)
+    with keeping as kept, threadpool_limits(limits=1, user_api="blas"):
         for run, points in zip(runs, generators, strict=True):
             _collect(run, points, progress, kept)
             if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
                 break
-    return _joined(system, parameter, runs, time.perf_counter() - clock, resume)
+    return _joined(empty, runs, time.perf_counter() - clock, resume)
 
 
 def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journal: Journal | None) -> None:
@@ -136,32 +148,64 @@ def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journ
             if progress is not None:
                 progress(point)
     except KeyboardInterrupt:
-        del run.collected[run.state.kept if run.state else 1 :]
+        if run.state is not None:
+            del run.collected[run.state.kept :]
         run.stop = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
     if journal is not None:
         journal.add(run, run.collected[written:])
 
 
-def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
+def _joined(empty: Branch, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
     """One branch out of one or two runs from the same start, and what was spent on it before."""
     halves = [Half(run.collected, run.stop, run.checkpoint) for run in runs if run.stop is not None]
     return replace(
-        joined(parameter, layout_of(system), halves),
+        joined(empty.parameter, empty.layout, halves, empty.made),
         newton_iterations=runs[0].task.work.iterations + (before.newton_iterations if before else 0),
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions=_versions("orbitrace", "numpy", "scipy"),
     )
 
 
-def _taken_up(
-    runs: list[Run], signs: list[int], parameter: str, layout: Layout, branch: Branch
-) -> list[Iterator[Point]]:
-    """The runs of an interrupted branch, each from where it stands. Raises ResumeError for another one."""
+def _made(task: Task, bounds: tuple[float, float], user: Sequence[float], parameter: Array) -> dict[str, str]:
+    """What a branch is made with, in words: whoever resumes it must ask for the same."""
+    free, names = task.free, [p.name for p in task.system.parameters]
+    values = {
+        name: float(v) for k, (name, v) in enumerate(zip(names, parameter, strict=True)) if k not in free
+    }
+    determined = {names[k]: condition for k, condition in zip(task.others, task.conditions, strict=True)}
+    return {
+        "bounds": repr(bounds),
+        "at": repr(tuple(user)),
+        "settings": repr(task.settings),
+        "method": repr(task.method),
+        "values": repr(values),
+        "determined": repr(determined),
+        "columns": repr(sorted(task.watch.columns)),
+        "events": repr(sorted(task.watch.events)),
+    }
+
+
+def _check_made(branch: Branch, parameter: str, layout: Layout, made: dict[str, str]) -> None:
+    """Raise ResumeError for a branch of another system, or made with anything else."""
     if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
         raise ResumeError(
             f"resume is a branch in {branch.parameter} with {len(branch)} points; it must be one in "
             f"{parameter} of this system, with points"
         )
+    for name, now in made.items():
+        before = branch.made.get(name)
+        if before != now and not (name == "settings" and _more_points(before, now)):
+            raise ResumeError(f"resume is a branch made with {name} {before}; now they are {now}")
+
+
+def _more_points(before: str | None, now: str) -> bool:
+    """Whether settings differ in the largest number of points alone."""
+    plain = [re.sub(r"max_points=\d+", "", text or "") for text in (before, now)]
+    return plain[0] == plain[1]
+
+
+def _taken_up(runs: list[Run], signs: list[int], branch: Branch) -> list[Iterator[Point]]:
+    """The runs of an interrupted branch, each from where it stands. Raises ResumeError for another start."""
     begun = {c.sign: c for c in branch.checkpoints}
     if not set(begun) <= set(signs):
         raise ResumeError("resume is a branch with another start; start and bounds must be as before")
@@ -175,11 +219,10 @@ def _taken_up(
         checkpoint = begun.get(sign)
         if checkpoint is None:
             generators.append(run.points(start.orbit, sign))
-        elif checkpoint.done:
-            run.collected, run.stop, run.ended = own.pop(0), stop, checkpoint
-            generators.append(iter(()))
-        else:
-            generators.append(run.resumed(start.orbit, own.pop(0), checkpoint))
+            continue
+        run.collected, run.stop, run.ended = own.pop(0), stop, checkpoint
+        going = run.resumed(start.orbit, run.collected, checkpoint)
+        generators.append(iter(()) if checkpoint.done else going)
     return generators
 
 
@@ -232,6 +275,8 @@ def _base(system: System, guess: Orbit | None) -> Array:
     nominal = np.array(system.nominal, dtype=float)
     if guess is None:
         return nominal
+    if not isinstance(guess, Orbit):
+        raise ValueError(f"guess is a {type(guess).__name__}; it must be an Orbit, as point.orbit is")
     counts = {
         "states": (guess.nodes.shape[1], len(system.states)),
         "algebraic unknowns": (guess.algebraic.shape[2], len(system.algebraics)),

@@ -94,7 +94,8 @@ def interrupted(task: Task, folder: Path) -> Branch:
     from reports.build import build
 
     places = [folder / JOURNAL, folder / INCOMPLETE / BRANCH, folder / BRANCH]
-    path = next((place for place in places if place.is_file()), None)
+    there = [place for place in places if place.is_file()]
+    path = max(there, key=lambda place: (place.name == JOURNAL, place.stat().st_mtime), default=None)
     if path is None:
         raise refused("--resume", str(folder), "a directory with the branch.nc of an interrupted trace")
     try:

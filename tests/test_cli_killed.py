@@ -56,7 +56,7 @@ def check(folder: Path, whole: per.Branch, kills: int) -> None:
     found = per.Branch.load(folder / "branch.nc")
     assert [p.label for p in found] == [p.label for p in whole]
     # rounding may change a number of intervals; the orbits are to 1e-7
-    assert found.values == pytest.approx(whole.values, rel=1e-8)
+    assert found.values == pytest.approx(whole.values, rel=1e-7)
     assert not (folder / "branch.journal").exists()
 
 
@@ -107,10 +107,8 @@ def test_journal_reads_no_more_than_whole_steps(tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this machine has no device that is always full")
 def test_full_disk_only_loses_the_journal(tmp_path: Path) -> None:
     """Assert that a journal that cannot be written to is told, and the trace goes on."""
-    link = tmp_path / "journal"
-    link.symlink_to("/dev/full")
-    journal_part = tmp_path / f".{os.getpid()}-journal"
-    journal_part.symlink_to("/dev/full")
+    path = tmp_path / "journal"
+    (tmp_path / f".{os.getpid()}-journal").symlink_to("/dev/full")
     with pytest.warns(UserWarning, match="cannot be written to .No space left on device.; the trace goes on"):
-        branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 0.5), journal=link)
+        branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 0.5), journal=path)
     assert branch.stop.reason is per.Reason.BOUND
