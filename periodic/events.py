@@ -103,7 +103,7 @@ def _noise(solved: Solved) -> float:
 
 
 def torus(task: Task, solved: Solved) -> float:
-    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within error, or lost."""
+    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
     if lost(task, solved):
         return 0.0
     return torus_of(multipliers(task, solved), _noise(solved))

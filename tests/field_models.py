@@ -113,3 +113,88 @@ def peroxidase() -> sym.CompiledSystem:
             scales={"A": 10.0, "X": 0.01, "Y": 0.1},
         )
     )
+
+
+def spiral() -> sym.CompiledSystem:
+    """Rossler's equations, a = b = 0.2: doublings over c (MatCont's tutorials, COCO's roess)."""
+    return sym.compile(
+        sym.Equations(
+            lambda x, p: {"x": -x.y - x.z, "y": x.x + p.a * x.y, "z": p.b + x.z * (x.x - p.c)},
+            states={"x": 0.0, "y": 0.0, "z": 0.0},
+            parameters={"a": 0.2, "b": 0.2, "c": 2.5},
+        )
+    )
+
+
+def forced_van_der_pol() -> sym.CompiledSystem:
+    """x'' - mu (1 - x^2) x' + x = F cos(Omega t): entrainment."""
+    return sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": x.v, "v": p.mu * (1 - x.x**2) * x.v - x.x + p.F * wave.cos},
+            states={"x": 0.0, "v": 0.0},
+            parameters={"mu": 0.2, "F": 0.2, "Omega": 1.0},
+            frequency="Omega",
+        )
+    )
+
+
+def ueda() -> sym.CompiledSystem:
+    """x'' + 0.1 x' + x^3 = B cos t (Ueda 1979)."""
+    return sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": x.v, "v": -p.k * x.v - x.x**3 + p.B * wave.cos},
+            states={"x": 0.0, "v": 0.0},
+            parameters={"k": 0.1, "B": 0.2, "Omega": 1.0},
+            frequency="Omega",
+        )
+    )
+
+
+def two_springs() -> sym.CompiledSystem:
+    """NLvib's example 06: a mass on two springs at a right angle under large displacements."""
+    first, second = 1.13, 2.0
+    both = (first**2 + second**2) / 2
+
+    def rates(x: Names, p: Names, wave: Names) -> Rates:
+        a, b = x.q1, x.q2
+        force1 = first**2 * (a + (3 * a**2 + b**2) / 2) + second**2 * a * b + both * a * (a**2 + b**2)
+        force2 = second**2 * (b + (3 * b**2 + a**2) / 2) + first**2 * a * b + both * b * (a**2 + b**2)
+        return {
+            "q1": x.v1,
+            "q2": x.v2,
+            "v1": p.F * wave.cos - 2e-3 * first * x.v1 - force1,
+            "v2": p.F * wave.cos - 10e-3 * second * x.v2 - force2,
+        }
+
+    return sym.compile(
+        sym.Equations(
+            rates,
+            states={"q1": 0.0, "q2": 0.0, "v1": 0.0, "v2": 0.0},
+            parameters={"F": 3e-3, "Omega": 1.0},
+            frequency="Omega",
+        )
+    )
+
+
+def absorber() -> sym.CompiledSystem:
+    """NLvib's example 02: a mass of 1 with a small one on it, both on cubic springs."""
+    x1, x2 = sym.coordinate("x1"), sym.coordinate("x2")
+    soft, light, leak = 0.0042, sym.parameter("m2", 0.05, "kg"), 0.013
+    parts = [
+        sym.Mass(x1, 1.0),
+        sym.Mass(x2, light),
+        sym.Spring(x1, 1.0),
+        sym.Damper(x1, 0.002),
+        sym.CubicSpring(x1, 1.0),
+        sym.HarmonicForce(x1, 0.11),
+        sym.Equations(
+            lambda x, p: {
+                "x1": -(force := 0.0453 * (x.x1 - x.x2) + soft * (x.x1 - x.x2) ** 3)
+                - leak * (x.x1_dot - x.x2_dot),
+                "x2": force + leak * (x.x1_dot - x.x2_dot),
+            },
+            states={},
+            coordinates=[x1, x2],
+        ),
+    ]
+    return sym.compile(sym.combine(parts))
