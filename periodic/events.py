@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 Complex = NDArray[np.complex128]
 
+LOST = 0.1
+"""Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+
 NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
@@ -57,19 +60,25 @@ def multipliers(task: Task, solved: Solved) -> Complex:
     return without_unit(found, task.unit)
 
 
+def lost(task: Task, solved: Solved) -> bool:
+    """Whether rounding has taken the multiplier that is 1, and with it what else is not huge."""
+    found = np.linalg.eigvals(solved.correction.monodromy)
+    return task.autonomous and bool(np.abs(found - 1).min() > LOST)
+
+
 def slope(task: Task, solved: Solved) -> float:
     """d parameter / d arclength."""
     return solved.tangent.parameter
 
 
 def doubling(task: Task, solved: Solved) -> float:
-    """prod (mu + 1) / (1 + |mu|)."""
-    return passing(multipliers(task, solved), -1)
+    """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
+    return 0.0 if lost(task, solved) else passing(multipliers(task, solved), -1)
 
 
 def branching(task: Task, solved: Solved) -> float:
-    """prod (mu - 1) / (1 + |mu|)."""
-    return passing(multipliers(task, solved), 1)
+    """prod (mu - 1) / (1 + |mu|); 0 where it is not known."""
+    return 0.0 if lost(task, solved) else passing(multipliers(task, solved), 1)
 
 
 def passing(found: Complex, at: int) -> float:
@@ -94,8 +103,8 @@ def noise(solved: Solved) -> float:
 
 
 def torus(task: Task, solved: Solved) -> float:
-    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error."""
-    return torus_of(multipliers(task, solved), noise(solved))
+    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
+    return 0.0 if lost(task, solved) else torus_of(multipliers(task, solved), noise(solved))
 
 
 def torus_of(found: Complex, noise: float) -> float:

@@ -29,6 +29,9 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
+BESIDE = 1e-3
+"""How far from a turn its multipliers are looked at, as a part of the step."""
+
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
 
@@ -89,7 +92,7 @@ def special_points(
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = [_named(task, turn, base, new) for turn in turns]
+    found = [_named(task, turn, base, new, ds) for turn in turns]
     for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
         found += _where(task, base, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
@@ -158,10 +161,8 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    precision = test.precision * ds
-    crossed = (
-        test is not events.TURN or task.autonomous
-    )  # where orbits shrink to an equilibrium there is none
+    # Where a branch crosses another, and where its orbits shrink to an equilibrium, Newton may fail right there.
+    precision, crossed = test.precision * ds, test is not events.TURN or task.autonomous
     distance, solved = _root(task, base, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
@@ -185,25 +186,38 @@ def _jumps(value: Callable[[Solved], float], solved: Solved, base: Solved) -> bo
     return abs(value(solved)) > JUMP * abs(value(base))
 
 
-def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
+def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Found:
     """A turn of the branch by its name.
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
     more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
     follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
-    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp.
+    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp. Raises
+    RejectedError where a multiplier passes 1 and comes back within the step: a fold and a branch point.
     """
     if codimension.picked(task) is not None:
         return replace(turn, label=codimension.turn(task, turn.solved, base, new))
-    spans = [solved.orbit.span() for solved in (turn.solved, base, new)]
-    if task.autonomous and spans[0] < MERGED * min(spans[1:]):
+    if _shrinks(task, turn.solved, base, new):
         return replace(turn, label=Label.HOPF)
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)
     tests = (*task.method.passages, *task.method.branching)
     labels = [test.label for test in tests if test.touches(task, turn.solved, base, new)]
+    if labels and task.method.branching and task.unit < 2 and _passes(task, turn, base, ds):
+        raise RejectedError("the branch turns beside a branch point")
     return replace(turn, label=labels[0]) if labels else turn
+
+
+def _passes(task: Task, turn: Found, base: Solved, ds: float) -> bool:
+    """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
+    sides = [_at_distance(task, base, turn.distance + side * BESIDE * ds) for side in (-1, 1)]
+    return events.branching(task, sides[0]) * events.branching(task, sides[1]) < 0
+
+
+def _shrinks(task: Task, turn: Solved, *ends: Solved) -> bool:
+    """Whether autonomous orbits shrink to an equilibrium at a turn of their branch."""
+    return task.autonomous and turn.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
