@@ -161,7 +161,7 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    # Where a branch crosses another, and where its orbits shrink to an equilibrium, Newton may fail right there.
+    # Where a branch crosses another, and where orbits shrink to an equilibrium, Newton may fail right there.
     precision, crossed = test.precision * ds, test is not events.TURN or task.autonomous
     distance, solved = _root(task, base, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
