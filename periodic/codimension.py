@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic import events
+from periodic.closure import Metric
 from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
 from periodic.events import Test
 from periodic.label import Label
+from periodic.scheme import Array
 
 Complex = NDArray[np.complex128]
 
@@ -90,6 +92,7 @@ TORI = (
     Test(Label.DOUBLING_TORUS, lambda task, solved: _passing_beside(task, solved, -1), PRECISION),
 )
 CURVES = {FoldCondition: FOLDS, DoublingCondition: DOUBLINGS, TorusCondition: TORI}
+HELD = {FoldCondition: 1.0, DoublingCondition: -1.0}
 
 
 def picked(task: Task) -> Condition | None:
@@ -115,6 +118,28 @@ def sought(task: Task, turned: bool) -> tuple[Test, ...]:
     if type(condition) in CURVES:
         return CURVES[type(condition)]
     return (*method.passages, Test(Label.FOLD, events.branching, PRECISION))
+
+
+def alignment(task: Task, base: Solved, new: Solved) -> float:
+    """Cosine between the critical motions of two orbits on one mesh: eigenvectors carried over the period.
+
+    The two sides of a narrow tongue have nearly the same orbits, but critical motions across each other. 1
+    on a curve that holds no simple multiplier.
+    """
+    held = HELD.get(type(picked(task)))
+    if held is None:
+        return 1.0
+    weights = Metric.weights(base.orbit)
+    a, b = (_critical(solved, held) for solved in (base, new))
+    square = np.einsum("j,sjn,tjn->st", weights, (a, b), (a, b))
+    return float(abs(square[0, 1]) / np.sqrt(square[0, 0] * square[1, 1]))
+
+
+def _critical(solved: Solved, held: float) -> Array:
+    """The disturbance (N+1, n) that comes back `held` times itself."""
+    monodromy = solved.correction.monodromy
+    vector = np.linalg.svd(monodromy - held * np.eye(len(monodromy)))[2][-1]
+    return solved.correction.fundamental @ vector
 
 
 def turn(task: Task, found: Solved, base: Solved, new: Solved) -> Label:

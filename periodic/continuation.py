@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from periodic import codimension
 from periodic.checkpoint import Checkpoint
 from periodic.closure import Metric, Plane
 from periodic.label import Label
@@ -331,6 +332,8 @@ class Run:
             raise RejectedError("the step does not follow its tangents")
         if not task.method.resolved(base.correction, new.correction):
             raise RejectedError("the multipliers turn too far past 1 for the step")
+        if codimension.alignment(task, base, new) < task.settings.step.turn:
+            raise RejectedError("the critical motion turns too far for the step")
         return new
 
     def _bend(self, base: Solved, new: Solved, ds: float) -> float:

@@ -138,6 +138,26 @@ def test_doubling_curve_of_the_disc() -> None:
     assert min(abs(value / speed - 1) for value in found) < 1e-8
 
 
+def test_doubling_curve_stays_on_its_side_of_the_tongue() -> None:
+    """Assert that long steps do not cross to the other side, whose orbits are nearly the same."""
+    system = disc_system("vitrea79-810N")
+    small = per.trace(system, "speed", (540 * RPM, 560 * RPM), start=560 * RPM)
+    (begin,) = small.labelled(per.Label.DOUBLING)
+    assert begin.parameter / RPM == pytest.approx(545.397607, rel=1e-8)
+    curve = per.trace(
+        system,
+        "speed",
+        (500 * RPM, 1980 * RPM),
+        guess=begin.orbit,
+        determined={"preload": per.DoublingCondition()},
+        limits={"preload": (700.0, 20000.0)},
+        events={"heavy": per.Level(per.Value("preload"), 2100.0)},
+    )
+    (point,) = [p for p in curve if p.event == "heavy"]
+    # the sides at 2100 N, found as doublings of a branch by tests/test_paper_unseen.py: 651.17 and 665.88
+    assert point.parameter / RPM == pytest.approx(651.170989, rel=1e-8)
+
+
 def test_folds_of_the_disc_over_preload() -> None:
     """Assert that the lower fold's curve passes, at 200 rev/min, the fold of a branch over preload."""
     system = disc_system("vitrea79-810N")
