@@ -18,6 +18,8 @@ from reports.paper import (
     method,
     method_text,
     page,
+    regions,
+    regions_text,
     supports,
     supports_text,
     timedomain,
@@ -49,6 +51,9 @@ TEXTS: dict[str, Callable[[Mapping[str, float]], str]] = {
     "damping": damping_text.text,
     "supports": lambda n: supports_text.text(n, supports.SHARES, supports.TARGETS),
     "timedomain": timedomain._text,
+    "regions": lambda n: regions_text.text(
+        n, {key.removeprefix("difference "): n[key] for key in n if key.startswith("difference ")}
+    ),
 }
 """Texts that follow from the numbers alone."""
 
@@ -58,6 +63,7 @@ ROWS: dict[str, Callable[[Mapping[str, float]], tuple[Row, ...]]] = {
     "frequency": lambda n: frequency._rows(dict(n)),
     "supports": lambda n: supports._rows(dict(n)),
     "damping": lambda _: damping.rows(),
+    "regions": lambda n: regions._rows(dict(n)),
 }
 """Rows from the kept numbers; those of damping are computed anew."""
 
@@ -104,6 +110,12 @@ def test_numbers_are_fresh(name: str) -> None:
 def test_film_laws_are_fresh() -> None:
     """Assert the same of the section on film laws, which takes a minute."""
     assert_fresh("filmlaws", filmlaws.numbers())
+
+
+@pytest.mark.long
+def test_regions_are_fresh() -> None:
+    """Assert the same of the section on regions, which takes minutes."""
+    assert_fresh("regions", regions.numbers())
 
 
 def test_page_is_complete() -> None:

@@ -20,7 +20,7 @@ from reports.paper.regions_curves import (
     over,
     traced,
 )
-from reports.paper.scenes import LUBRICATED, branch, system
+from reports.paper.scenes import LUBRICATED, system
 from reports.view import MICRO, RPM
 
 
@@ -37,22 +37,30 @@ def speed(point: per.Point) -> float:
 
 CUSPS = {
     "vitrea79-810N": (278.184065, 0.053738324),
-    "vitrea79-2100N": (328.575290, 0.042185671),
-    "turbo33-810N": (282.450840, 0.00023066966),
-    "turbo33-2100N": (331.294310, 0.00019910685),
+    "vitrea79-2100N": (328.575287, 0.042185671),
+    "turbo33-810N": (282.450844, 0.00023066966),
+    "turbo33-2100N": (331.294312, 0.00019910685),
 }
 
 
+def test_least_waviness_with_two_motions() -> None:
+    """Assert the cusp of the disc with oil A at 810 N, traced anew."""
+    found, amplitude = least_waviness(SCENE)
+    assert found / RPM == pytest.approx(CUSPS[SCENE][0], rel=1e-7)
+    assert amplitude / MICRO == pytest.approx(CUSPS[SCENE][1], rel=1e-7)
+
+
 @pytest.mark.parametrize("name", LUBRICATED)
-def test_least_waviness_with_two_motions(name: str) -> None:
-    """Assert each disc's cusp, that the page has it, and that averaging to first order comes near it."""
-    found, amplitude = least_waviness(name)
-    assert found / RPM == pytest.approx(CUSPS[name][0], rel=1e-7)
-    assert amplitude / MICRO == pytest.approx(CUSPS[name][1], rel=1e-5)
-    assert amplitude / MICRO == pytest.approx(kept()[f"{name} cusp um"], rel=1e-6)
-    near = regions.averaged(name)
-    assert near[0] == pytest.approx(found / RPM, rel=1e-3)
-    assert near[1] == pytest.approx(amplitude, rel=0.1)
+def test_averaging_comes_near_the_cusps(name: str) -> None:
+    """Assert that the page's cusps are these, and that averaging to first order in the damping comes near."""
+    found, amplitude = CUSPS[name]
+    assert kept()[f"{name} cusp rpm"] == pytest.approx(found, rel=1e-7)
+    assert kept()[f"{name} cusp um"] == pytest.approx(amplitude, rel=1e-7)
+    near, size = regions.averaged(name)
+    # the damping ratio is 0.006 with oil A, 0.00015 with oil B
+    rough = 0.05 if name.startswith("vitrea79") else 2e-3
+    assert near == pytest.approx(found, rel=1e-3)
+    assert size / MICRO == pytest.approx(amplitude, rel=rough)
 
 
 @pytest.mark.parametrize("factor, count", [(0.98, 0), (1.02, 2)])
@@ -68,8 +76,8 @@ def test_lower_folds_over_preload() -> None:
     light, heavy = (speed(point) for point in curve.labelled(per.Label.USER))
     if light > heavy:
         light, heavy = heavy, light
-    there = branch("vitrea79-2100N").labelled(per.Label.FOLD)[1].parameter / RPM
-    assert heavy == pytest.approx(there, rel=1e-9)
+    # a fold of the branch of that disc in tests/test_paper_unseen.py
+    assert heavy == pytest.approx(307.692770, abs=2e-6)
     assert light == pytest.approx(kept()["fold 2 at 200 N rpm"], rel=1e-8)
     up = per.trace(
         system(SCENE),
@@ -85,10 +93,10 @@ def test_lower_folds_over_preload() -> None:
 def test_lower_fold_over_viscosity_meets_the_other_oil() -> None:
     """Assert that the oil enters by its film alone: at a viscosity that makes oil B's film, oil B's fold."""
     thin = as_thin_as("turbo33-810N")
-    curve = traced(VISCOSITY, per.FoldCondition(), fold(1), (0.02, 1.0), at=(thin,))
+    curve = traced(VISCOSITY, per.FoldCondition(), fold(1), (0.02, 1.0), at=(thin,), stop={"UZ": 1})
     (point,) = curve.labelled(per.Label.USER)
     assert speed(point) == pytest.approx(253.316928, abs=2e-6)
-    assert curve.labelled(per.Label.CUSP) == []
+    assert not curve.labelled(per.Label.CUSP)
 
 
 def test_speed_rises_and_folds_stay_apart() -> None:

@@ -127,7 +127,25 @@ DOUBLED = {AMPLITUDE: (0.4e-6, 4e-6), PRELOAD: (100.0, 10000.0), VISCOSITY: (0.0
 def doubled_folds(second: str) -> Branch:
     """Return the curve of the fold at which orbits of two periods end, until they shrink to one period."""
     begin = doubled().labelled(Label.FOLD)[0].orbit
-    return traced(second, FoldCondition(), begin, DOUBLED[second], stop={"CP": 1})
+    return traced(second, FoldCondition(), begin, DOUBLED[second], at=common()[second], stop={"CP": 1})
+
+
+FURTHER = 1.25
+"""Speeds, in parts of the fold's, up to which motions of two periods are followed from their fold."""
+
+
+@cache
+def doubled_again(second: str, value: float) -> tuple[float, float]:
+    """Return the speeds (rad/s) of the fold of motions of two periods and of their own first doubling.
+
+    At a common value of the second parameter, on the sheet of the larger motion.
+    """
+    (begin,) = [p for p in doubled_folds(second).labelled(Label.USER) if p.parameter == value]
+    fold_speed = periodic.Value("speed")(system(SCENE), begin.orbit)
+    ends = (fold_speed / FURTHER, fold_speed * FURTHER)
+    found = periodic.trace(system(SCENE), "speed", ends, guess=begin.orbit, stop={"PD": 1})
+    (doubling,) = found.labelled(Label.DOUBLING)
+    return fold_speed, doubling.parameter
 
 
 @cache

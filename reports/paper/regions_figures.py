@@ -13,7 +13,6 @@ from reports.curve import smooth
 from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.regions_curves import (
     AMPLITUDE,
-    HALF,
     OTHER_OIL,
     PRELOAD,
     RANGES,
@@ -66,26 +65,26 @@ def drawn(second: str) -> Figure:
     left.set(xlim=SPEEDS[second], ylim=(0 if second == AMPLITUDE else low, high), ylabel=AXES[second])
     right.set(xlim=ZOOM[second][0], ylim=ZOOM[second][1])
     handles, labels = left.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=8)
     return figure
 
 
 def _regions(axes: Any, second: str) -> None:
     pair = [_curve(curve, second) for curve in folds(second)]
-    _fill(axes, pair, TRUSTED, "between the folds: two motions of one period")
+    _fill(axes, pair, TRUSTED, "two motions of one period")
     for x, y in pair:
         axes.plot(x, y, color=TRUSTED, linewidth=1.2)
-    if second in HALF:
+    if second == VISCOSITY:
         x, y = _curve(half(second), second)
-        _fill(axes, [(x, y)], SECOND, "the same at half the natural speed (2:1)")
+        _fill(axes, [(x, y)], SECOND, "two motions of one period (2:1)")
         axes.plot(x, y, color=SECOND, linewidth=1.2)
     tongue = [_curve(curve, second) for curve in doublings(second)]
-    _fill(axes, tongue, PAPER, "between the doublings: motion of one period unstable")
+    _fill(axes, tongue, PAPER, "motion of one period unstable")
     for x, y in tongue:
         axes.plot(x, y, color=PAPER, linewidth=1.0)
     x, y = _curve(doubled_folds(second), second)
-    axes.plot(x, y, color=DOUBLED, linewidth=1.4, label="motion of two periods to the right of this fold")
-    for curve in [*folds(second), *([half(second)] if second in HALF else [])]:
+    axes.plot(x, y, color=DOUBLED, linewidth=1.4, label="fold of the motions of two periods")
+    for curve in [*folds(second), *([half(second)] if second == VISCOSITY else [])]:
         for cusp in curve.labelled(Label.CUSP):
             speed = Value("speed")(system(SCENE), cusp.orbit) / RPM
             axes.plot(speed, cusp.parameter / UNITS[second], "kv", markersize=6)
@@ -105,7 +104,7 @@ def _points(axes: Any, second: str) -> None:
     for value in values:
         axes.plot(PAPER_SPEEDS, (value, value), "-", color="0.35", linewidth=1.0)
         axes.plot(PAPER_SPEED, value, "o", color="k", markersize=5)
-    axes.plot([], [], "-o", color="0.35", markerfacecolor="k", label="the paper's speeds; its 360 rev/min")
+    axes.plot([], [], "-o", color="0.35", markerfacecolor="k", label="speeds of the paper; 360 rev/min")
 
 
 def _curve(curve: Branch, second: str) -> tuple[Array, Array]:

@@ -50,8 +50,8 @@ the cusp at A²/24 = 2ζ δ0²/√3 and the waviness 4ζA/√3, without any cont
 
 {head}{chr(10).join(lines)}
 
-The waviness at the cusp is as ζ^1.5. With the thin oil {1e3 * thin:.2f} nm are enough, which no ground disc
-keeps to: in practice oil B always jumps, as far as its film alone damps it.
+The waviness at the cusp is as ζ^1.5. With the thin oil {1e3 * thin:.2f} nm are enough, which no ground
+surface keeps to: in practice oil B always jumps, as far as its film alone damps it.
 
 From {n["2:1 cusp um"]:.3f} µm on there is a second pair of folds, at half the natural speed (2:1; its cusp
 is at {n["2:1 cusp over amplitude rpm"]:.2f} rev/min, above the figure)."""
@@ -70,10 +70,10 @@ The dotted curve is the resonance: the highest point of the branch at every prel
 {n["peak at 20 N rpm"]:.2f} rev/min ({n["peak at 20 N um"]:.2f} µm) under 20 N over
 {n["peak at 810 N rpm"]:.2f} rev/min ({n["peak at 810 N um"]:.2f} µm) under 810 N and
 {n["peak at 2100 N rpm"]:.2f} rev/min ({n["peak at 2100 N um"]:.2f} µm) under 2100 N to
-{n["peak at 1e+04 N rpm"]:.2f} rev/min ({n["peak at 1e+04 N um"]:.1f} µm) under 10 000 N, without exception,
-as the paper concludes (P17), and it hugs the upper fold. This is why x falls with preload at 200 rev/min
-and rises at 360 rev/min (P15, P16): there all preloads shown in Fig. 12 that keep contact put the resonance
-above 200 rev/min, and below 360 rev/min.
+{n["peak at 1e+04 N rpm"]:.2f} rev/min ({n["peak at 1e+04 N um"]:.1f} µm) under 10 000 N, monotonically,
+as the paper concludes (P17), and it hugs the upper fold. This is why x falls with preload at 200 rev/min,
+where the resonance lies above and moves away, and rises at 360 rev/min, where it lies below and comes nearer
+(P15, P16).
 
 x is 10 µm peak to peak on the dashed curve: under 810 N at {n["level 1 at 810 N rpm"]:.2f} and
 {n["level 2 at 810 N rpm"]:.2f} rev/min, under 2100 N at {n["level 1 at 2100 N rpm"]:.2f} and
@@ -88,7 +88,7 @@ def _viscosity(n: Numbers) -> str:
 They are at {_folds(n, "0.02 Pas")} with 0.02 Pa s, at {_folds(n, f"{oil_b:.4g} Pas")} with {oil_b:.4f} Pa
 s, at {_folds(n, "5 Pas")} with 5 Pa s and at {_folds(n, "20 Pas")} with 20 Pa s. In the model the oil
 enters by the steady film only; {oil_b:.4f} Pa s with oil A's piezoviscosity give the film of oil B. The
-lower fold hardly moves, because contact is not lost there and it lies on a flank. The upper one moves to
+lower fold hardly moves, because contact is kept there. The upper one moves to
 lower speeds the thinner the oil is. A thick film loses its own stiffness against its squeeze term, and
 beyond that more viscosity changes nothing; so the region stays open.
 
@@ -118,8 +118,12 @@ preload it has no end up to 10 000 N; under 200 N it reaches from {n["doubling 1
 {n["doubling 2 at 200 N rpm"]:.2f} rev/min, and below about 110 N its slow side passes under the resonance,
 so that with light preload the motion of one period is unstable over most of the range.
 
-Motions of two periods are stable from their own fold (orange) to the fast side of the tongue, so left of the
-tongue there are again two stable motions. That fold meets the tongue's slow side at
+At the paper's waviness and preload motions of two periods are stable from their own fold (orange) to the fast
+side of the tongue (section 7), so left of the tongue there are again two stable motions. Elsewhere they
+double again: with 3 µm they are stable from their fold at {n["two periods from at 3 um rpm"]:.2f} to
+{n["two periods double at 3 um rpm"]:.2f} rev/min, under 200 N from
+{n["two periods from at 200 N rpm"]:.2f} to {n["two periods double at 200 N rpm"]:.2f} rev/min, and what lies
+beyond was not followed here. That fold meets the tongue's slow side at
 {n["two periods shrink at um"]:.5f} µm and {n["two periods shrink at rpm"]:.3f} rev/min, where its orbits have
 shrunk to one period; the doublings' own curve has {n["doublings there um"]:.5f} µm at that speed. Over
 viscosity the fold joins the tongue in the same way near its tip. Under 10 000 N it still lies at
