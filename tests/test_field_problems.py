@@ -131,7 +131,7 @@ def test_enzyme() -> None:
 
 
 def test_isola_of_the_enzyme() -> None:
-    """Assert that orbits at s0 = 111 form an isola, whose folds are those of the curve of folds in rho and s0."""
+    """Assert that orbits at s0 = 111 form an isola, whose folds lie on the curve of folds in rho and s0."""
     orbits = enzyme_orbits()
     (inside,) = orbits.labelled(per.Label.USER)
     raised = per.trace(enzyme(), "s0", (110, 111), guess=inside.orbit, determined=ORBIT)
@@ -160,7 +160,7 @@ def test_reactions() -> None:
 
 
 def test_fishing() -> None:
-    """Assert AUTO's pp2: fold and branch point of the fish alone, Hopf point with the sharks, in closed form."""
+    """Assert AUTO pp2: fold and branch point of the fish alone, Hopf point with sharks, in closed form."""
     alone = per.equilibria(predator(), "quota", (0.65, 1), start=0.7, guess={"fish": 0.7, "sharks": 0.0})
     u = alone.labelled(LP)[0].maximum["fish"]
     assert (1 - 2 * u) * (np.exp(5 * u) - 1) == pytest.approx(5 * u * (1 - u), rel=1e-6)
@@ -228,7 +228,7 @@ def test_entrainment() -> None:
 
 
 def test_curves_of_entrainment() -> None:
-    """Assert that the curves of folds and of tori meet in two 1:1 resonances, and that there are two cusps."""
+    """Assert that the curves of folds and tori meet in two 1:1 resonances, and that there are two cusps."""
     system, near = forced_van_der_pol(), {"F": (0.15, 0.25)}
     folds, tori = (
         per.trace(
