@@ -60,10 +60,10 @@ def multipliers(task: Task, solved: Solved) -> Complex:
     return without_unit(found, task.unit)
 
 
-def lost(task: Task, solved: Solved) -> bool:
-    """Whether rounding has taken the multiplier that is 1, and with it what else is not huge."""
+def known(task: Task, solved: Solved) -> bool:
+    """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
     found = np.linalg.eigvals(solved.correction.monodromy)
-    return task.autonomous and bool(np.abs(found - 1).min() > LOST)
+    return not task.autonomous or bool(np.abs(found - 1).min() <= LOST)
 
 
 def slope(task: Task, solved: Solved) -> float:
@@ -73,12 +73,12 @@ def slope(task: Task, solved: Solved) -> float:
 
 def doubling(task: Task, solved: Solved) -> float:
     """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
-    return 0.0 if lost(task, solved) else passing(multipliers(task, solved), -1)
+    return passing(multipliers(task, solved), -1) if known(task, solved) else 0.0
 
 
 def branching(task: Task, solved: Solved) -> float:
     """prod (mu - 1) / (1 + |mu|); 0 where it is not known."""
-    return 0.0 if lost(task, solved) else passing(multipliers(task, solved), 1)
+    return passing(multipliers(task, solved), 1) if known(task, solved) else 0.0
 
 
 def passing(found: Complex, at: int) -> float:
@@ -104,7 +104,7 @@ def noise(solved: Solved) -> float:
 
 def torus(task: Task, solved: Solved) -> float:
     """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
-    return 0.0 if lost(task, solved) else torus_of(multipliers(task, solved), noise(solved))
+    return torus_of(multipliers(task, solved), noise(solved)) if known(task, solved) else 0.0
 
 
 def torus_of(found: Complex, noise: float) -> float:
@@ -122,7 +122,7 @@ def _products(found: Complex) -> Complex:
 
 def _complex(task: Task, solved: Solved) -> bool:
     """Whether the pair whose product is nearest 1 is complex: else it is a neutral saddle."""
-    return complex_pair(multipliers(task, solved))
+    return known(task, solved) and complex_pair(multipliers(task, solved))
 
 
 def complex_pair(found: Complex) -> bool:
@@ -151,8 +151,8 @@ TURN = Test(Label.FOLD, slope, 1e-6)
 """Its parameter is second order in its place; those of the others are first order."""
 
 PASSAGES = (
-    Test(Label.DOUBLING, doubling, 1e-10, twice=doubles_twice),
+    Test(Label.DOUBLING, doubling, 1e-10, known, doubles_twice),
     Test(Label.TORUS, torus, 1e-10, _complex),
 )
 
-BRANCHING = Test(Label.BRANCH, branching, 1e-10, twice=branches_twice, touches=touches)
+BRANCHING = Test(Label.BRANCH, branching, 1e-10, known, branches_twice, touches)

@@ -198,3 +198,25 @@ def absorber() -> sym.CompiledSystem:
         ),
     ]
     return sym.compile(sym.combine(parts))
+
+
+def pendula() -> sym.CompiledSystem:
+    """AUTO's demo pen: two coupled pendula that turn over at a mean rate, by their angles ahead of rate t."""
+
+    def rates(x: Names, p: Names, wave: Names) -> Rates:
+        weights = [wave.sin * F.cos(angle) + wave.cos * F.sin(angle) for angle in (x.a, x.b)]
+        return {
+            "a": x.u - p.rate,
+            "b": x.v - p.rate,
+            "u": -p.eps * x.u - weights[0] + p.torque + p.gamma * (x.b - x.a),
+            "v": -p.eps * x.v - weights[1] + p.torque + p.gamma * (x.a - x.b),
+        }
+
+    return sym.compile(
+        sym.Equations(
+            rates,
+            states={"a": 0.0, "b": 0.0, "u": 4.0, "v": 4.0},
+            parameters={"gamma": 0.175, "eps": 0.1, "torque": 0.4, "rate": 4.0},
+            frequency="rate",
+        )
+    )

@@ -17,6 +17,7 @@ from field_models import (
     circuit,
     enzyme,
     forced_van_der_pol,
+    pendula,
     peroxidase,
     predator,
     reactions,
@@ -288,3 +289,30 @@ def test_absorber() -> None:
     known = [("NS", 1.11271123928), ("NS", 1.19573666912), ("LP", 1.21462622516), ("LP", 1.20621945737)]
     for branch in branches:
         assert places(branch) == expected(*known)
+
+
+def test_pendula() -> None:
+    """Assert AUTO's pen: where rotations in step double, and the curve of it; known from Hill's equation."""
+
+    def field(t: float, x: np.ndarray) -> list[float]:
+        return [x[1], -0.1 * x[1] - np.sin(x[0]) + 0.4]
+
+    start = solve_ivp(field, (0, 300), [0.0, 4.0], method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+    duration, phase = 1.5738797, np.linspace(0, 2 * np.pi, 401)  # AUTO's period
+    motion = solve_ivp(field, (0, duration), start, dense_output=True, method="DOP853", rtol=1e-11)
+    angle, speed = motion.sol(phase * duration / (2 * np.pi))
+    ahead = angle - phase
+    state = np.stack([ahead, ahead, speed, speed], axis=1)
+    guess = per.sampled(phase, state, np.zeros((401, 0)), np.array([0.175, 0.1, 0.4, 2 * np.pi / duration]))
+    rotating = {"rate": per.PhaseCondition()}
+    branch = per.trace(pendula(), "torque", (0.17, 0.4), guess=guess, determined=rotating)
+    ((label, torque),) = places(branch)
+    assert label == "PD" and torque == pytest.approx(0.17916377626865, rel=1e-10)
+    curve = per.trace(
+        pendula(),
+        "gamma",
+        (0.1, 1.0),
+        guess=branch.labelled(PD)[0].orbit,
+        determined={**rotating, "torque": per.DoublingCondition()},
+    )
+    assert curve.column("torque")[-1] == pytest.approx(0.31382985295369, rel=1e-9)
