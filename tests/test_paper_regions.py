@@ -106,6 +106,9 @@ def test_speed_rises_and_folds_stay_apart() -> None:
         assert n[f"fold 2 at {where} rpm"] - n[f"fold 1 at {where} rpm"] > 2.0
     peaks = [n[f"peak at {q} N rpm"] for q in ("20", "200", "810", "2100", "1e+04")]
     assert (np.diff(peaks) > 0).all()
+    # highest points of branches over speed, by a spline: tests/test_paper_frequency.py
+    assert n["peak at 810 N um"] == pytest.approx(26.207, abs=2e-3)
+    assert n["peak at 2100 N um"] == pytest.approx(41.537, abs=2e-3)
 
 
 def test_checks_of_the_page() -> None:

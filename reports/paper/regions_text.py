@@ -115,8 +115,9 @@ period is unstable (section 7) begins at a waviness of {n["tip um"]:.4f} µm
 ({n["tip over viscosity rpm"]:.2f} rev/min): damping prevents it below the one and above the other. With 3
 µm it reaches from {n["doubling 1 at 3 um rpm"]:.2f} to {n["doubling 2 at 3 um rpm"]:.2f} rev/min. Over
 preload it has no end up to 10 000 N; under 200 N it reaches from {n["doubling 1 at 200 N rpm"]:.2f} to
-{n["doubling 2 at 200 N rpm"]:.2f} rev/min, and below about 110 N its slow side passes under the resonance,
-so that with light preload the motion of one period is unstable over most of the range.
+{n["doubling 2 at 200 N rpm"]:.2f} rev/min. Below about 110 N its slow side comes down almost
+to the folds (figure), so that with light preload the motion of one period is unstable over a wide
+range of speeds.
 
 At the paper's waviness and preload motions of two periods are stable from their own fold (orange) to the fast
 side of the tongue (section 7), so left of the tongue there are again two stable motions. Elsewhere they
