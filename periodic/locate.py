@@ -161,16 +161,16 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    # Where a branch crosses another, and where orbits shrink to an equilibrium, Newton may fail right there.
-    precision, crossed = test.precision * ds, test is not events.TURN or task.autonomous
+    precision, crossed = test.precision * ds, test is not events.TURN
     distance, solved = _root(task, base, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
         raise RejectedError("a special point of another branch was met")
     if not test.genuine(task, solved) or (test.name and _jumps(value, solved, base)):
         return []
-    shrunk = task.autonomous and solved.orbit.span() < MERGED * base.orbit.span()
-    refined = solved if shrunk else _accepted(task, settle(task, solved))
+    if not crossed and _shrinks(task, solved, *(_at_distance(task, base, end) for end in span)):
+        return [Found(test.label, distance, solved)]  # it has no size for its error to be a part of
+    refined = _accepted(task, settle(task, solved))
     if refined is solved:
         return [Found(test.label, distance, solved, test.name)]
     for reach in (0.05 * ds, 0.5 * ds):

@@ -49,7 +49,7 @@ class Watch:
         """Return the test functions of events and limits."""
         events = [_passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
         limits = [
-            _passing(Value(name), value + side * slack(ends), Label.END, f"{word} limit of {name}")
+            _passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
@@ -63,13 +63,13 @@ class Watch:
         """Raise ValueError if an orbit to start from lies outside the limits."""
         for name, (low, high) in self.limits.items():
             value = float(orbit.parameter[index_of(system, name)])
-            if not low - slack((low, high)) <= value <= high + slack((low, high)):
+            if not low - slack(low) <= value <= high + slack(high):
                 raise ValueError(f"{name} is {value} at the start; its limits are {low} to {high}")
 
 
-def slack(ends: tuple[float, float]) -> float:
-    """How far beyond its limits a parameter may lie: by rounding."""
-    return 1e-11 * max(map(abs, ends))
+def slack(limit: float) -> float:
+    """How far beyond a limit a parameter may lie: by rounding."""
+    return 1e-12 * abs(limit)
 
 
 def _passing(functional: Functional, level: float, label: Label, name: str) -> Test:
