@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 
@@ -24,7 +25,7 @@ def smooth(functional: Functional) -> Smooth:
             f"functional is {functional!r}, which has no derivative; it must be one of periodic's own, or "
             f"have a method linearise(system, orbit, free)"
         )
-    return functional  # type: ignore[return-value]
+    return cast(Smooth, functional)
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ ORBITS = 1e3
 """How many times as far that is of orbits, which have errors of their own."""
 
 JUMP = 1e-3
-"""What is left of a user's function where it vanishes, as a part of what it was at the step's base."""
+"""What is left of a user's function where it vanishes, as a part of the larger value at its ends."""
 
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
@@ -166,7 +166,9 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
         raise RejectedError("a special point of another branch was met")
-    if not test.genuine(task, solved) or (test.name and _jumps(value, solved, base)):
+    if not test.genuine(task, solved):
+        return []
+    if test.name and _jumps(value, solved, [_at_distance(task, base, end) for end in span]):
         return []
     if not crossed and _shrinks(task, solved, *(_at_distance(task, base, end) for end in span)):
         return [Found(test.label, distance, solved)]  # it has no size for its error to be a part of
@@ -181,9 +183,9 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     raise RejectedError("a special point was not found again on a finer mesh")
 
 
-def _jumps(value: Callable[[Solved], float], solved: Solved, base: Solved) -> bool:
-    """Whether a function does not vanish where it changes sign."""
-    return abs(value(solved)) > JUMP * abs(value(base))
+def _jumps(value: Callable[[Solved], float], solved: Solved, ends: Sequence[Solved]) -> bool:
+    """Whether a function does not vanish where it changes sign between two ends."""
+    return abs(value(solved)) > JUMP * max(abs(value(end)) for end in ends)
 
 
 def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Found:
