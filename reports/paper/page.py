@@ -19,7 +19,7 @@ from reports.errors import InputError
 from reports.files import writable, write
 from reports.paper.section import Section, Tell
 
-SECTIONS = ("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen")
+SECTIONS = ("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen", "regions")
 """Modules with a function `section`, in the order of the page."""
 
 PAGE, FIGURES, KEPT = "README.md", "figures", "sections"
