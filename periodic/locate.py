@@ -31,7 +31,7 @@ STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
 SHORTER = 0.9
-"""A step that would end at a turn is taken so much shorter: then the turn lies within the next."""
+"""A step that would end at a special point is taken so much shorter: then it lies within the next."""
 
 BESIDE = 1e-3
 """How far from a turn its multipliers are looked at, as a part of the step."""
@@ -183,7 +183,10 @@ def _value(task: Task, solved: Solved) -> float:
 
 
 def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]:
-    """Locate where a test function changes sign within a step, if it does."""
+    """Locate where a test function changes sign within a step, if it does.
+
+    Raises RejectedError where it vanishes at the step's end, though not just before.
+    """
     base = stretch.base
 
     def value(solved: Solved) -> float:
@@ -192,6 +195,8 @@ def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]
     ends = [value(solved) for solved in (base, new)]
     if ends[0] * ends[1] < 0:
         return _located(stretch, (0.0, ds), ds, test)
+    if ends[0] != 0 and ends[1] == 0 and value(stretch.at(SHORTER * ds)) != 0:
+        raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not test.twice(base, new):
         return []
     sign = np.sign(ends[0])

@@ -155,7 +155,7 @@ def correct(
         if isinstance(last, Outcome):
             outcome = last
         else:
-            orbit, step = advance(system, last, free, 1.0), replace(last, size=step.size)
+            orbit, step = last.orbit, replace(last, size=step.size)
     return Correction(orbit, outcome, iterations, step.size, step.residual, step.fundamental, step.kernel)
 
 
