@@ -311,7 +311,7 @@ class Run:
         iterations, step = new.correction.iterations, self.task.settings.step
         factor = 2.0 if iterations <= 3 else 1.5 if iterations <= 4 else 1.2 if iterations <= 5 else 1.0
         factor = min(factor if iterations <= 6 else 0.7, AIM / max(strain, AIM / 2))
-        return float(np.clip(ds * factor, step.ds_min, step.ds_max))
+        return float(np.clip(ds * _rounded(factor), step.ds_min, step.ds_max))
 
     def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved, float]:
         """Take one step; return base and new solution on one mesh, and the strain. Raises RejectedError.
@@ -348,7 +348,7 @@ class Run:
         furthest = 0.0
         for strain, ahead, why in self._strains(base, new, ds):
             if not strain <= 1:
-                raise RejectedError(why, float(np.clip(AIM / strain, 0.25, 0.75)))
+                raise RejectedError(why, _rounded(np.clip(AIM / strain, 0.25, 0.75)))
             furthest = max(furthest, ahead)
         return new, furthest
 
@@ -415,6 +415,11 @@ def _followed(task: Task, bounds: tuple[float, float], start: Orbit, sign: int) 
     points = list(run.points(start, sign))
     assert run.stop is not None
     return (points[-1].orbit if points else None), run.stop
+
+
+def _rounded(factor: float) -> float:
+    """A factor in whole hundredths, so that rounding in an orbit does not change the steps that follow."""
+    return float(np.floor(100 * factor)) / 100
 
 
 def _value(task: Task, solved: Solved) -> float:

@@ -21,7 +21,17 @@ from periodic.events import Test
 from periodic.label import Label
 from periodic.newton import Outcome
 from periodic.orbit import Orbit
-from periodic.solve import Solved, Task, at_parameter, cubic, from_itself, on_plane, predict, settle
+from periodic.solve import (
+    Solved,
+    Task,
+    at_parameter,
+    cubic,
+    difference,
+    from_itself,
+    on_plane,
+    predict,
+    settle,
+)
 
 MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
@@ -34,7 +44,7 @@ SHORTER = 0.9
 """A step that would end at a special point is taken so much shorter: then it lies within the next."""
 
 BESIDE = 1e-3
-"""How far from a turn its multipliers are looked at, as a part of the step."""
+"""How far from a turn its multipliers are looked at, and what else is not it, as a part of the step."""
 
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
@@ -76,10 +86,11 @@ class Found:
 class RejectedError(Exception):
     """A step that cannot be taken, or inside which a plane could not be solved on; the message says why.
 
-    shorter: the part of it to be tried next.
+    shorter: the part of it to be tried next; not a half, which from a step that leads to an orbit of no size
+    leads there again and again.
     """
 
-    def __init__(self, why: str, shorter: float = 0.5) -> None:
+    def __init__(self, why: str, shorter: float = 0.6) -> None:
         super().__init__(why)
         self.shorter = shorter
 
@@ -143,17 +154,16 @@ def special_points(
     up to which values have been looked for: that of the last point, from which the base may differ by its
     error where it was solved again on a new mesh. Raises RejectedError.
     """
-    if abs(new.tangent.parameter) < STANDING * abs(base.tangent.parameter):
-        raise RejectedError("the step ends at a turn", SHORTER)
     stretch = _Stretch(task, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    turns = [] if from_turn else _where(stretch, new, ds, events.TURN)
+    turns = [] if from_turn else _where(stretch, new, ds, TURN)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = [_named(stretch, turn, new, ds) for turn in turns]
+    found = named = [_named(stretch, turn, new, ds) for turn in turns]
     for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
-        found += _where(stretch, new, ds, test)
+        met = _where(stretch, new, ds, test)
+        found = found + [point for point in met if not any(_is_one(point, turn, ds) for turn in named)]
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = _value(task, end.solved)
@@ -166,6 +176,27 @@ def special_points(
     return found[: final[0] + 1] if final else found
 
 
+def _turns_twice(base: Solved, new: Solved) -> bool:
+    """Whether the parameter may turn and turn back within a step.
+
+    Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
+    """
+    task = base.task
+    way = difference(task, base.orbit, new.orbit)
+    mean = way.parameter / task.metric.dot(base.orbit, base.tangent, way)
+    ends = np.array([base.tangent.parameter, new.tangent.parameter])
+    sign = np.sign(ends[0])
+    return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())
+
+
+TURN = replace(events.TURN, twice=_turns_twice)
+
+
+def _is_one(point: Found, turn: Found, ds: float) -> bool:
+    """Whether a special point is the turn of the branch, which has its name already."""
+    return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds
+
+
 def _check_ways(task: Task, pieces: list[Found]) -> None:
     """Reject a step whose end does not lie where the folds within it lead.
 
@@ -174,7 +205,8 @@ def _check_ways(task: Task, pieces: list[Found]) -> None:
     """
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
         way = (end if begin.label is Label.FOLD else begin).solved.tangent.parameter
-        if (_value(task, end.solved) - _value(task, begin.solved)) * way < 0:
+        change = _value(task, end.solved) - _value(task, begin.solved)
+        if change * way < 0 and abs(change) > events.UPRIGHT * task.metric.scale:
             raise RejectedError("the step ends on another part of the branch")
 
 
@@ -249,7 +281,7 @@ def _located(stretch: _Stretch, span: tuple[float, float], ds: float, test: Test
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    precision, crossed = test.precision * ds, test is not events.TURN
+    precision, crossed = test.precision * ds, test is not TURN
     distance, solved = _root(stretch, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:

@@ -54,7 +54,7 @@ class NewtonSettings:
     """
 
     tolerance: float = 1e-8
-    close: float = 1e-2
+    close: float = 1e-4
     max_iterations: int = 12
     max_halvings: int = 6
 
