@@ -76,9 +76,11 @@ class Branch:
         """The labelled points, in order along the branch."""
         return tuple(p for p in self.points if p.label is not Label.NONE)
 
-    def labelled(self, label: Label) -> tuple[Point, ...]:
-        """The points with one label."""
-        return tuple(p for p in self.points if p.label is label)
+    def labelled(self, label: Label | str) -> tuple[Point, ...]:
+        """The points with one label, or of one of the user's events by its name."""
+        if isinstance(label, Label):
+            return tuple(p for p in self.points if p.label is label)
+        return tuple(p for p in self.points if label in (p.label.value, p.event))
 
     @property
     def values(self) -> Array:
@@ -140,4 +142,4 @@ def _cells(point: Point, names: list[str]) -> list[str]:
     largest = point.multipliers.real if point.equilibrium else np.abs(point.multipliers)
     size = f"{largest.max():.9f}"
     stable = "yes" if point.stable else "no"
-    return [point.label.value, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.orbit:.1e}"]
+    return [point.label.value, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.worst:.1e}"]

@@ -42,13 +42,13 @@ from periodic.solve import (
 from periodic.stop import Reason, Stop
 from periodic.switching import away
 
-LARGE = 0.25
+LARGE = 0.5
 """The mesh is made anew where the error estimate reaches this part of the tolerance."""
 
-WINDOW = 1 / 60
+WINDOW = 1 / 20
 """... where it falls below this part, and a mesh of SMALLER times as many intervals would do."""
 
-SMALLER = 0.7
+SMALLER = 0.8
 
 ADAPT_EVERY = 10
 """... and every so many steps."""
@@ -131,7 +131,7 @@ class Run:
         if isinstance(base, Outcome):
             self.stop = Stop.no_start(self._shortfall or base.value)
             return
-        if base.error.orbit > task.settings.mesh.tolerance:
+        if base.error.motion > task.settings.mesh.tolerance:
             self.stop = Stop.inaccurate(task.method.shortfall(task, base))
             return
         if repeats(task, base):
@@ -328,7 +328,7 @@ class Run:
             if left == 0 or mesh.matches(base.orbit.mesh):
                 break
             base = self._on_mesh(base, mesh)
-        if new.error.orbit > tolerance:
+        if new.error.motion > tolerance:
             if task.method.exhausted(task.settings.mesh, new.orbit):
                 raise BeyondError(task.method.shortfall(task, new))
             raise RejectedError("the error estimate exceeds the tolerance")
@@ -396,7 +396,7 @@ class Run:
         better = remesh(task, new)
         if isinstance(better, Solved) and not is_settled(task, better):
             better = settle(task, better)
-        if isinstance(better, Outcome) or better.error.orbit > tolerance:
+        if isinstance(better, Outcome) or better.error.motion > tolerance:
             return new
         self._since_remesh = 0
         return better

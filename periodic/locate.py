@@ -349,7 +349,7 @@ def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
     """Return a solution that meets the tolerance; raise RejectedError for any other."""
     if isinstance(solved, Outcome):
         raise RejectedError(solved.value)
-    if solved.error.orbit > task.settings.mesh.tolerance:
+    if solved.error.motion > task.settings.mesh.tolerance:
         raise RejectedError("the error estimate of a special point exceeds the tolerance")
     return solved
 

@@ -66,26 +66,42 @@ class Settings:
     step: StepSettings = field(default_factory=StepSettings)
 
 
+LEAST, MOST = 1e-11, 1e-2
+"""Between these lies a tolerance."""
+
 DEEPEST = 0.1
 """Shallowest switch level worth an anchor, in tolerances."""
 
+DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-8: 6, 1e-10: 7}
+"""Collocation points in each interval down to a tolerance."""
+
+
+def settings(tol: float, step: StepSettings | None = None) -> Settings:
+    """Return the settings that bring peaks to peak, places of folds and multipliers to a relative `tol`.
+
+    Raises ValueError unless 1e-11 <= tol <= 1e-2.
+    """
+    if not LEAST <= tol <= MOST:
+        raise ValueError(f"tol is {tol}; it must lie between {LEAST:g} and {MOST:g}")
+    ncol = next((points for least, points in DEGREES.items() if tol >= least), max(DEGREES.values()))
+    return Settings(
+        mesh=MeshSettings(
+            tolerance=tol,
+            scheme=Scheme(Family.RADAU, ncol),
+            anchors=AnchorSettings(deepest=DEEPEST * tol),
+        ),
+        newton=NewtonSettings(tolerance=max(1e-2 * tol, 1e-10) ** 0.75, max_iterations=16),
+        step=step or StepSettings(),
+    )
+
 
 class Accuracy(Enum):
-    """The dial: tolerance of the orbits' error estimates and number of collocation points."""
+    """The dial: the tolerances of peaks to peak, places of folds and multipliers."""
 
-    DRAFT = (1e-4, 4)
-    STANDARD = (1e-7, 5)
-    FINE = (1e-9, 6)
+    DRAFT = 1e-4
+    STANDARD = 1e-6
+    FINE = 1e-9
 
     def settings(self, step: StepSettings | None = None) -> Settings:
         """Return the settings of this accuracy."""
-        tolerance, ncol = self.value
-        return Settings(
-            mesh=MeshSettings(
-                tolerance=tolerance,
-                scheme=Scheme(Family.RADAU, ncol),
-                anchors=AnchorSettings(deepest=DEEPEST * tolerance),
-            ),
-            newton=NewtonSettings(tolerance=max(1e-2 * tolerance, 1e-10) ** 0.75, max_iterations=16),
-            step=step or StepSettings(),
-        )
+        return settings(self.value, step)

@@ -31,6 +31,9 @@ SHIFTS = 64
 KEPT = 30.0
 """How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
 
+DISTINCT = 0.05
+"""Orbits as far apart, in peaks to peak, are two."""
+
 
 @dataclass
 class Work:
@@ -260,7 +263,8 @@ def _ahead(task: Task, a: Orbit, b: Orbit) -> float:
 
 def same(task: Task, a: Solved, b: Solved, later: float = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
-    allowed = KEPT * max(a.error.worst, task.settings.mesh.tolerance) * max(a.orbit.span(), LEAST_SPAN)
+    part = min(KEPT * max(a.error.worst, task.settings.mesh.tolerance), DISTINCT)
+    allowed = part * max(a.orbit.span(), LEAST_SPAN)
     return distance(task, a.orbit, b.orbit, FORCED * later) <= allowed
 
 

@@ -27,6 +27,7 @@ from periodic.orbit import Orbit
 from periodic.point import Point
 from periodic.scheme import Array
 from periodic.settings import Accuracy, Settings
+from periodic.settings import settings as settings_for
 from periodic.solve import Task
 from periodic.stop import Reason, Stop
 from periodic.system import System, VariableLike, index_of
@@ -47,6 +48,7 @@ def trace(
     start: float | None = None,
     at: float | Sequence[float] = (),
     accuracy: Accuracy = Accuracy.STANDARD,
+    tol: float | None = None,
     settings: Settings | None = None,
     method: Method | None = None,
     values: Mapping[str, float] | None = None,
@@ -71,6 +73,10 @@ def trace(
     system with a parameter omega = 2 pi / period, {"preload": FoldCondition()} for the curve that a fold
     traces in two parameters, {"preload": Level(PeakToPeak("x"), 1e-5)} for orbits of constant ripple.
 
+    `tol` (1e-11 to 1e-2; default: that of `accuracy`) bounds the relative errors of peaks to peak, of the
+    places of folds and of multipliers (relative to the largest where that exceeds 1); `settings` choose mesh,
+    Newton and steps one by one.
+
     `columns` are functionals of the orbit kept at each point; `events` levels of functionals that get a point
     (UZ); `limits` ranges of other parameters that end the branch; `stop` ends it at the n-th point of a label
     or event, {"LP": 2}, counted from the start in each direction. `method` is the discretisation (default:
@@ -82,6 +88,8 @@ def trace(
     ValueError, in one sentence, for a parameter, bound or value that is not allowed.
     """
     _checked(system, accuracy)
+    if tol is not None and settings is not None:
+        raise ValueError("tol and settings are both given; settings have a tolerance of their own")
     index = index_of(system, parameter)
     low, high = _range(parameter, bounds)
     if values and parameter in values:
@@ -110,7 +118,7 @@ def trace(
         system,
         index,
         Metric(high - low),
-        settings or accuracy.settings(),
+        settings or settings_for(accuracy.value if tol is None else tol),
         method or Collocation(),
         others=tuple(index_of(system, name) for name in determined),
         conditions=tuple(determined.values()),

@@ -89,7 +89,7 @@ def _most(output: str, unit: float) -> Callable[[Point], Cell]:
 LABEL = Column(name="label", heading="label", value=lambda point: point.label.value)
 STABLE = Column(name="stable", heading="stable", value=lambda point: point.stable)
 MULTIPLIER = Column(name="multiplier_max", value=lambda point: float(np.abs(point.multipliers[0])))
-ERROR = Column(name="error_estimate", value=lambda point: point.error.orbit)
+ERROR = Column(name="error_estimate", value=lambda point: point.error.worst)
 SWING = Column(name="x_pp_um", heading="x p-p (µm)", value=_ripple("x", MICRO))
 LARGEST = Column(name="x_max", heading="x max (m)", value=_most("x", 1.0))
 

@@ -25,7 +25,7 @@ from periodic.system import System
 if TYPE_CHECKING:
     from periodic.solve import Solved, Task
 
-AIM = 0.15
+AIM = 0.25
 """The part of the tolerance that a new mesh aims at."""
 
 ASIDE = (1.0, 0.0, 10.0)
@@ -88,7 +88,7 @@ class Collocation:
 
     def shortfall(self, task: Task, solved: Solved) -> str:
         """Return error estimate and number of intervals."""
-        return f"error estimate {solved.error.orbit:.1e} with {solved.orbit.mesh.ntst} intervals"
+        return f"error estimate {solved.error.motion:.1e} with {solved.orbit.mesh.ntst} intervals"
 
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right anchors and number of intervals, then with shallower anchors."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic import balance, events, newton, rotation
-from periodic.accuracy import LEAST_SPAN, ErrorEstimate
+from periodic.accuracy import LEAST_SPAN, UNKNOWN, ErrorEstimate
 from periodic.anchors import Crossing
 from periodic.closure import Closure, Plane, closures
 from periodic.dense import algebraic_at
@@ -139,15 +139,16 @@ class HarmonicBalance:
         closing = [*closures(task.conditions, task.others, fine), across]
         step = balance.increment(task.system, fine, task.free, closing)
         if isinstance(step, Outcome):
-            return ErrorEstimate(np.inf, np.inf)
+            return UNKNOWN
         error = float(np.abs(step.stages).max()) / max(orbit.span(), LEAST_SPAN)
         factor = min(1.0, newton.MAX_CHANGE / max(step.length, np.finfo(float).tiny))
         better = newton.advance(task.system, step, task.free, factor)
         assert isinstance(better, FourierOrbit)
         try:
-            return ErrorEstimate(error, correction.floquet.error(task.system, better))
+            multiplier = correction.floquet.error(task.system, better)
         except (FloatingPointError, np.linalg.LinAlgError):
-            return ErrorEstimate(error, np.inf)
+            multiplier = np.inf
+        return ErrorEstimate(error, multiplier, error)
 
     def wanted(self, task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
         """Return no crossings: a series cannot be tied to them."""
@@ -168,7 +169,7 @@ class HarmonicBalance:
         left = tail(orbit, LEAST_SPAN)
         return (
             f"the spectrum's tail is {left:.1e} at {orbit.harmonics} harmonics (error estimate "
-            f"{solved.error.orbit:.1e}); the tolerance is {task.settings.mesh.tolerance:g}"
+            f"{solved.error.motion:.1e}); the tolerance is {task.settings.mesh.tolerance:g}"
         )
 
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:

@@ -109,7 +109,7 @@ class Shooting:
 
     def shortfall(self, task: Task, solved: Solved) -> str:
         """Return error estimate and number of intervals."""
-        return f"error estimate {solved.error.orbit:.1e} with {solved.orbit.mesh.ntst} intervals"
+        return f"error estimate {solved.error.motion:.1e} with {solved.orbit.mesh.ntst} intervals"
 
     def meshes(self, task: Task, solved: Solved) -> Iterator[tuple[Mesh, Array]]:
         """Yield the mesh that interpolates the orbit to its tolerance."""

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
-import numpy as np
-
 import periodic
-from periodic import Point
-from reports.paper.scenes import branch, system
+from reports.paper.scenes import system
 from reports.view import RPM
 
 LOST = 1e-3
@@ -18,22 +13,19 @@ LOST = 1e-3
 def lost_from(name: str) -> float:
     """Return the speed (rev/min) below which the upper sheet loses contact in every cycle.
 
-    It is interpolated in the logarithm of the least load, on a closer trace of the step that passes it.
     Raises ArithmeticError for a branch that keeps contact.
     """
-    ends = [point.parameter / RPM for point in _passing(name, branch(name))]
-    before, after = _passing(name, branch(name, *ends))
-    threshold = np.log(LOST * preload_of(name))
-    loads = [np.log(point.minimum["load"]) for point in (after, before)]
-    return float(np.interp(threshold, loads, [after.parameter / RPM, before.parameter / RPM]))
-
-
-def _passing(name: str, found: periodic.Branch) -> tuple[Point, Point]:
-    """Return the first neighbours of a branch between which contact is lost."""
-    for before, after in pairwise(found):
-        if after.minimum["load"] < LOST * preload_of(name) <= before.minimum["load"]:
-            return before, after
-    raise ArithmeticError(f"scene {name} does not lose contact from {found[0].parameter / RPM:g} rev/min on")
+    found = periodic.trace(
+        system(name),
+        "speed",
+        (100 * RPM, 500 * RPM),
+        start=500 * RPM,
+        events={"contact lost": periodic.Level(periodic.Minimum("load"), LOST * preload_of(name))},
+        stop={"contact lost": 1},
+    )
+    if not found.labelled("contact lost"):
+        raise ArithmeticError(f"scene {name} does not lose contact from 500 rev/min on")
+    return found.labelled("contact lost")[0].parameter / RPM
 
 
 def preload_of(name: str) -> float:

@@ -18,6 +18,11 @@ from symbolic.response import peak
 RANGE = (100.0, 500.0)
 """Speeds of the paper's frequency plots, rev/min."""
 
+NEAR = 0.01
+"""How far about the highest point the branch is traced more closely, as a part of its speed."""
+
+CLOSELY = periodic.Accuracy.STANDARD.settings(periodic.StepSettings(ds_max=0.05))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Resonance:
@@ -49,21 +54,25 @@ def of(name: str) -> Resonance:
     disc = system(name)
     natural = natural_speed(disc) * RPM
     speed, swing = peak(disc, "x", "speed", (0.97 * natural, 1.03 * natural))
-    return Resonance(natural=natural / RPM, linear=(speed / RPM, float(swing)), highest=highest(branch(name)))
+    return Resonance(
+        natural=natural / RPM, linear=(speed / RPM, float(swing)), highest=highest(disc, branch(name))
+    )
 
 
-def highest(found: periodic.Branch) -> tuple[float, float]:
+def highest(disc: CompiledSystem, found: periodic.Branch) -> tuple[float, float]:
     """Return speed (rev/min) and x peak to peak (m) where the latter is largest along a branch.
 
-    A cubic spline in the chord length runs through the computed points.
+    A cubic spline in the chord length runs through the points of a closer trace about the highest one.
     """
-    speed, swing = found.values / RPM, found.peak_to_peak("x")
+    top = max(found, key=lambda point: point.maximum["x"] - point.minimum["x"])
+    around = (max(found.values.min(), (1 - NEAR) * top.parameter), (1 + NEAR) * top.parameter)
+    closer = periodic.trace(disc, "speed", around, guess=top.orbit, settings=CLOSELY)
+    speed, swing = closer.values / RPM, closer.peak_to_peak("x")
     steps = np.hypot(np.diff(speed) / np.ptp(speed), np.diff(swing) / np.ptp(swing))
     apart = np.append(True, steps > 1e-9)
     length = np.append(0.0, np.cumsum(steps))[apart]
     curve = CubicSpline(length, np.column_stack([speed, swing])[apart])
-    top = int(np.argmax(swing[apart]))
-    fine = curve(np.linspace(length[max(top - 1, 0)], length[min(top + 1, len(length) - 1)], 2001))
+    fine = curve(np.linspace(0, length[-1], 20001))
     best = fine[np.argmax(fine[:, 1])]
     return float(best[0]), float(best[1])
 
@@ -76,5 +85,6 @@ def backbone(name: str, parts: tuple[float, ...]) -> list[tuple[float, float]]:
     amplitude = {p.name: p.value for p in system(name).parameters}["amplitude"]
     natural = of(name).natural
     ends = (round(1.15 * natural), round(0.6 * natural))
-    traced = [branch(name, *ends, overrides=(("waviness.amplitude", repr(k * amplitude)),)) for k in parts]
-    return [(natural, 0.0), *map(highest, traced)]
+    waves = [("waviness.amplitude", repr(k * amplitude)) for k in parts]
+    found = [highest(system(name, wave), branch(name, *ends, overrides=(wave,))) for wave in waves]
+    return [(natural, 0.0), *found]

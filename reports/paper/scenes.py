@@ -14,6 +14,10 @@ LUBRICATED = ("vitrea79-810N", "vitrea79-2100N", "turbo33-810N", "turbo33-2100N"
 """The paper's lubricants and preloads."""
 
 
+DENSE = periodic.Accuracy.STANDARD.settings(periodic.StepSettings(ds_max=0.1))
+"""Points of branches lie close enough for splines through them."""
+
+
 @cache
 def system(name: str, *overrides: tuple[str, str]) -> sym.CompiledSystem:
     """Return the system of a built-in scene with some of its keys changed."""
@@ -36,4 +40,5 @@ def branch(
         (low * RPM, high * RPM),
         start=begin * RPM,
         at=[value * RPM for value in at],
+        settings=DENSE,
     )
