@@ -10,13 +10,15 @@ import hashlib
 import io
 import json
 import os
+import signal
 import struct
+import threading
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
@@ -38,6 +40,9 @@ if TYPE_CHECKING:
 
 HEAD = struct.Struct("<Q32s")
 """Length and digest of a frame."""
+
+
+ENDING = (signal.SIGINT, signal.SIGTERM)
 
 
 class JournalError(BranchFileError):
@@ -74,7 +79,11 @@ class Journal:
         self._part.unlink(missing_ok=True)
 
     def add(self, run: Run, points: Sequence[Point]) -> None:
-        """Add points that a run has completed, and where it stands."""
+        """Add points that a run has completed, and where it stands; an interrupt waits until they are kept."""
+        with _uninterrupted():
+            self._add(run, points)
+
+    def _add(self, run: Run, points: Sequence[Point]) -> None:
         stop = run.stop or Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
         checkpoints = () if run.checkpoint is None else (run.checkpoint,)
         piece = replace(self._empty, points=tuple(points), stop=stop, checkpoints=checkpoints)
@@ -90,6 +99,27 @@ class Journal:
             self._broken = True
             why = f"the journal {str(self._path)!r} cannot be written to ({error.strerror})"
             warnings.warn(f"{why}; the trace goes on without it", stacklevel=2)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Inside the block signals that end a program wait; their handlers are called after it."""
+    if threading.current_thread() is not threading.main_thread():  # only that one is interrupted
+        yield
+        return
+    heard: list[tuple[int, FrameType | None]] = []
+    before = {each: signal.signal(each, lambda *at: heard.append(at)) for each in ENDING}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler or signal.SIG_DFL)
+    for number, frame in heard[:1]:
+        handler = before[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+        elif handler == signal.SIG_DFL:
+            signal.raise_signal(number)
 
 
 def _locked(path: Path, mode: str) -> BinaryIO:
