@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 if TYPE_CHECKING:
     from symbolic.compile import Array, CompiledSystem
@@ -69,7 +69,7 @@ class Flow:
 
     def _lsoda(self, start: Array, parameter: Array, phase: Array) -> Array:
         rates, jacobian = self._rates
-        found = solve_ivp(
+        found = scipy.integrate.solve_ivp(
             lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
             (phase[0], phase[-1]),
             start,

@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from scipy import special
+import scipy
 
 _BINARY = {
     ca.OP_ADD: "{0} + {1}",
@@ -63,7 +63,7 @@ _UNARY = {
     ca.OP_CEIL: "np.ceil({0})",
     ca.OP_FABS: "np.abs({0})",
     ca.OP_SIGN: "np.sign({0})",
-    ca.OP_ERF: "special.erf({0})",
+    ca.OP_ERF: "scipy.special.erf({0})",
 }
 
 
@@ -98,7 +98,7 @@ def build(arguments: Sequence[Argument], results: Sequence[ca.SX]) -> Callable[.
     """
     function = ca.Function("kernel", [a.symbol for a in arguments], ca.cse(list(results)))
     source = _source(function, [a.read for a in arguments])
-    scope: dict[str, Any] = {"np": np, "special": special, "inf": np.inf, "nan": np.nan}
+    scope: dict[str, Any] = {"np": np, "scipy": scipy, "inf": np.inf, "nan": np.nan}
     exec(compile(source, "<orbitrace kernel>", "exec"), scope)  # source is made above from an operation table
     kernel: Callable[..., None] = scope["kernel"]
     return kernel

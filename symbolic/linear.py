@@ -17,8 +17,8 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from symbolic.compile import Array, CompiledSystem
 
@@ -167,7 +167,7 @@ def resonance(
     if not all(map(math.isfinite, ends)) or not ends[0] * ends[1] < 0:
         return None
     # An infinite excess inside has a sign to bisect by; what is found then may be a jump.
-    root = float(brentq(excess, *bounds, xtol=1e-13 * max(map(abs, bounds)), rtol=1e-13))
+    root = float(scipy.optimize.brentq(excess, *bounds, xtol=1e-13 * max(map(abs, bounds)), rtol=1e-13))
     return root if abs(excess(root)) < MET else None
 
 

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from symbolic.compile import Array, CompiledSystem
 from symbolic.linear import Complex, Modes, RestFinder, with_values
@@ -135,7 +135,7 @@ def peak(
         return 2 * abs(excited.amplitudes(found)[0][index])
 
     width = abs(bounds[1] - bounds[0])
-    best = minimize_scalar(
+    best = scipy.optimize.minimize_scalar(
         lambda value: -swing(value), bounds=bounds, method="bounded", options={"xatol": 1e-9 * width}
     )
     return float(best.x), swing(best.x)
