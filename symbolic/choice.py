@@ -9,7 +9,6 @@ or C, with AUTO where the cache holds the same kernels.
 from __future__ import annotations
 
 import ctypes
-import logging
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -34,7 +33,6 @@ COMPILER, STATEMENT = 0.08, 0.5e-3
 VARIABLE = "ORBITRACE_KERNELS"
 """The environment's choice, where the program makes none."""
 
-_log = logging.getLogger(__name__)
 _Address = ctypes.c_char * 0
 
 
@@ -53,6 +51,20 @@ def chosen(kernels: Kernels | str | None) -> Kernels:
         return Kernels(value or "auto")
     except ValueError:
         raise ValueError(f"{where} is {value!r}; it must be auto, numpy or c") from None
+
+
+def shared(source: str, kernels: Kernels) -> ctypes.CDLL | None:
+    """Return the library of a C source that every run needs, or None where NumPy is to do.
+
+    AUTO compiles it at once if it can be kept: later runs have it for nothing.
+    """
+    if kernels is Kernels.NUMPY:
+        return None
+    if kernels is Kernels.C:
+        return native.library(source)
+    if native.directory() is None:
+        return native.kept(source)
+    return native.attempted(source)
 
 
 @dataclass(frozen=True)
@@ -113,11 +125,8 @@ class ChosenKernel:
     def _count(self) -> None:
         """Compile when it has paid; only then, whatever comes of it."""
         self._calls += 1
-        if self._calls == self.pays and native.compiler() is not None:
-            try:
-                self._compiled = self._function(native.library(self.source))
-            except native.CompilerError as error:
-                _log.warning("NumPy goes on evaluating the equations: %s", error)
+        if self._calls == self.pays:
+            self._compiled = self._function(native.attempted(self.source))
 
     def _function(self, found: ctypes.CDLL | None) -> Run | None:
         if found is None:

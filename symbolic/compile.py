@@ -7,6 +7,7 @@ Residual rows, with x the scaled states, z the algebraic unknowns and ' = d/dtau
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symbolic.assembly import Assembly
-from symbolic.choice import Kernels, chosen
+from symbolic.choice import Kernels, chosen, shared
 from symbolic.kernel import Argument, batch, build, points, vector
 from symbolic.model import Model, Part
 from symbolic.parts.contact import Junction
@@ -82,6 +83,7 @@ class CompiledSystem:
     kernels: Kernels = Kernels.NUMPY
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
     _gradients: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
+    _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, repr=False)
 
     @property
     def nominal(self) -> Array:
@@ -193,6 +195,12 @@ class CompiledSystem:
             points(e.phase, "phase"),
             vector(e.parameter, "parameter"),
         ]
+
+    def library(self, source: str) -> ctypes.CDLL | None:
+        """Return the loaded library of a C source that serves every system, or None: NumPy is to do."""
+        if source not in self._libraries:
+            self._libraries[source] = shared(source, self.kernels)
+        return self._libraries[source]
 
     def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
         return build(arguments, results, self.kernels)

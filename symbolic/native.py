@@ -34,6 +34,7 @@ LONGEST = 120.0
 
 _log = logging.getLogger(__name__)
 _loaded: dict[str, ctypes.CDLL] = {}
+_failed: set[str] = set()
 
 
 class CompilerError(RuntimeError):
@@ -54,6 +55,24 @@ def library(source: str) -> ctypes.CDLL:
     if (found := kept(source)) is None:
         found = _loaded[source] = _made(source)
     return found
+
+
+def attempted(source: str) -> ctypes.CDLL | None:
+    """Return the library of a C source, or None without a compiler or, with one warning, where it fails."""
+    if compiler() is None or source in _failed:
+        return None
+    try:
+        return library(source)
+    except CompilerError as error:
+        _failed.add(source)
+        _log.warning("NumPy does what C would do: %s", error)
+        return None
+
+
+def forget() -> None:
+    """Forget all libraries of this run, as a new one begins without."""
+    _loaded.clear()
+    _failed.clear()
 
 
 @cache
@@ -140,39 +159,37 @@ def _digest(content: bytes) -> str:
 
 def _made(source: str) -> ctypes.CDLL:
     """Compile in a directory of our own, load from there, and keep the file for later runs."""
-    known = compiler()
+    known, where = compiler(), directory()
     if known is None:
         raise CompilerError("no C compiler was found; install one, or set CC to its command")
-    with tempfile.TemporaryDirectory(prefix="orbitrace-", ignore_cleanup_errors=True) as made:
-        here, there = Path(made, "kernel.c"), Path(made, "kernel.so")
-        here.write_text(source)
-        command = [*known[0], *FLAGS, "-o", str(there), str(here), "-lm"]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=LONGEST)
-            if done.returncode != 0:
-                raise CompilerError(f"{command[0]} failed: {done.stderr.strip()[:500]}")
-            content = there.read_bytes()
-            found = ctypes.CDLL(str(there))
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise CompilerError(f"{command[0]} did not make a library that loads: {error}") from error
-    _keep(_key(source), content)
-    return found
-
-
-def _keep(key: str, content: bytes) -> None:
-    """Write a library to the cache, whole or not at all, and drop the oldest beyond KEPT."""
-    where = directory()
-    if where is None:
-        return
+    if where is not None and not os.access(where, os.W_OK):
+        where = None
+    command, *options = known[0]
     try:
-        for stale in _files(key):
+        with tempfile.TemporaryDirectory(dir=where, ignore_cleanup_errors=True) as made:
+            here, there = Path(made, "kernel.c"), Path(made, "kernel.so")
+            here.write_text(source)
+            asked = [command, *options, *FLAGS, "-o", str(there), str(here), "-lm"]
+            done = subprocess.run(asked, capture_output=True, text=True, errors="replace", timeout=LONGEST)
+            if done.returncode != 0:
+                raise CompilerError(f"{command} failed: {done.stderr.strip()[:500]}")
+            found = ctypes.CDLL(str(there))
+            if where is not None:
+                _keep(_key(source), there, where)
+            return found
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise CompilerError(f"{command} did not make a library that loads: {error}") from error
+
+
+def _keep(key: str, library: Path, where: Path) -> None:
+    """Move a library into the cache, in one piece, and drop the oldest beyond KEPT."""
+    try:
+        for stale in where.glob(f"{key}-*.so"):
             stale.unlink(missing_ok=True)
-        handle, name = tempfile.mkstemp(dir=where)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(name, where / f"{key}-{_digest(content)}.so")
-        by_age = sorted(where.iterdir(), key=lambda path: path.stat().st_mtime)
+        library.chmod(0o600)
+        os.replace(library, where / f"{key}-{_digest(library.read_bytes())}.so")
+        by_age = sorted(where.glob("*.so"), key=lambda path: path.stat().st_mtime)
         for old in by_age[:-KEPT]:
             old.unlink(missing_ok=True)
-    except OSError as error:  # read-only, full, or another process is tidying up
+    except OSError as error:  # full, or another process is tidying up
         _log.debug("the kernel is not kept: %s", error)
