@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from periodic.mesh import Anchor
 from periodic.orbit import Orbit
@@ -221,4 +221,4 @@ def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:
     begin, end = crossing.phase - reach, crossing.phase + reach
     if value(begin) * value(end) >= 0:
         return crossing.phase
-    return float(optimize.brentq(value, begin, end, xtol=1e-13))
+    return float(scipy.optimize.brentq(value, begin, end, xtol=1e-13))

@@ -61,19 +61,42 @@ class BorderedSolution:
     fundamental: Array
 
 
+SMALL = 16
+"""Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
+
+
 def chain(condensed: Condensed) -> Array:
     """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
     count, n, width = condensed.step.shape
-    maps = np.zeros((count + 1, n, width))
-    maps[0, :, 1 : 1 + n] = np.eye(n)
-    linear = np.ascontiguousarray(condensed.step[:, :, 1 : 1 + n])
-    rest = condensed.step.copy()
-    rest[:, :, 1 : 1 + n] = 0.0
-    origin = condensed.origin
+    first = np.zeros((1, n, width))
+    first[0, :, 1 : 1 + n] = np.eye(n)
+    if n <= SMALL and np.array_equal(condensed.origin, np.arange(count)):
+        return np.concatenate([first, _chained(condensed.step)])
+    maps = np.concatenate([first, np.empty((count, n, width))])
     for j in range(count):
-        np.matmul(linear[j], maps[origin[j]], out=maps[j + 1])
-        maps[j + 1] += rest[j]
+        maps[j + 1 : j + 2] = _after(condensed.step[j : j + 1], maps[condensed.origin[j]][None])
     return maps
+
+
+def _chained(step: Array) -> Array:
+    """The maps from the first mesh point to all others, from those of every second one."""
+    if len(step) == 1:
+        return step
+    even = len(step) // 2 * 2
+    maps = np.empty_like(step)
+    maps[0] = step[0]
+    maps[1::2] = _chained(_after(step[1:even:2], step[0:even:2]))
+    maps[2::2] = _after(step[2::2], maps[1:-1:2])
+    return maps
+
+
+def _after(later: Array, earlier: Array) -> Array:
+    """Affine maps of (1, dx, dy), one after the other."""
+    n = later.shape[1]
+    both = later[:, :, 1 : 1 + n] @ earlier
+    both[:, :, 0] += later[:, :, 0]
+    both[:, :, 1 + n :] += later[:, :, 1 + n :]
+    return both
 
 
 def solve(condensed: Condensed, gap: Array, rows: Sequence[Row], with_kernel: bool) -> BorderedSolution:

@@ -6,7 +6,7 @@ Each closure is one scalar equation in the mesh-point states, the anchor phases 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Protocol
 
 import numpy as np
@@ -96,6 +96,9 @@ class Direction:
             others=factor * self.others,
         )
 
+    def __add__(self, other: Direction) -> Direction:
+        return Direction(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
     def with_profile(self, profile: Array) -> Direction:
         """Return the direction with another profile: all that a plane needs on another mesh."""
         return replace(self, profile=profile)
@@ -135,18 +138,28 @@ class Plane:
     metric: Metric
     index: int
 
+    def rate(self, direction: Direction) -> float:
+        """How fast the distance grows along a direction on the origin's mesh."""
+        row = self._gradient(self.origin, (self.index,))
+        outer = np.append(direction.phases, direction.parameter)
+        return float(np.vdot(row[0], direction.nodes) + row[1] @ outer)
+
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return value and gradient; mesh points that move carry the origin's slope with them."""
+        weighted, outer = self._gradient(orbit, free)
+        shift = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
+        moved = np.append(orbit.phases - self.origin.phases, shift)
+        value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
+        return Row(float(value) - self.distance, weighted, outer)
+
+    def _gradient(self, orbit: Orbit, free: tuple[int, ...]) -> tuple[Array, Array]:
         slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
         weighted = self.metric.weights(self.origin)[:, None] * self.direction.profile
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
         outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, moving)
         outer[k + free.index(self.index)] = self.direction.parameter / self.metric.scale**2
-        shift = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
-        moved = np.append(orbit.phases - self.origin.phases, shift)
-        value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
-        return Row(float(value) - self.distance, weighted, outer)
+        return weighted, outer
 
 
 @dataclass(frozen=True)

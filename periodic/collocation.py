@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.closure import Row
+from periodic.kinematic import kinematic, solve
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System
@@ -54,14 +55,19 @@ class Condensed:
 
     def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
         """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
-        orbit, (count, ncol, _) = self.orbit, self.orbit.stages.shape
-        one, dy = np.full((count, 1), constant), np.broadcast_to(outer, (count, len(outer)))
-        stages = np.einsum("jlnw,jw->jln", self.stages, np.concatenate([one, nodes[:-1], dy], axis=1))
+        orbit, (count, ncol, n) = self.orbit, self.orbit.stages.shape
+        width, q = self.stages.shape[3], len(outer)
+        given = np.empty((count, width, 1))
+        given[:, 0, 0], given[:, 1 : 1 + n, 0], given[:, 1 + n :, 0] = constant, nodes[:-1], outer
+        stages = (self.stages.reshape(count, ncol * n, width) @ given).reshape(count, ncol, n)
+        if orbit.algebraic.shape[2] == 0:
+            return stages, np.zeros_like(orbit.algebraic)
+        inner = np.empty((count, ncol, 1 + 2 * n + q, 1))
         knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
-        rates = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-        around = [np.repeat(part[:, None], ncol, axis=1) for part in (one, dy)]
-        inner = np.concatenate([around[0], rates, stages, around[1]], axis=2)
-        return stages, -np.einsum("jlmw,jlw->jlm", self.algebraic, inner)
+        inner[..., 0, 0], inner[..., 1 + 2 * n :, 0] = constant, outer
+        inner[..., 1 : 1 + n, 0] = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
+        inner[..., 1 + n : 1 + 2 * n, 0] = stages
+        return stages, -(self.algebraic @ inner)[..., 0]
 
 
 def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
@@ -88,16 +94,28 @@ def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
 
     Returns the differential rows without z, (points, n, w), and -dz as a map of the columns, (points, m, w).
     """
-    algebraic = np.linalg.solve(rows.d_algebraic[:, n:], rows.columns[:, n:]).astype(float, copy=False)
-    return rows.columns[:, :n] - rows.d_algebraic[:, :n] @ algebraic, algebraic
+    unknown, columns = rows.d_algebraic, rows.columns
+    if unknown.shape[2] == 0:
+        return columns, columns[:, n:]
+    if unknown.shape[2] == 1:
+        if not unknown[:, n].all():
+            raise np.linalg.LinAlgError("an algebraic row does not depend on its unknown")
+        algebraic = columns[:, n:] / unknown[:, n:]
+        return columns[:, :n] - unknown[:, :n] * algebraic, algebraic
+    algebraic = np.linalg.solve(unknown[:, n:], columns[:, n:]).astype(float, copy=False)
+    return columns[:, :n] - unknown[:, :n] @ algebraic, algebraic
 
 
 def solve_stages(local: Array, right: Array, weights: Array) -> Array:
     """Solve each interval's rows for its stages: -right (N, ncol, n, w) over the stage matrix."""
     count, ncol, n, _ = local.shape
-    matrix = local[:, :, :, None, 1 : 1 + n] * weights[:, :, None, 1:, None]
+    by_rate, by_state = local[..., 1 : 1 + n], local[..., 1 + n : 1 + 2 * n]
+    found = kinematic(by_rate, by_state)
+    if found is not None:
+        return solve(found, by_rate, by_state, right, weights[:, :, 1:])
+    matrix = by_rate[:, :, :, None] * weights[:, :, None, 1:, None]
     each = np.arange(ncol)
-    matrix[:, each, :, each, :] += np.moveaxis(local[..., 1 + n : 1 + 2 * n], 1, 0)
+    matrix[:, each, :, each, :] += np.moveaxis(by_state, 1, 0)
     size = ncol * n
     solution = np.linalg.solve(matrix.reshape(count, size, size), -right.reshape(count, size, -1))
     return solution.reshape(count, ncol, n, -1).astype(float, copy=False)
@@ -165,7 +183,10 @@ def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
 
 def _steps(orbit: Orbit, stages: Array) -> Array:
     end, n = orbit.mesh.scheme.end, orbit.nodes.shape[1]
-    steps = np.einsum("l,jlnw->jnw", end[1:], stages)
+    if end[-1] == 1.0 and not end[:-1].any():
+        steps = stages[:, -1].copy()
+    else:
+        steps = np.einsum("l,jlnw->jnw", end[1:], stages)
     steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
     steps[:, :, 0] += end @ orbit.knots - orbit.nodes[1:]
     return steps

@@ -20,7 +20,7 @@ from periodic.closure import Metric, Plane
 from periodic.label import Label
 from periodic.locate import Found, RejectedError, special_points
 from periodic.mesh import Mesh
-from periodic.newton import Outcome
+from periodic.newton import Outcome, at_fixed_phase
 from periodic.orbit import Orbit
 from periodic.point import Point, describe
 from periodic.solve import (
@@ -29,6 +29,7 @@ from periodic.solve import (
     at_parameter,
     carried,
     closes,
+    difference,
     is_settled,
     on_plane,
     parameter_direction,
@@ -41,10 +42,15 @@ from periodic.solve import (
 from periodic.stop import Reason, Stop
 from periodic.switching import away
 
-WINDOW = 1 / 60
-"""The mesh is made anew where the error estimate falls below this part of the tolerance."""
+LARGE = 0.25
+"""The mesh is made anew where the error estimate reaches this part of the tolerance."""
 
-ADAPT_EVERY = 4
+WINDOW = 1 / 60
+"""... where it falls below this part, and a mesh of SMALLER times as many intervals would do."""
+
+SMALLER = 0.7
+
+ADAPT_EVERY = 10
 """... and every so many steps."""
 
 MESHES = 3
@@ -55,6 +61,12 @@ BENT = 0.1
 
 NOISE = 10.0
 """What the orbits' own errors may add to that distance, in tolerances."""
+
+PATIENCE = 9
+"""Newton iterations that a step may take; one that takes more is too long."""
+
+AIM = 0.8
+"""The part of what a step may turn and bend that the next one aims at."""
 
 COLLAPSED = 0.1
 """An orbit that is so much smaller than its guess is not what was guessed."""
@@ -173,27 +185,29 @@ class Run:
                 self.stop = taken
                 yield self._emitted(base, Label.FAILED)
                 return
-            new, ds, specials = taken
+            new, further, specials = taken
             for special in specials:
                 yield from self._met(special)
                 if self.stop is not None:
                     return
-            self._completed(new, ds)
+            self._completed(new, further)
             yield self.collected[-1]
             base = self._prepared(new)
         self.stop = Stop.max_points(self.task.settings.step.max_points)
 
     def _taken(self, base: Solved) -> tuple[Solved, float, list[Found]] | Stop:
-        """Take one step, as long as it can be; return its end, its length and its special points."""
+        """Take one step, as long as can be; return its end, the next one's length, its special points."""
         assert self.state is not None
         ds, since = self.state.ds, _value(self.task, self.state.last)
         sought = self._sought(_value(self.task, self.state.begun))
+        longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
-                base, new = self._step(base, ds)
-                return new, ds, special_points(self.task, base, new, ds, self.bounds, sought, since)
+                base, new, strain = self._step(base, ds)
+                found = special_points(self.task, base, new, ds, self.bounds, sought, since)
+                return new, min(self._next_size(ds, new, strain), longest), found
             except RejectedError as rejected:
-                ds /= 2
+                longest = ds = ds * rejected.shorter
                 beyond, step = isinstance(rejected, BeyondError), self.task.settings.step
                 if ds < (max(step.ds_min, NEARLY * step.ds) if beyond else step.ds_min):
                     return Stop.inaccurate(str(rejected)) if beyond else Stop.small_step(str(rejected))
@@ -225,13 +239,13 @@ class Run:
         return point
 
     def _completed(self, new: Solved, ds: float) -> None:
-        """Keep a step: its end becomes the last solution."""
+        """Keep a step: its end becomes the last solution, from which the next goes ds."""
         assert self.state is not None
         self._emitted(new, Label.NONE)
         self.state = replace(
             self.state,
             last=new,
-            ds=self._next_size(ds, new),
+            ds=ds,
             steps=self.state.steps + 1,
             since_remesh=self._since_remesh,
             left=self.state.left or not same(self.task, self.state.begun, new),
@@ -293,22 +307,23 @@ class Run:
             orbit, _ = _followed(loose, bounds, orbit, int(sign))
         return orbit if orbit is not None and orbit.parameter[task.index] == wanted else None
 
-    def _next_size(self, ds: float, new: Solved) -> float:
+    def _next_size(self, ds: float, new: Solved, strain: float) -> float:
         iterations, step = new.correction.iterations, self.task.settings.step
-        factor = 1.5 if iterations <= 4 else 1.2 if iterations <= 5 else 1.0 if iterations <= 6 else 0.7
-        return float(np.clip(ds * factor, step.ds_min, step.ds_max))
+        factor = 2.0 if iterations <= 3 else 1.5 if iterations <= 4 else 1.2 if iterations <= 5 else 1.0
+        factor = min(factor if iterations <= 6 else 0.7, AIM / max(strain, AIM / 2))
+        return float(np.clip(ds * _rounded(factor), step.ds_min, step.ds_max))
 
-    def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved]:
-        """Take one step; return base and new solution on one mesh. Raises RejectedError.
+    def _step(self, base: Solved, ds: float) -> tuple[Solved, Solved, float]:
+        """Take one step; return base and new solution on one mesh, and the strain. Raises RejectedError.
 
         The mesh is made anew up to MESHES times, while it changes; where then only the multipliers' error
         still exceeds its bound the point stands, and tells it.
         """
         task, tolerance = self.task, self.task.settings.mesh.tolerance
         for left in reversed(range(MESHES + 1)):
-            new = self._attempt(base, ds)
+            new, strain = self._attempt(base, ds)
             if new.error.worst <= tolerance:
-                return base, new
+                return base, new, strain
             mesh = task.method.mesh_for(task, new)
             if left == 0 or mesh.matches(base.orbit.mesh):
                 break
@@ -317,34 +332,51 @@ class Run:
             if task.method.exhausted(task.settings.mesh, new.orbit):
                 raise BeyondError(task.method.shortfall(task, new))
             raise RejectedError("the error estimate exceeds the tolerance")
-        return base, new
+        return base, new, strain
 
-    def _attempt(self, base: Solved, ds: float) -> Solved:
+    def _attempt(self, base: Solved, ds: float) -> tuple[Solved, float]:
+        """Solve a step away; return the solution and the step's strain. Raises RejectedError."""
         task = self.task
         guess = predict(task, base.orbit, base.tangent, ds)
-        new = on_plane(task, guess, Plane(base.orbit, base.tangent, ds, task.metric, task.index))
+        plane = Plane(base.orbit, base.tangent, ds, task.metric, task.index)
+        newton = task.settings.newton
+        new = on_plane(
+            task, guess, plane, replace(newton, max_iterations=min(PATIENCE, newton.max_iterations))
+        )
         if isinstance(new, Outcome):
             raise RejectedError(new.value)
-        if task.metric.dot(new.orbit, base.tangent, new.tangent) < task.settings.step.turn:
-            raise RejectedError("the branch turns too sharply for the step")
+        furthest = 0.0
+        for strain, ahead, why in self._strains(base, new, ds):
+            if not strain <= 1:
+                raise RejectedError(why, _rounded(np.clip(AIM / strain, 0.25, 0.75)))
+            furthest = max(furthest, ahead)
+        return new, furthest
+
+    def _strains(self, base: Solved, new: Solved, ds: float) -> Iterator[tuple[float, float, str]]:
+        """How far a step goes, about linear in its length, how far one as long would go next, and why not
+        beyond 1.
+        """
+        task = self.task
+        cosine = task.metric.dot(new.orbit, base.tangent, new.tangent)
+        angle = float(np.arccos(np.clip(cosine, -1, 1)) / np.arccos(task.settings.step.turn))
+        yield angle, angle, "the branch turns too sharply for the step"
         floor = NOISE * task.settings.mesh.tolerance * base.orbit.span()
-        if self._bend(base, new, ds) > BENT * ds + floor:
-            raise RejectedError("the step does not follow its tangents")
-        if not task.method.resolved(base.correction, new.correction):
-            raise RejectedError("the multipliers turn too far past 1 for the step")
-        if codimension.alignment(task, base, new) < task.settings.step.turn:
-            raise RejectedError("the critical motion turns too far for the step")
-        return new
+        bend = float(np.sqrt(max(self._bend(base, new, ds) - floor, 0.0) / (BENT * ds)))
+        yield bend, bend, "the step does not follow its tangents"
+        turn = task.method.turned(base.correction, new.correction)
+        yield turn.strain, turn.ahead, "the multipliers turn too far past 1 for the step"
+        motion = codimension.alignment(task, base, new)
+        angle = float(np.arccos(np.clip(motion, -1, 1)) / np.arccos(task.settings.step.turn))
+        yield angle, angle, "the critical motion turns too far for the step"
 
     def _bend(self, base: Solved, new: Solved, ds: float) -> float:
         """How far the step's end lies from where the mean of the two tangents leads."""
-        a, b = base.orbit, new.orbit
-        mean = (base.tangent.profile + new.tangent.profile) / 2
-        profile = b.state(a.mesh.nodes(a.phases)) - a.nodes - ds * mean
-        slope = (base.tangent.parameter + new.tangent.parameter) / 2
-        jump = float(b.parameter[self.task.index] - a.parameter[self.task.index]) - ds * slope
-        difference = replace(parameter_direction(a, self.task.metric), profile=profile, parameter=jump)
-        return float(np.sqrt(self.task.metric.dot(a, difference, difference)))
+        metric, way = self.task.metric, difference(self.task, base.orbit, new.orbit)
+        nodes = way.nodes - ds * (base.tangent.nodes + new.tangent.nodes) / 2
+        phases = way.phases - ds * (base.tangent.phases + new.tangent.phases) / 2
+        parameter = way.parameter - ds * (base.tangent.parameter + new.tangent.parameter) / 2
+        bend = replace(way, profile=at_fixed_phase(base.orbit, nodes, phases), parameter=parameter)
+        return float(np.sqrt(metric.dot(base.orbit, bend, bend)))
 
     def _on_mesh(self, base: Solved, mesh: Mesh) -> Solved:
         """Solve the base again on a mesh that suits the new orbit, with the base's own anchors."""
@@ -358,8 +390,8 @@ class Run:
         task = self.task
         tolerance = task.settings.mesh.tolerance
         self._since_remesh += 1
-        due = self._since_remesh >= ADAPT_EVERY or not WINDOW * tolerance < new.error.worst < 0.7 * tolerance
-        if new.anchored and not due:
+        due = self._since_remesh >= ADAPT_EVERY or new.error.worst >= LARGE * tolerance
+        if new.anchored and not due and not self._too_fine(new):
             return new
         better = remesh(task, new)
         if isinstance(better, Solved) and not is_settled(task, better):
@@ -369,6 +401,13 @@ class Run:
         self._since_remesh = 0
         return better
 
+    def _too_fine(self, new: Solved) -> bool:
+        """Whether a far smaller mesh would do."""
+        mesh = self.task.settings.mesh
+        if new.error.worst >= WINDOW * mesh.tolerance:
+            return False
+        return self.task.method.mesh_for(self.task, new).ntst <= SMALLER * new.orbit.mesh.ntst
+
 
 def _followed(task: Task, bounds: tuple[float, float], start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
     """Follow a branch; return its last orbit and why it ends."""
@@ -376,6 +415,11 @@ def _followed(task: Task, bounds: tuple[float, float], start: Orbit, sign: int) 
     points = list(run.points(start, sign))
     assert run.stop is not None
     return (points[-1].orbit if points else None), run.stop
+
+
+def _rounded(factor: float) -> float:
+    """A factor in whole hundredths, so that rounding in an orbit does not change the steps that follow."""
+    return float(np.floor(100 * factor)) / 100
 
 
 def _value(task: Task, solved: Solved) -> float:

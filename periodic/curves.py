@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy import linalg
+import scipy
 
 from periodic.adjoint import Linear, gradient
 from periodic.closure import Closure, Given, Row
@@ -132,8 +132,8 @@ def _subspaces(matrix: Array, basis: Array | None) -> tuple[Array, Array]:
     def wanted(real: float, imag: float) -> bool:
         return bool(np.abs(chosen - complex(real, imag)).min() < SAME * np.abs(chosen).max())
 
-    right = linalg.schur(matrix, sort=wanted)[1][:, :2]
-    left = linalg.schur(matrix.T, sort=wanted)[1][:, :2]
+    right = scipy.linalg.schur(matrix, sort=wanted)[1][:, :2]
+    left = scipy.linalg.schur(matrix.T, sort=wanted)[1][:, :2]
     return right, left @ np.linalg.inv(right.T @ left)
 
 

@@ -32,6 +32,9 @@ NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
 
+UPRIGHT = 1e-10
+"""Slopes smaller than this, in ranges of the parameter, are rounding."""
+
 TOUCHED = 0.01
 """What a touch leaves of prod (mu - 1), as a part of that at the step's ends."""
 
@@ -67,8 +70,9 @@ def known(task: Task, solved: Solved) -> bool:
 
 
 def slope(task: Task, solved: Solved) -> float:
-    """d parameter / d arclength."""
-    return solved.tangent.parameter
+    """d parameter / d arclength; 0 where the branch is upright."""
+    found = solved.tangent.parameter
+    return found if abs(found) > UPRIGHT * task.metric.scale else 0.0
 
 
 def doubling(task: Task, solved: Solved) -> float:

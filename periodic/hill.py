@@ -18,8 +18,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import linalg
 
 from periodic.balance import projected, sampled
 from periodic.fourier import FourierOrbit, basis, basis_slope
@@ -75,7 +75,7 @@ class Floquet:
         shapes = np.tensordot(
             basis(self.harmonics, orbit.frequency * orbit.mesh.nodes(orbit.phases)), self.shape, 1
         )
-        step = linalg.expm(self.rate * self.period / orbit.mesh.ntst)
+        step = scipy.linalg.expm(self.rate * self.period / orbit.mesh.ntst)
         growth = np.empty_like(shapes)
         growth[0] = np.linalg.inv(shapes[0])
         with np.errstate(over="ignore", invalid="ignore"):
@@ -99,7 +99,7 @@ class Floquet:
         P = np.tensordot(basis(self.harmonics, angle), self.shape, 1)
         slope = fine.frequency * np.tensordot(basis_slope(self.harmonics, angle), self.shape, 1)
         left = np.linalg.solve(P, jacobian(system, fine) @ P - slope - P @ self.rate).mean(axis=0)
-        once = linalg.expm(self.rate * self.period)
+        once = scipy.linalg.expm(self.rate * self.period)
         scale = max(1.0, float(np.abs(np.linalg.eigvals(once)).max()))
         sums = [np.trace(power @ left) for power in (once / scale, once @ once / scale**2)]
         return float(self.period * np.abs(sums).max())
@@ -151,14 +151,14 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
     They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
     """
     size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // BLOCK)
-    factors = linalg.lu_factor(matrix - SHIFT * np.eye(size))
+    factors = scipy.linalg.lu_factor(matrix - SHIFT * np.eye(size))
     space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, each)))[0]
     images = np.zeros((size, 0))
     for blocks in BLOCKS:
         if (blocks + 1) * each > size:
             break
         while images.shape[1] < blocks * each:
-            image = linalg.lu_solve(factors, space[:, -each:])
+            image = scipy.linalg.lu_solve(factors, space[:, -each:])
             images = np.concatenate([images, image], axis=1)
             for _ in range(2):
                 image = image - space @ (space.T @ image)
@@ -193,7 +193,7 @@ def _spanned(
         return bool(chosen[np.abs(values - value).argmin()])
 
     n = int(chosen.sum())
-    triangle, turned, count = linalg.schur(matrix, "complex", sort=is_chosen)  # type: ignore[call-overload]
+    triangle, turned, count = scipy.linalg.schur(matrix, "complex", sort=is_chosen)  # type: ignore[call-overload]
     return _Subspace(turned[:, :n], triangle[:n, :n], resolved and count == n)
 
 

@@ -9,18 +9,29 @@ turns, where the parameter is monotone.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from periodic import codimension, events
 from periodic.closure import Plane
 from periodic.events import Test
 from periodic.label import Label
 from periodic.newton import Outcome
-from periodic.solve import Solved, Task, at_parameter, from_itself, on_plane, predict, settle
+from periodic.orbit import Orbit
+from periodic.solve import (
+    Solved,
+    Task,
+    at_parameter,
+    cubic,
+    difference,
+    from_itself,
+    on_plane,
+    predict,
+    settle,
+)
 
 MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
@@ -29,13 +40,16 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
+SHORTER = 0.9
+"""A step that would end at a special point is taken so much shorter: then it lies within the next."""
+
 BESIDE = 1e-3
-"""How far from a turn its multipliers are looked at, as a part of the step."""
+"""How far from a turn its multipliers are looked at, and what else is not it, as a part of the step."""
 
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
 
-ORBITS = 1e3
+ORBITS = 1e1
 """How many times as far that is of orbits, which have errors of their own."""
 
 JUMP = 1e-3
@@ -43,6 +57,15 @@ JUMP = 1e-3
 
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
+
+LEFT = 0.5
+"""A function that is as a parabola predicts, and keeps this part of its least value, does not change sign."""
+
+CONFIRMED = 0.1
+"""How well, relatively, the parabola must predict it."""
+
+DISTINCT = 0.1
+"""A place to look at lies at least so far on the way from the least value to the next place known."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +84,15 @@ class Found:
 
 
 class RejectedError(Exception):
-    """A step that cannot be taken, or inside which a plane could not be solved on; the message says why."""
+    """A step that cannot be taken, or inside which a plane could not be solved on; the message says why.
+
+    shorter: the part of it to be tried next; not a half, which from a step that leads to an orbit of no size
+    leads there again and again.
+    """
+
+    def __init__(self, why: str, shorter: float = 0.6) -> None:
+        super().__init__(why)
+        self.shorter = shorter
 
 
 class _NoOrbitError(RejectedError):
@@ -70,6 +101,42 @@ class _NoOrbitError(RejectedError):
     def __init__(self, why: str, distance: float) -> None:
         super().__init__(why)
         self.distance = distance
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Orbits on planes at given distances from a step's base, each solved for once.
+
+    The guess is the cubic to the step's end, where there is one, then the base's tangent: orbits solved for
+    close to a singular one have lost digits that a guess must not carry on.
+    """
+
+    task: Task
+    base: Solved
+    known: dict[float, Solved]
+    end: float | None = None
+
+    def at(self, distance: float) -> Solved:
+        """Return the orbit at a distance. Raises RejectedError where there is none."""
+        if distance not in self.known:
+            self.known[distance] = self._solved(distance)
+        return self.known[distance]
+
+    def _solved(self, distance: float) -> Solved:
+        task, base = self.task, self.base
+        plane = Plane(base.orbit, base.tangent, distance, task.metric, task.index)
+        newton, failure = replace(task.settings.newton, close=0.0), Outcome.TOO_MANY
+        for guess in self._guesses(distance):
+            solved = on_plane(task, guess, plane, newton)
+            if isinstance(solved, Solved):
+                return solved
+            failure = solved
+        raise _NoOrbitError(failure.value, distance)
+
+    def _guesses(self, distance: float) -> Iterator[Orbit]:
+        if self.end is not None:
+            yield cubic(self.task, self.base, self.known[self.end], self.end, distance)
+        yield predict(self.task, self.base.orbit, self.base.tangent, distance)
 
 
 def special_points(
@@ -87,24 +154,47 @@ def special_points(
     up to which values have been looked for: that of the last point, from which the base may differ by its
     error where it was solved again on a new mesh. Raises RejectedError.
     """
+    stretch = _Stretch(task, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    turns = [] if from_turn else _where(task, base, new, ds, events.TURN)
+    turns = [] if from_turn else _where(stretch, new, ds, TURN)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = [_named(task, turn, base, new, ds) for turn in turns]
+    found = named = [_named(stretch, turn, new, ds) for turn in turns]
     for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
-        found += _where(task, base, new, ds, test)
+        met = _where(stretch, new, ds, test)
+        found = found + [point for point in met if not any(_is_one(point, turn, ds) for turn in named)]
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = _value(task, end.solved)
         bound = bounds[1] if last > first else bounds[0]
         for value, label in [*((v, Label.USER) for v in user), (bound, Label.END)]:
             if first < value <= last or last <= value < first:
-                found.append(_at_value(task, base, begin, end, value, label))
+                found.append(_at_value(stretch, begin, end, value, label))
     found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
     return found[: final[0] + 1] if final else found
+
+
+def _turns_twice(base: Solved, new: Solved) -> bool:
+    """Whether the parameter may turn and turn back within a step.
+
+    Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
+    """
+    task = base.task
+    way = difference(task, base.orbit, new.orbit)
+    mean = way.parameter / task.metric.dot(base.orbit, base.tangent, way)
+    ends = np.array([base.tangent.parameter, new.tangent.parameter])
+    sign = np.sign(ends[0])
+    return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())
+
+
+TURN = replace(events.TURN, twice=_turns_twice)
+
+
+def _is_one(point: Found, turn: Found, ds: float) -> bool:
+    """Whether a special point is the turn of the branch, which has its name already."""
+    return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds
 
 
 def _check_ways(task: Task, pieces: list[Found]) -> None:
@@ -115,7 +205,8 @@ def _check_ways(task: Task, pieces: list[Found]) -> None:
     """
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
         way = (end if begin.label is Label.FOLD else begin).solved.tangent.parameter
-        if (_value(task, end.solved) - _value(task, begin.solved)) * way < 0:
+        change = _value(task, end.solved) - _value(task, begin.solved)
+        if change * way < 0 and abs(change) > events.UPRIGHT * task.metric.scale:
             raise RejectedError("the step ends on another part of the branch")
 
 
@@ -123,62 +214,92 @@ def _value(task: Task, solved: Solved) -> float:
     return float(solved.orbit.parameter[task.index])
 
 
-def _where(task: Task, base: Solved, new: Solved, ds: float, test: Test) -> list[Found]:
-    """Locate where a test function changes sign within a step, if it does."""
-    ends = [test.value(task, solved) for solved in (base, new)]
+def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]:
+    """Locate where a test function changes sign within a step, if it does.
+
+    Raises RejectedError where it vanishes at the step's end, though not just before.
+    """
+    base = stretch.base
+
+    def value(solved: Solved) -> float:
+        return test.value(stretch.task, solved)
+
+    ends = [value(solved) for solved in (base, new)]
     if ends[0] * ends[1] < 0:
-        return _located(task, base, (0.0, ds), ds, test)
+        return _located(stretch, (0.0, ds), ds, test)
+    if ends[0] != 0 and ends[1] == 0 and value(stretch.at(SHORTER * ds)) != 0:
+        raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not test.twice(base, new):
         return []
-    between = _change(task, base, ds, lambda solved: np.sign(ends[0]) * test.value(task, solved))
+    sign = np.sign(ends[0])
+    between = _change(lambda distance: sign * value(stretch.at(distance)), ds, abs(ends[0]), abs(ends[1]))
     if between is None:
         return []
-    spans = ((0.0, between), (between, ds))
-    return [found for span in spans for found in _located(task, base, span, ds, test)]
+    return [found for span in ((0.0, between), (between, ds)) for found in _located(stretch, span, ds, test)]
 
 
-def _change(task: Task, base: Solved, ds: float, value: Callable[[Solved], float]) -> float | None:
-    """Return a distance within a step at which a function, positive at both ends, is negative, if any."""
-    found: list[float] = []
+def _change(value: Callable[[float], float], ds: float, begin: float, end: float) -> float | None:
+    """Return a distance within a step at which a function, positive at both ends, is negative, if any.
 
-    def positive(distance: float) -> float:
-        result = value(_at_distance(task, base, distance))
-        if result < 0:
-            found.append(distance)
-            raise StopIteration
-        return result
+    Parabolas lead to its minimum until one has predicted it.
+    """
+    known = {0.0: begin, ds: end}
+    place, expected = ds / (1 + np.sqrt(end / begin)), np.nan  # where a parabola touches zero
+    for _ in range(TRIALS):
+        least = min(known.values())
+        known[place] = found = value(place)
+        if found < 0:
+            return float(place)
+        if abs(found - expected) < CONFIRMED * found and found > LEFT * least:
+            return None
+        place, expected = _lowest(known)
+    return None
 
-    with contextlib.suppress(StopIteration):
-        optimize.minimize_scalar(
-            positive, bounds=(0.0, ds), method="bounded", options={"maxiter": TRIALS, "xatol": 0.0}
-        )
-    return found[0] if found else None
+
+def _lowest(known: dict[float, float]) -> tuple[float, float]:
+    """Return where to look for a function's minimum and what a parabola through its least values predicts.
+
+    That is the parabola's vertex, or halfway to its neighbour where an end is the least.
+    """
+    at = sorted(known)
+    least = at.index(min(at, key=lambda distance: known[distance]))
+    near = at[max(0, min(least - 1, len(at) - 3)) :][:3]
+    parabola = np.polynomial.Polynomial.fit(near, [known[distance] for distance in near], 2)
+    if 0 < least < len(at) - 1:
+        vertex, middle = float(parabola.deriv().roots()[0]), near[1]
+        gap = (near[2] if vertex > middle else near[0]) - middle
+        place = middle + gap * max((vertex - middle) / gap, DISTINCT)
+    else:
+        place = (at[least] + at[1 if least == 0 else -2]) / 2
+    return place, float(parabola(place))
 
 
-def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, test: Test) -> list[Found]:
+def _located(stretch: _Stretch, span: tuple[float, float], ds: float, test: Test) -> list[Found]:
     """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
+    task, base = stretch.task, stretch.base
 
     def value(solved: Solved) -> float:
         return test.value(task, solved)
 
-    precision, crossed = test.precision * ds, test is not events.TURN
-    distance, solved = _root(task, base, span, value, precision, aside=crossed)
+    precision, crossed = test.precision * ds, test is not TURN
+    distance, solved = _root(stretch, span, value, precision, aside=crossed)
     turned = task.metric.dot(solved.orbit, base.tangent, solved.tangent)
     if solved.orbit.equilibrium and turned < task.settings.step.turn:
         raise RejectedError("a special point of another branch was met")
     if not test.genuine(task, solved):
         return []
-    if test.name and _jumps(value, solved, [_at_distance(task, base, end) for end in span]):
+    if test.name and _jumps(value, solved, [stretch.at(end) for end in span]):
         return []
-    if not crossed and _shrinks(task, solved, *(_at_distance(task, base, end) for end in span)):
+    if not crossed and _shrinks(task, solved, *(stretch.at(end) for end in span)):
         return [Found(test.label, distance, solved)]  # it has no size for its error to be a part of
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
         return [Found(test.label, distance, solved, test.name)]
+    around = _Stretch(task, refined, {0.0: refined})
     for reach in (0.05 * ds, 0.5 * ds):
-        ends = [_at_distance(task, refined, side) for side in (-reach, reach)]
+        ends = [around.at(side) for side in (-reach, reach)]
         if value(ends[0]) * value(ends[1]) < 0:
-            solved = _root(task, refined, (-reach, reach), value, precision, aside=crossed)[1]
+            solved = _root(around, (-reach, reach), value, precision, aside=crossed)[1]
             return [Found(test.label, distance, solved, test.name)]
     raise RejectedError("a special point was not found again on a finer mesh")
 
@@ -188,7 +309,7 @@ def _jumps(value: Callable[[Solved], float], solved: Solved, ends: Sequence[Solv
     return abs(value(solved)) > JUMP * max(abs(value(end)) for end in ends)
 
 
-def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Found:
+def _named(stretch: _Stretch, turn: Found, new: Solved, ds: float) -> Found:
     """A turn of the branch by its name.
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
@@ -197,6 +318,7 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Fou
     branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp. Raises
     RejectedError where a multiplier passes 1 and comes back within the step: a fold and a branch point.
     """
+    task, base = stretch.task, stretch.base
     if codimension.picked(task) is not None:
         return replace(turn, label=codimension.turn(task, turn.solved, base, new))
     if _shrinks(task, turn.solved, base, new):
@@ -206,15 +328,16 @@ def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Fou
         return replace(turn, label=Label.DOUBLING)
     tests = (*task.method.passages, *task.method.branching)
     labels = [test.label for test in tests if test.touches(task, turn.solved, base, new)]
-    if labels and task.method.branching and task.unit < 2 and _passes(task, turn, base, ds):
+    if labels and task.method.branching and task.unit < 2 and _passes(stretch, turn, ds):
         raise RejectedError("the branch turns beside a branch point")
     return replace(turn, label=labels[0]) if labels else turn
 
 
-def _passes(task: Task, turn: Found, base: Solved, ds: float) -> bool:
+def _passes(stretch: _Stretch, turn: Found, ds: float) -> bool:
     """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
-    sides = [_at_distance(task, base, turn.distance + side * BESIDE * ds) for side in (-1, 1)]
-    return events.branching(task, sides[0]) * events.branching(task, sides[1]) < 0
+    sides = [stretch.at(turn.distance + side * BESIDE * ds) for side in (-1, 1)]
+    before, after = (events.branching(stretch.task, side) for side in sides)
+    return before * after < 0
 
 
 def _shrinks(task: Task, turn: Solved, *ends: Solved) -> bool:
@@ -231,10 +354,10 @@ def _accepted(task: Task, solved: Solved | Outcome) -> Solved:
     return solved
 
 
-def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, label: Label) -> Found:
+def _at_value(stretch: _Stretch, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
-    ends = (begin.distance, end.distance)
-    distance, near = _root(task, base, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))
+    task, ends = stretch.task, (begin.distance, end.distance)
+    distance, near = _root(stretch, ends, lambda s: _value(task, s) - value, 1e-4 * (ends[1] - ends[0]))
     parameter = near.orbit.parameter.copy()
     parameter[task.index] = value
     guess = replace(near.orbit, parameter=parameter)
@@ -243,8 +366,7 @@ def _at_value(task: Task, base: Solved, begin: Found, end: Found, value: float, 
 
 
 def _root(
-    task: Task,
-    base: Solved,
+    stretch: _Stretch,
     ends: tuple[float, float],
     test: Callable[[Solved], float],
     precision: float,
@@ -255,41 +377,29 @@ def _root(
 
     `aside` accepts a solution very near to it where there is none at the place itself.
     """
-    solutions: dict[float, Solved] = {}
 
     def value(distance: float) -> float:
-        solutions[distance] = _at_distance(task, base, distance)
-        return test(solutions[distance])
+        return test(stretch.at(distance))
 
     at_ends = [value(end) for end in ends]
     if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
         nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
-        return nearest, solutions[nearest]
+        return nearest, stretch.at(nearest)
     try:
-        root = optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
-        return root, solutions[root] if root in solutions else _at_distance(task, base, root)
+        root = scipy.optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+        return root, stretch.at(root)
     except _NoOrbitError as failed:
         if not aside:
             raise
-        return _aside(task, base, ends, failed)
+        return _aside(stretch, ends, failed)
 
 
-def _aside(
-    task: Task, base: Solved, ends: tuple[float, float], failed: _NoOrbitError
-) -> tuple[float, Solved]:
+def _aside(stretch: _Stretch, ends: tuple[float, float], failed: _NoOrbitError) -> tuple[float, Solved]:
     """Return the solution nearest to where there was none; raise what failed if there is none near."""
-    stretch = (ends[1] - ends[0]) * (1 if base.orbit.equilibrium else ORBITS)
+    length = (ends[1] - ends[0]) * (1 if stretch.base.orbit.equilibrium else ORBITS)
     for part in ASIDE:
-        distance = failed.distance + part * stretch
+        distance = failed.distance + part * length
         if min(ends) <= distance <= max(ends):
             with contextlib.suppress(_NoOrbitError):
-                return distance, _at_distance(task, base, distance)
+                return distance, stretch.at(distance)
     raise failed
-
-
-def _at_distance(task: Task, base: Solved, distance: float) -> Solved:
-    guess = predict(task, base.orbit, base.tangent, distance)
-    solved = on_plane(task, guess, Plane(base.orbit, base.tangent, distance, task.metric, task.index))
-    if isinstance(solved, Outcome):
-        raise _NoOrbitError(solved.value, distance)
-    return solved

@@ -15,6 +15,9 @@ from periodic.system import System
 CANDIDATES = 3
 """How many of the highest samples that stand out from their neighbours are looked at more closely."""
 
+RISE = 2.0
+"""By how much more than it exceeds its neighbours such a sample may be exceeded by what lies between them."""
+
 ZOOMS = 2
 SAMPLES = 9
 
@@ -65,28 +68,31 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
     count = values.shape[1]
     both = np.concatenate([-values, values], axis=1)
     both[np.repeat(_short(orbit), orbit.mesh.scheme.ncol)] = OUT
-    index = _candidates(both)
-    row = np.repeat(np.arange(2 * count), CANDIDATES)
+    row, index = _candidates(both)
     signs = np.where(row < count, -1.0, 1.0)
     gaps = np.diff(tau, append=tau[0] + orbit.mesh.period)
     half = np.maximum(gaps, np.roll(gaps, 1))
-    best, centre, radius = both[index, row], tau[index], half[index]
-    for _ in range(ZOOMS):
-        best, centre, radius = _zoom(system, orbit, signs, row % count, best, centre, radius)
-    best, centre = best.reshape(2 * count, CANDIDATES), centre.reshape(2 * count, CANDIDATES)
-    each, top = np.arange(2 * count), best.argmax(axis=1)
-    value, phase = best[each, top], centre[each, top]
+    best, phase = _zoomed(system, orbit, signs, row % count, both[index, row], tau[index], half[index])
+    order = np.lexsort((best, row))
+    top = order[np.searchsorted(row[order], np.arange(2 * count), side="right") - 1]
+    value, phase = best[top], phase[top]
     return Extremes(-value[:count], value[count:], phase[:count], phase[count:])
 
 
-def _candidates(values: Array) -> NDArray[np.int_]:
-    """The CANDIDATES highest local maxima of each column of samples around the period, column by column."""
-    peaks = (values >= np.roll(values, 1, axis=0)) & (values >= np.roll(values, -1, axis=0))
-    ranked = np.argsort(np.where(peaks, values, -np.inf), axis=0)[-CANDIDATES:]
-    return ranked.T.ravel()
+def _candidates(values: Array) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Columns and indices, column by column, of the CANDIDATES highest local maxima in samples around the
+    period, without those that cannot become the highest.
+    """
+    before, after = np.roll(values, 1, axis=0), np.roll(values, -1, axis=0)
+    peaks = np.where((values >= before) & (values >= after), values, -np.inf)
+    ranked = np.argsort(peaks, axis=0)[-CANDIDATES:]
+    highest = np.take_along_axis(peaks, ranked, axis=0)
+    rise = highest - np.take_along_axis(np.minimum(before, after), ranked, axis=0)
+    column, rank = np.nonzero((highest + RISE * rise >= highest[-1]).T)
+    return column, ranked[rank, column]
 
 
-def _zoom(
+def _zoomed(
     system: System,
     orbit: Orbit,
     signs: Array,
@@ -94,19 +100,24 @@ def _zoom(
     best: Array,
     centre: Array,
     radius: Array,
-) -> tuple[Array, Array, Array]:
-    """Look for the maximum of signs * output on a finer window around each centre, then at the vertex of
-    the parabola through the largest sample and its neighbours."""
-    grid = centre[:, None] + radius[:, None] * np.linspace(-1, 1, SAMPLES)
-    chosen = _signed(system, orbit, signs, column, grid)
-    each, peak = np.arange(len(signs)), chosen.argmax(axis=1)
-    vertex = grid[each, peak] + radius * 2 / (SAMPLES - 1) * _offset(chosen, peak)
-    grid = np.column_stack([grid[each, peak], vertex, centre])
-    chosen = np.column_stack(
-        [chosen[each, peak], _signed(system, orbit, signs, column, vertex[:, None])[:, 0], best]
-    )
-    peak = chosen.argmax(axis=1)
-    return chosen[each, peak], grid[each, peak], radius * 2 / (SAMPLES - 1)
+) -> tuple[Array, Array]:
+    """Look for the maximum of signs * output on finer and finer windows around each centre, the next at the
+    vertex of the parabola through the largest sample and its neighbours; return it and its phase.
+    """
+    each, phase = np.arange(len(signs)), centre
+    for _ in range(ZOOMS):
+        grid = centre[:, None] + radius[:, None] * np.linspace(-1, 1, SAMPLES)
+        chosen = _signed(system, orbit, signs, column, grid)
+        peak = chosen.argmax(axis=1)
+        best, phase = _better(best, phase, chosen[each, peak], grid[each, peak])
+        radius = radius * 2 / (SAMPLES - 1)
+        centre = grid[each, peak] + radius * _offset(chosen, peak)
+    return _better(best, phase, _signed(system, orbit, signs, column, centre[:, None])[:, 0], centre)
+
+
+def _better(best: Array, phase: Array, value: Array, at: Array) -> tuple[Array, Array]:
+    """The larger of two values, and its phase."""
+    return np.maximum(best, value), np.where(value > best, at, phase)
 
 
 def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_], grid: Array) -> Array:

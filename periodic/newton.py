@@ -47,15 +47,22 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonSettings:
-    """tolerance: largest relative increment of the last step, which is still taken."""
+    """tolerance: largest relative increment of the last step, which is still taken.
+
+    close: increment, in tolerances, up to which a linearisation has the multipliers and the tangent of the
+    orbit that it leads to; they take another one else.
+    """
 
     tolerance: float = 1e-8
+    close: float = 1e-4
     max_iterations: int = 12
     max_halvings: int = 6
 
     def __post_init__(self) -> None:
         if not 0 < self.tolerance < 1:
             raise ValueError(f"Newton tolerance is {self.tolerance}; it must lie between 0 and 1")
+        if not 0 <= self.close <= 1:
+            raise ValueError(f"close is {self.close}; it must lie from 0 to 1")
         if self.max_iterations < 1:
             raise ValueError(f"max_iterations is {self.max_iterations}; it must be at least 1")
 
@@ -143,8 +150,8 @@ def correct(
         n = orbit.nodes.shape[1]
         empty = np.full((1, n, n), np.nan)
         return Correction(orbit, outcome, iterations, np.inf, np.inf, empty, None)
-    if outcome is Outcome.CONVERGED:
-        last = increment(system, orbit, free, closures)  # multipliers and tangent of the final orbit
+    if outcome is Outcome.CONVERGED and step.length > settings.close * settings.tolerance:
+        last = increment(system, orbit, free, closures)
         if isinstance(last, Outcome):
             outcome = last
         else:
@@ -232,7 +239,8 @@ def sizes(
 def _effect(condensed: bordered.Condensed) -> Array:
     """How much the states change with each of y over a period, about; shape (q,)."""
     n = condensed.step.shape[1]
-    return len(np.unique(condensed.origin)) * np.abs(condensed.step[:, :, 1 + n :]).max(axis=(0, 1))
+    intervals = np.count_nonzero(np.bincount(condensed.origin))
+    return intervals * np.abs(condensed.step[:, :, 1 + n :]).max(axis=(0, 1), initial=0.0)
 
 
 def moved(system: System, algebraic: Array, increment: Array) -> Array:

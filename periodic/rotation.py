@@ -57,13 +57,39 @@ class Pair:
         return min(members, key=lambda other: abs(self.turn(other)) + abs(other.turned - self.turned))
 
 
-def is_resolved(before: Correction, after: Correction) -> bool:
-    """Whether two orbits' lightly damped pairs of multipliers are close enough, seen from +1."""
-    for a, b in _matched(before, after):
-        light = min(a.modulus, b.modulus) > LIGHT
-        if light and abs(a.turn(b)) > max(PART * min(a.distance, b.distance), LEAST):
-            return False
-    return True
+@dataclass(frozen=True)
+class Turn:
+    """How far multipliers turn in a step, where 1 is the most that they may, and whether towards +1.
+
+    On the way towards +1 the most shrinks with the distance.
+    """
+
+    part: float
+    nearing: bool = False
+
+    @property
+    def strain(self) -> float:
+        """The same, about linear in the step's length."""
+        return self.part * (1 + PART) / self._nearer if self.nearing else self.part
+
+    @property
+    def ahead(self) -> float:
+        """What the strain of a step as long would be next."""
+        return self.strain * self._nearer if self.nearing else self.part
+
+    @property
+    def _nearer(self) -> float:
+        return 1 + PART * self.part
+
+
+def turned(before: Correction, after: Correction) -> Turn:
+    """How far lightly damped pairs of multipliers turn between two orbits."""
+    turns = [
+        Turn(abs(a.turn(b)) / max(PART * min(a.distance, b.distance), LEAST), b.distance < a.distance)
+        for a, b in _matched(before, after)
+        if min(a.modulus, b.modulus) > LIGHT
+    ]
+    return max(turns, key=lambda turn: turn.part, default=Turn(0.0))
 
 
 def passes(before: Correction, after: Correction, sign: int) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from periodic.mesh import uniform
 from periodic.orbit import FORCED, Orbit
@@ -39,7 +39,7 @@ def sampled(phase: Array, state: Array, algebraic: Array, parameter: Array) -> O
         place = phase[0] + np.mod(tau - phase[0], mesh.period)
         if values.shape[1] == 0:
             return np.zeros((*tau.shape, 0))
-        return np.asarray(PchipInterpolator(phase, values, axis=0)(place))
+        return np.asarray(scipy.interpolate.PchipInterpolator(phase, values, axis=0)(place))
 
     nodes = at(mesh.nodes(np.zeros(0)), state)
     nodes[-1] = nodes[0]

@@ -12,8 +12,8 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 Array = NDArray[np.float64]
 
@@ -40,8 +40,8 @@ class Scheme:
     def points(self) -> Array:
         """Collocation points c, shape (ncol,)."""
         if self.family is Family.GAUSS:
-            return (special.roots_legendre(self.ncol)[0] + 1) / 2
-        interior = special.roots_jacobi(self.ncol - 1, 1, 0)[0]
+            return (scipy.special.roots_legendre(self.ncol)[0] + 1) / 2
+        interior = scipy.special.roots_jacobi(self.ncol - 1, 1, 0)[0]
         return np.append((interior + 1) / 2, 1.0)
 
     @cached_property

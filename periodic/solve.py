@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from scipy import optimize
@@ -14,7 +15,7 @@ from periodic.anchors import Crossing
 from periodic.closure import Condition, Direction, Metric, PhaseCondition, Plane, closures
 from periodic.mesh import Mesh
 from periodic.methods.protocol import Method
-from periodic.newton import Correction, Outcome, moved
+from periodic.newton import Correction, NewtonSettings, Outcome, at_fixed_phase, moved
 from periodic.orbit import FORCED, Orbit
 from periodic.scheme import Array
 from periodic.settings import Settings
@@ -74,17 +75,30 @@ class Task:
 
 @dataclass(frozen=True)
 class Solved:
-    """An orbit with its tangent, its error estimate and the crossings its mesh should be tied to."""
+    """An orbit with its tangent; error estimate and wanted crossings cost as much again, and are made when
+    first asked for.
+    """
 
+    task: Task = field(repr=False)
     correction: Correction
     tangent: Direction
-    error: ErrorEstimate
-    wanted: list[Crossing]
 
     @property
     def orbit(self) -> Orbit:
         """The orbit itself."""
         return self.correction.orbit
+
+    @cached_property
+    def error(self) -> ErrorEstimate:
+        """The errors of orbit and multipliers."""
+        task = self.task
+        across = Plane(self.orbit, self.tangent, 0.0, task.metric, task.index)
+        return task.method.estimate(task, self.correction, across)
+
+    @cached_property
+    def wanted(self) -> list[Crossing]:
+        """The crossings that the mesh should be tied to."""
+        return self.task.method.wanted(self.task, self.orbit, self.error)
 
     @property
     def anchored(self) -> bool:
@@ -106,10 +120,15 @@ def parameter_direction(orbit: Orbit, metric: Metric, others: int = 0) -> Direct
     )
 
 
-def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
-    """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
+def on_plane(
+    task: Task, guess: Orbit, plane: Plane, newton: NewtonSettings | None = None
+) -> Solved | Outcome:
+    """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side.
+
+    newton: settings other than the task's.
+    """
     closing = [*closures(task.conditions, task.others, plane.origin), plane]
-    result = task.method.correct(task.system, guess, task.free, closing, task.settings.newton)
+    result = task.method.correct(task.system, guess, task.free, closing, newton or task.settings.newton)
     task.work.iterations += result.iterations
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
@@ -119,10 +138,7 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     assert tangent is not None
     length = np.sqrt(task.metric.dot(result.orbit, tangent, tangent))
     sign = np.sign(task.metric.dot(result.orbit, tangent, plane.direction)) or 1.0
-    tangent = tangent.scaled(sign / length)
-    origin = Plane(result.orbit, tangent, 0.0, task.metric, task.index)
-    error = task.method.estimate(task, result, origin)
-    return Solved(result, tangent, error, task.method.wanted(task, result.orbit, error))
+    return Solved(task, result, tangent.scaled(sign / length))
 
 
 def at_parameter(task: Task, guess: Orbit, sign: float) -> Solved | Outcome:
@@ -268,6 +284,33 @@ def on_mesh(direction: Direction, old: Orbit, new: Orbit, later: float = 0.0) ->
 def predict(task: Task, orbit: Orbit, direction: Direction, ds: float) -> Orbit:
     """Return the orbit moved by ds along a direction."""
     return along(task.system, task.free, orbit, direction, ds)
+
+
+def cubic(task: Task, a: Solved, b: Solved, distance: float, place: float) -> Orbit:
+    """Return the cubic through two solutions on one mesh and their tangents, at `place` from the first.
+
+    Both are distances across the first one's plane; `distance` is the second's.
+    """
+    plane = Plane(a.orbit, a.tangent, 0.0, task.metric, task.index)
+    theta = place / distance
+    chord = difference(task, a.orbit, b.orbit).scaled(theta**2 * (3 - 2 * theta))
+    begin = a.tangent.scaled(distance * theta * (1 - theta) ** 2 / plane.rate(a.tangent))
+    end = b.tangent.scaled(distance * theta**2 * (theta - 1) / plane.rate(b.tangent))
+    return along(task.system, task.free, a.orbit, chord + begin + end, 1.0)
+
+
+def difference(task: Task, a: Orbit, b: Orbit) -> Direction:
+    """The way from a to b, on one mesh."""
+    nodes, phases = b.nodes - a.nodes, b.phases - a.phases
+    return Direction(
+        nodes,
+        b.stages - a.stages,
+        b.algebraic - a.algebraic,
+        phases,
+        at_fixed_phase(a, nodes, phases),
+        float(b.parameter[task.index] - a.parameter[task.index]),
+        b.parameter[list(task.others)] - a.parameter[list(task.others)],
+    )
 
 
 def along(system: System, free: tuple[int, ...], orbit: Orbit, direction: Direction, ds: float) -> Orbit:

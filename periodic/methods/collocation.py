@@ -17,6 +17,7 @@ from periodic.mesh import Mesh, uniform
 from periodic.newton import Correction, NewtonSettings, correct
 from periodic.orbit import Orbit, at_rest, transfer
 from periodic.relax import relax
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import DEEPEST, MeshSettings
 from periodic.system import System
@@ -94,12 +95,17 @@ class Collocation:
         old, shortest = solved.orbit, task.settings.mesh.shortest
         for chosen in _choices(task, solved):
             tied, phases = anchors.placed(task.system, old, chosen)
-            yield redistribute(old, wanted_ntst(task, solved), tied, phases, shortest), phases
+            yield (
+                redistribute(old, wanted_ntst(task, solved.orbit, solved.error), tied, phases, shortest),
+                phases,
+            )
 
     def mesh_for(self, task: Task, new: Solved) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present anchors."""
         orbit, shortest = new.orbit, task.settings.mesh.shortest
-        return redistribute(orbit, wanted_ntst(task, new), orbit.mesh.anchors, orbit.phases, shortest)
+        return redistribute(
+            orbit, wanted_ntst(task, orbit, new.error), orbit.mesh.anchors, orbit.phases, shortest
+        )
 
     def guesses(self, task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its anchors a little before their kinks, where they are well defined.
@@ -111,9 +117,9 @@ class Collocation:
             shifted = phases + aside * task.settings.mesh.tolerance * deep
             yield relax(task.system, transfer(old, mesh, shifted))
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base, new)
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far lightly damped pairs of multipliers turn."""
+        return rotation.turned(base, new)
 
 
 def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:
@@ -125,10 +131,10 @@ def _choices(task: Task, solved: Solved) -> Iterator[list[Crossing]]:
         yield anchors.wanted(task.system, solved.orbit, shallower)
 
 
-def wanted_ntst(task: Task, solved: Solved) -> int:
+def wanted_ntst(task: Task, orbit: Orbit, error: ErrorEstimate) -> int:
     """The number of intervals that brings the error estimate to its aim."""
     mesh = task.settings.mesh
     order = mesh.scheme.ncol + 1
-    ratio = solved.error.worst / (AIM * mesh.tolerance) if np.isfinite(solved.error.worst) else 4.0**order
+    ratio = error.worst / (AIM * mesh.tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
-    return int(np.clip(np.ceil(factor * solved.orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))
+    return int(np.clip(np.ceil(factor * orbit.mesh.ntst), mesh.ntst_min, mesh.ntst_max))

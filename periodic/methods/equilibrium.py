@@ -20,6 +20,7 @@ from periodic.equilibrium import increment
 from periodic.mesh import Mesh, uniform
 from periodic.newton import Correction, NewtonSettings, Outcome, correct
 from periodic.orbit import FORCED, Orbit, constant
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
 from periodic.system import System
@@ -102,9 +103,9 @@ class Equilibrium:
         """Yield the equilibrium itself."""
         yield old
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
+    def turned(self, base: Correction, new: Correction) -> Turn:
         """Nothing is in tune with anything."""
-        return True
+        return Turn(0.0)
 
 
 def _refuse_excitation(system: System, state: Array, algebraic: Array, parameter: Array) -> None:

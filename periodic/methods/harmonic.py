@@ -18,6 +18,7 @@ from periodic.hill import Floquet, floquet
 from periodic.mesh import Mesh
 from periodic.newton import Correction, NewtonSettings, Outcome
 from periodic.orbit import FORCED, Orbit, at_rest
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
 from periodic.solve import on_mesh
@@ -187,9 +188,9 @@ class HarmonicBalance:
         """Yield the series cut or filled up with zeros, its unknowns solved for."""
         yield _with_unknowns(task.system, series(old, mesh))
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base, new)
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far lightly damped pairs of multipliers turn."""
+        return rotation.turned(base, new)
 
 
 def needed(orbit: FourierOrbit, error: float, goal: float) -> int:

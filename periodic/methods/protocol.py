@@ -15,6 +15,7 @@ from periodic.closure import Closure, Plane
 from periodic.mesh import Mesh
 from periodic.newton import Correction, NewtonSettings
 from periodic.orbit import Orbit
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
 from periodic.system import System
@@ -75,5 +76,5 @@ class Method(Protocol):
     def guesses(self, task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield guesses for an orbit carried to another mesh, the best first."""
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether a step between two orbits is short enough for their multipliers to be followed."""
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far multipliers turn between two orbits."""

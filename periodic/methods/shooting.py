@@ -22,6 +22,7 @@ from periodic.mesh import Mesh, uniform
 from periodic.methods.collocation import wanted_ntst
 from periodic.newton import Condense, Correction, NewtonSettings, correct, linear_step
 from periodic.orbit import Orbit, at_rest, transfer
+from periodic.rotation import Turn
 from periodic.scheme import Array
 from periodic.settings import MeshSettings
 from periodic.system import Flowing, System
@@ -116,17 +117,16 @@ class Shooting:
 
     def mesh_for(self, task: Task, new: Solved) -> Mesh:
         """Return the mesh that interpolates an orbit to its tolerance."""
-        interpolated = replace(new, error=ErrorEstimate(new.error.orbit, 0.0))  # no mesh betters multipliers
-        ntst = wanted_ntst(task, interpolated)
+        ntst = wanted_ntst(task, new.orbit, replace(new.error, multiplier=0.0))  # no mesh betters multipliers
         return redistribute(new.orbit, ntst, (), NO_ANCHORS, task.settings.mesh.shortest)
 
     def guesses(self, task: Task, old: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit interpolated onto the mesh."""
         yield transfer(old, mesh, phases)
 
-    def resolved(self, base: Correction, new: Correction) -> bool:
-        """Whether lightly damped pairs of multipliers are close enough, seen from +1."""
-        return rotation.is_resolved(base, new)
+    def turned(self, base: Correction, new: Correction) -> Turn:
+        """How far lightly damped pairs of multipliers turn."""
+        return rotation.turned(base, new)
 
     def _check(self, system: System, settings: MeshSettings) -> None:
         _flowing(system)
