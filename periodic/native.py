@@ -42,11 +42,12 @@ class Routines:
     def condense(self, orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array, Array, float]:
         """Return step, stages, algebraic and residual of the equations linearised at an orbit.
 
-        Raises as `periodic.collocation.condense`.
+        Raises as `periodic.collocation.condense`, and ValueError for derivatives of a wrong shape.
         """
         (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
         k, p = len(orbit.phases), line.d_parameter.shape[2]
         w = 1 + n + k + p
+        _check(line, count * ncol, n, m)
         step, stages = np.empty((count, n, w)), np.empty((count, ncol, n, w))
         algebraic, residual = np.empty((count, ncol, m, w + n)), np.empty(1)
         room = (ncol * n + m) * (w + n) + m * (m + w + n) + ncol * n * (ncol * n + w + 1) + 3 * ncol**2
@@ -105,6 +106,15 @@ def _source() -> str:
 @cache
 def _routines(library: ctypes.CDLL) -> Routines:
     return Routines(library)
+
+
+def _check(line: LinearisationLike, points: int, n: int, m: int) -> None:
+    """Refuse what C would read past the end of."""
+    lengths = {"residual": (), "d_rate": (n,), "d_state": (n,), "d_algebraic": (m,), "d_phase": ()}
+    for name, tail in {**lengths, "d_parameter": line.d_parameter.shape[2:]}.items():
+        shape, wanted = getattr(line, name).shape, (points, n + m, *tail)
+        if shape != wanted:
+            raise ValueError(f"{name} of the linearised equations has shape {shape}; it must be {wanted}")
 
 
 def _given(*arrays: Array) -> list[ctypes.Array[ctypes.c_char]]:

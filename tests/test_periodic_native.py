@@ -187,6 +187,14 @@ def test_failures_are_named(spoil: str, error: type[Exception], compiled: bool) 
         condense(system, orbit_of(system, Scheme(), 1), FREE)
 
 
+def test_wrong_shape_is_refused() -> None:
+    """Assert that C is not given equations of fewer rows than there are states."""
+    system = STRUCTURES["disc"]
+    orbit = orbit_of(replace(system, n=2), Scheme(), 1)
+    with pytest.raises(ValueError, match=r"^residual of the .* has shape \(20, 4\); it must be \(20, 3\)$"):
+        condense(system, orbit, FREE)
+
+
 @cache
 def both(name: str) -> tuple[sym.CompiledSystem, sym.CompiledSystem]:
     """A scene of the package, in NumPy and in C."""
