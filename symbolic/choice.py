@@ -34,6 +34,7 @@ VARIABLE = "ORBITRACE_KERNELS"
 """The environment's choice, where the program makes none."""
 
 _Address = ctypes.c_char * 0
+_FLOAT = np.dtype(float)
 
 
 class Kernels(Enum):
@@ -73,10 +74,6 @@ class Layout:
 
     tail: tuple[int, ...]
     shared: bool = False
-
-    def shape(self, points: int) -> tuple[int, ...]:
-        """The shape for a number of points."""
-        return self.tail if self.shared else (points, *self.tail)
 
 
 @dataclass(eq=False)
@@ -142,10 +139,10 @@ class ChosenKernel:
         points, last = len(arrays[-1]), len(arrays) - self.results
         addresses = []
         for k, (array, layout) in enumerate(zip(arrays, self.layouts, strict=True)):
-            if k < last:
-                array = np.ascontiguousarray(array, dtype=float)
-                array = array if array.flags.writeable else array.copy()
-            if array.shape != layout.shape(points) or array.dtype != float or not array.flags.carray:
+            ready = array.dtype == _FLOAT and array.flags.carray
+            if not ready and k < last:
+                array, ready = np.array(array, dtype=float, order="C"), True
+            if not ready or array.shape != (layout.tail if layout.shared else (points, *layout.tail)):
                 return None
             addresses.append(_Address.from_buffer(array.data))
         return addresses
