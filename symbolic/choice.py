@@ -46,12 +46,18 @@ class Kernels(Enum):
 
 
 def chosen(kernels: Kernels | str | None) -> Kernels:
-    """Return the choice made, by default the environment's ORBITRACE_KERNELS, by default AUTO."""
+    """Return the choice made, by default the environment's ORBITRACE_KERNELS, by default AUTO.
+
+    Raises ValueError for another word, symbolic.native.CompilerError for C without a compiler.
+    """
     where, value = ("kernels", kernels) if kernels is not None else (VARIABLE, os.environ.get(VARIABLE))
     try:
-        return Kernels(value or "auto")
+        found = Kernels(value or "auto")
     except ValueError:
         raise ValueError(f"{where} is {value!r}; it must be auto, numpy or c") from None
+    if found is Kernels.C and native.compiler() is None:
+        raise native.CompilerError(native.NONE)
+    return found
 
 
 def shared(source: str, kernels: Kernels) -> ctypes.CDLL | None:

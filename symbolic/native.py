@@ -32,6 +32,9 @@ KEPT = 500
 LONGEST = 120.0
 """Seconds after which the compiler is stopped."""
 
+NONE = "no C compiler was found; install one, or set CC to its command"
+"""What is said without a compiler."""
+
 _log = logging.getLogger(__name__)
 _loaded: dict[str, ctypes.CDLL] = {}
 _failed: set[str] = set()
@@ -161,7 +164,7 @@ def _made(source: str) -> ctypes.CDLL:
     """Compile in a directory of our own, load from there, and keep the file for later runs."""
     known, where = compiler(), directory()
     if known is None:
-        raise CompilerError("no C compiler was found; install one, or set CC to its command")
+        raise CompilerError(NONE)
     if where is not None and not os.access(where, os.W_OK):
         where = None
     command, *options = known[0]

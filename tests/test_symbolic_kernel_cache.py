@@ -17,6 +17,9 @@ import pytest
 from models import Array, duffing_parts
 
 import symbolic as sym
+from reports.build import build
+from reports.errors import InputError
+from reports.scene import load
 from symbolic import choice, kernel, native
 from symbolic.choice import ChosenKernel, Kernels
 
@@ -192,6 +195,22 @@ def test_without_a_compiler_numpy_runs(tmp_path: Path, monkeypatch: pytest.Monke
     assert not run.compiled
     with pytest.raises(native.CompilerError, match="^no C compiler was found; install one, or set CC"):
         made(Kernels.C)
+    with pytest.raises(native.CompilerError, match="^no C compiler was found"):
+        sym.compile(sym.combine(duffing_parts()), kernels="c")
+
+
+def test_command_line_names_the_variable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a scene is refused in one sentence for a wrong word, and for C without a compiler."""
+    monkeypatch.setenv("ORBITRACE_KERNELS", "fortran")
+    wrong = '^ORBITRACE_KERNELS is "fortran"; it must be "auto", "numpy" or "c"$'
+    with pytest.raises(InputError, match=wrong):
+        build(load("duffing"))
+    monkeypatch.setenv("ORBITRACE_KERNELS", "c")
+    no_compiler(monkeypatch, tmp_path)
+    with pytest.raises(
+        InputError, match='^ORBITRACE_KERNELS is "c"; it needs a C compiler, and none was found$'
+    ):
+        build(load("duffing"))
 
 
 def test_compiler_that_fails(
