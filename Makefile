@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
-.PHONY: help run test long lint types wheel clean
+.PHONY: help run test long bench lint types wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -20,6 +20,9 @@ test: $(VENV)/.installed-dev ## Run the tests
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(BIN)/python -m pytest -m long
+
+bench: $(VENV)/.installed ## Time the equations and a branch, in NumPy and in C
+	$(BIN)/python -m reports.speed
 
 lint: $(VENV)/.installed-dev ## Check style and formatting
 	$(BIN)/ruff check .

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.closure import Row
+from periodic.native import Routines
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 
@@ -23,7 +24,7 @@ class Condensed(Protocol):
 
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
-    orbit is the one linearised at, residual the largest of its equations.
+    orbit is the one linearised at, residual the largest of its equations; compiled chains in C.
     """
 
     @property
@@ -34,6 +35,8 @@ class Condensed(Protocol):
     def origin(self) -> NDArray[np.int_]: ...
     @property
     def residual(self) -> float: ...
+    @property
+    def compiled(self) -> Routines | None: ...
 
     def reduced(self, row: Row) -> Row:
         """Return a closure in mesh-point states and y alone, its stages eliminated."""
@@ -67,6 +70,8 @@ SMALL = 16
 
 def chain(condensed: Condensed) -> Array:
     """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
+    if condensed.compiled is not None:
+        return condensed.compiled.chain(condensed.step)
     count, n, width = condensed.step.shape
     first = np.zeros((1, n, width))
     first[0, :, 1 : 1 + n] = np.eye(n)

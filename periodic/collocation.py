@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from periodic.closure import Row
 from periodic.kinematic import kinematic, solve
+from periodic.native import Routines, routines
 from periodic.orbit import Orbit
 from periodic.scheme import Array
-from periodic.system import System
+from periodic.system import LinearisationLike, System
 
 BEFORE = 1e-9
 """How far before a kink (rad) the equations are evaluated where a collocation point falls on it."""
@@ -37,6 +38,7 @@ class Condensed:
     stages: Array
     algebraic: Array
     residual: float
+    compiled: Routines | None = None
 
     @property
     def origin(self) -> NDArray[np.int_]:
@@ -55,6 +57,8 @@ class Condensed:
 
     def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
         """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
+        if self.compiled is not None:
+            return self.compiled.recover(self, nodes, outer, constant)
         orbit, (count, ncol, n) = self.orbit, self.orbit.stages.shape
         width, q = self.stages.shape[3], len(outer)
         given = np.empty((count, width, 1))
@@ -76,6 +80,9 @@ def condense(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
     matrix is singular.
     """
+    compiled = routines(system)
+    if compiled is not None:
+        return Condensed(orbit, *compiled.condense(orbit, _evaluated(system, orbit, free)), compiled)
     rows, residual = linearised(system, orbit, free)
     count, ncol, n = orbit.stages.shape
     reduced, algebraic = eliminate(rows, n)
@@ -134,10 +141,18 @@ class Rows:
 
 def linearised(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Rows, float]:
     """Linearise at the collocation points of an orbit; also the largest residual."""
+    line = _evaluated(system, orbit, free)
+    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
+    columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
+    return finite_rows(np.concatenate(columns, axis=2), line.d_algebraic)
+
+
+def _evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> LinearisationLike:
+    """Residual and derivatives at the collocation points."""
     count, ncol, n = orbit.stages.shape
     rate = orbit.knot_rates[:, 1:]
     tau, stages = _before_kinks(orbit, rate)
-    line = system.linearise(
+    return system.linearise(
         rate.reshape(-1, n),
         stages.reshape(-1, n),
         orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
@@ -145,9 +160,6 @@ def linearised(system: System, orbit: Orbit, free: tuple[int, ...]) -> tuple[Row
         orbit.parameter,
         free,
     )
-    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
-    columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
-    return finite_rows(np.concatenate(columns, axis=2), line.d_algebraic)
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:

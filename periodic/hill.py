@@ -78,9 +78,10 @@ class Floquet:
         step = scipy.linalg.expm(self.rate * self.period / orbit.mesh.ntst)
         growth = np.empty_like(shapes)
         growth[0] = np.linalg.inv(shapes[0])
-        for j in range(orbit.mesh.ntst):
-            growth[j + 1] = step @ growth[j]
-        fundamental = (shapes @ growth).real
+        with np.errstate(over="ignore", invalid="ignore"):
+            for j in range(orbit.mesh.ntst):
+                growth[j + 1] = step @ growth[j]
+            fundamental = (shapes @ growth).real
         if not np.isfinite(fundamental).all():
             raise np.linalg.LinAlgError("the vectors at the first mesh point are dependent")
         return fundamental

@@ -35,6 +35,7 @@ class Condensed:
     stages: Array
     algebraic: Array
     residual: float
+    compiled = None
 
     def reduced(self, row: Row) -> Row:
         """Return a closure in mesh-point states and y alone, its stages eliminated."""

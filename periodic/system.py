@@ -9,6 +9,7 @@ hand-written NumPy class is as good as a compiled model.
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Sequence
 from typing import Protocol, cast
 
@@ -189,6 +190,18 @@ class Flowing(System, Protocol):
         algebraic (m,) is a guess of the unknowns at phase[0]; `free` are the parameters to differentiate in;
         tolerance is relative and absolute. Raises ArithmeticError where the integration fails.
         """
+
+
+class Compiling(System, Protocol):
+    """A system with a C compiler, which then serves the engine too: its small systems are solved in C."""
+
+    def library(self, source: str) -> ctypes.CDLL | None:
+        """The loaded library of a C source, the same one each time; None where NumPy is to do."""
+
+
+def compiling(system: System) -> Compiling | None:
+    """Return the system as one with a compiler, if it has one."""
+    return cast(Compiling, system) if hasattr(system, "library") else None
 
 
 def index_of(system: System, parameter: str) -> int:

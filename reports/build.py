@@ -3,16 +3,36 @@
 from __future__ import annotations
 
 import math
+import os
 
 import symbolic as sym
+from reports.errors import InputError, listed, refused, shown
 from reports.schema import Discs, DiscScene, Film, Oscillator, OscillatorScene, Scene
 from reports.view import RPM
+from symbolic.choice import VARIABLE, chosen
+from symbolic.native import CompilerError
 
 
 def build(scene: Scene) -> sym.CompiledSystem:
-    """Return the system of a scene. Its states, unknowns and outputs are those that its parts need."""
+    """Return the system of a scene. Its states, unknowns and outputs are those that its parts need.
+
+    Raises InputError where the environment asks for kernels that cannot be.
+    """
     model = disc_model(scene) if isinstance(scene, DiscScene) else oscillator_model(scene)
-    return sym.compile(model)
+    return sym.compile(model, _kernels())
+
+
+def _kernels() -> sym.Kernels:
+    """The environment's choice of a back end."""
+    given = os.environ.get(VARIABLE)
+    try:
+        return chosen(given)
+    except CompilerError:
+        raise InputError(
+            VARIABLE, f"is {shown(given)}", "it needs a C compiler, and none was found"
+        ) from None
+    except ValueError:
+        raise refused(VARIABLE, given, listed([shown(k.value) for k in sym.Kernels])) from None
 
 
 def disc_model(scene: DiscScene) -> sym.Model:

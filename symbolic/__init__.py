@@ -1,6 +1,7 @@
 """What the equations are: coordinates, parameters, parts, models, and their compilation to a System."""
 
 from symbolic import functions
+from symbolic.choice import Kernels
 from symbolic.compile import CompiledSystem, compile
 from symbolic.model import Model, Part, combine
 from symbolic.parts.cavitation import CavitatingFilm
@@ -49,6 +50,7 @@ __all__ = [
     "HamrockDowsonThickness",
     "HarmonicForce",
     "Hertz",
+    "Kernels",
     "Mass",
     "Model",
     "Parameter",

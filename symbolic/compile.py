@@ -7,6 +7,7 @@ Residual rows, with x the scaled states, z the algebraic unknowns and ' = d/dtau
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -17,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symbolic.assembly import Assembly
-from symbolic.kernel import batch, build, points, vector
+from symbolic.choice import Kernels, chosen, shared
+from symbolic.kernel import Argument, batch, build, points, vector
 from symbolic.model import Model, Part
 from symbolic.parts.contact import Junction
 from symbolic.second import Gradient, Symbols, contraction
@@ -78,8 +80,10 @@ class CompiledSystem:
     outputs: tuple[Variable, ...]
     switches: tuple[SwitchInfo, ...]
     expressions: Expressions = field(repr=False)
+    kernels: Kernels = Kernels.NUMPY
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
     _gradients: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, repr=False)
+    _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, repr=False)
 
     @property
     def nominal(self) -> Array:
@@ -124,7 +128,9 @@ class CompiledSystem:
     def curvature(self) -> Callable[..., Gradient]:
         """Contracted second derivatives of the residual: see `symbolic.second.contraction`."""
         e = self.expressions
-        return contraction(Symbols(e.rate, e.state, e.algebraic, e.phase, e.parameter), e.residual)
+        return contraction(
+            Symbols(e.rate, e.state, e.algebraic, e.phase, e.parameter), e.residual, self.kernels
+        )
 
     def move(self, algebraic: Array, increment: Array) -> Array:
         """Return where Newton increments take the unknowns, both of shape (N, m)."""
@@ -180,7 +186,7 @@ class CompiledSystem:
         return np.array(state).ravel(), np.array(algebraic).ravel()
 
     @cached_property
-    def _arguments(self) -> list:
+    def _arguments(self) -> list[Argument]:
         e = self.expressions
         return [
             batch(e.rate, "rate"),
@@ -190,30 +196,39 @@ class CompiledSystem:
             vector(e.parameter, "parameter"),
         ]
 
+    def library(self, source: str) -> ctypes.CDLL | None:
+        """Return the loaded library of a C source that serves every system, or None: NumPy is to do."""
+        if source not in self._libraries:
+            self._libraries[source] = shared(source, self.kernels)
+        return self._libraries[source]
+
+    def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
+        return build(arguments, results, self.kernels)
+
     @cached_property
     def _residual_kernel(self) -> Callable[..., None]:
-        return build(self._arguments, [self.expressions.residual])
+        return self._build(self._arguments, [self.expressions.residual])
 
     @cached_property
     def _move_kernel(self) -> Callable[..., None]:
         e = self.expressions
-        return build([batch(e.algebraic, "algebraic"), batch(e.increment, "increment")], [e.moved])
+        return self._build([batch(e.algebraic, "algebraic"), batch(e.increment, "increment")], [e.moved])
 
     @cached_property
     def _output_kernel(self) -> Callable[..., None]:
-        return build(self._arguments, [self.expressions.outputs])
+        return self._build(self._arguments, [self.expressions.outputs])
 
     @cached_property
     def _switch_kernel(self) -> Callable[..., None]:
         _, state, _, phase, parameter = self._arguments
-        return build([state, phase, parameter], [self.expressions.switches])
+        return self._build([state, phase, parameter], [self.expressions.switches])
 
     @cached_property
     def _switch_gradient_kernel(self) -> Callable[..., None]:
         _, state, _, phase, parameter = self._arguments
         e = self.expressions
         gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
-        return build([state, phase, parameter], gradients)
+        return self._build([state, phase, parameter], gradients)
 
     def _derivatives(
         self, known: dict[tuple[int, ...], Callable[..., None]], rows: ca.SX, free: tuple[int, ...]
@@ -223,7 +238,7 @@ class CompiledSystem:
             e = self.expressions
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
-            known[free] = build(self._arguments, [rows, *(ca.jacobian(rows, v) for v in variables)])
+            known[free] = self._build(self._arguments, [rows, *(ca.jacobian(rows, v) for v in variables)])
         return known[free]
 
     def _linearised(
@@ -242,19 +257,23 @@ def _columns(*arrays: Array) -> list[Array]:
     return [a[:, :, 0] if a.ndim == 3 and a.shape[2] == 1 else a for a in arrays]
 
 
-def compile(model: Model | Part) -> CompiledSystem:  # noqa: A001 - the field's word for it
-    """Return the System of a model.
+def compile(model: Model | Part, kernels: Kernels | str | None = None) -> CompiledSystem:  # noqa: A001
+    """Return the System of a model, evaluated by the back end `kernels`: see `symbolic.choice`.
+
+    "auto" takes C where there is a compiler and it pays, "numpy" needs none, "c" compiles at once. None is
+    the environment's ORBITRACE_KERNELS, or else "auto".
 
     Raises ValueError, in one sentence, for a model that lacks a part, defines a parameter twice or leaves
-    a coordinate without mass.
+    a coordinate without mass, and for an unknown back end; symbolic.native.CompilerError for "c" without a
+    working compiler.
     """
-    assembly = Assembly()
+    assembly, back_end = Assembly(), chosen(kernels)
     for part in model.parts if isinstance(model, Model) else (model,):
         part.contribute(assembly)
     for junction in assembly.junctions.values():
         assert isinstance(junction, Junction)
         junction.close(assembly)
-    return _system(assembly)
+    return _system(assembly, back_end)
 
 
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:
@@ -279,7 +298,7 @@ def _check_frequency(assembly: Assembly) -> None:
         )
 
 
-def _system(assembly: Assembly) -> CompiledSystem:
+def _system(assembly: Assembly, kernels: Kernels) -> CompiledSystem:
     positions = [motion.position for motion in assembly.motions.values()]
     outputs = [(Variable(x.name, x.unit), x.symbol) for x in positions] + assembly.outputs
     rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
@@ -332,4 +351,5 @@ def _system(assembly: Assembly) -> CompiledSystem:
         outputs=tuple(variable for variable, _ in outputs),
         switches=tuple(info for info, _ in assembly.switches),
         expressions=expressions,
+        kernels=kernels,
     )

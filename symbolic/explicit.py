@@ -30,7 +30,7 @@ def rates(system: CompiledSystem) -> Rates:
         )
     e = system.expressions
     arguments = [batch(e.state, "state"), points(e.phase, "phase"), vector(e.parameter, "parameter")]
-    kernel = build(arguments, [explicit_rates(system)])
+    kernel = build(arguments, [explicit_rates(system)], system.kernels)
 
     def evaluated(state: Array, phase: Array, parameter: Array) -> Array:
         result = np.zeros_like(state)

@@ -1,7 +1,8 @@
 """CasADi expressions written out as NumPy source: one vectorised statement per instruction.
 
 A kernel takes batches (points along the first axis) and a parameter vector and fills dense arrays in
-place. No compiler, no CasADi object and no conversion is left in the loop.
+place. No compiler, no CasADi object and no conversion is left in the loop. `symbolic.csource` writes the
+same kernel in C, `symbolic.choice` says which of the two runs.
 """
 
 from __future__ import annotations
@@ -13,6 +14,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import scipy
+
+from symbolic.choice import ChosenKernel, Kernels, Layout
+from symbolic.csource import csource
 
 _BINARY = {
     ca.OP_ADD: "{0} + {1}",
@@ -69,34 +73,67 @@ _UNARY = {
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument of a kernel: its symbol (a column) and how the source reads component k of it."""
+    """One argument of a kernel: its symbol (a column), and how NumPy and C read component k of it."""
 
     symbol: ca.SX
+    name: str
     read: str
+    cread: str
+    layout: Layout
 
 
 def batch(symbol: ca.SX, name: str) -> Argument:
     """An argument of shape (points, components)."""
-    return Argument(symbol, name + "[:, {k}]")
+    width = symbol.size1()
+    return Argument(symbol, name, name + "[:, {k}]", f"{name}[{width} * i + {{k}}]", Layout((width,)))
 
 
 def vector(symbol: ca.SX, name: str) -> Argument:
     """An argument that is the same at every point, shape (components,)."""
-    return Argument(symbol, name + "[{k}]")
+    read = name + "[{k}]"
+    return Argument(symbol, name, read, read, Layout((symbol.size1(),), shared=True))
 
 
 def points(symbol: ca.SX, name: str) -> Argument:
     """A scalar argument of shape (points,)."""
-    return Argument(symbol, name)
+    return Argument(symbol, name, name, name + "[i]", Layout(()))
 
 
-def build(arguments: Sequence[Argument], results: Sequence[ca.SX]) -> Callable[..., None]:
+def build(
+    arguments: Sequence[Argument], results: Sequence[ca.SX], kernels: Kernels = Kernels.NUMPY
+) -> Callable[..., None]:
     """Return kernel(*arguments, *arrays), which writes result i into arrays[i].
 
     A result of shape (r, 1) goes to an array (points, r), one of shape (r, c) to (points, r, c). Only
     structural nonzeros are written: the arrays come zeroed.
     """
     function = ca.Function("kernel", [a.symbol for a in arguments], ca.cse(list(results)))
+    _check_operations(function)
+    if kernels is Kernels.NUMPY or not function.n_instructions():
+        return _numpy(function, arguments)
+    layouts = [a.layout for a in arguments] + [_layout(result) for result in results]
+    return ChosenKernel(
+        source=csource(function, [a.name for a in arguments], [a.cread for a in arguments]),
+        instructions=function.n_instructions(),
+        layouts=layouts,
+        results=len(results),
+        kernels=kernels,
+        numpy=lambda: _numpy(function, arguments),
+    )
+
+
+def _check_operations(function: ca.Function) -> None:
+    known = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_UNARY, *_BINARY}
+    for k in range(function.n_instructions()):
+        if (operation := function.instruction_id(k)) not in known:
+            raise NotImplementedError(f"CasADi operation {operation} has no counterpart in symbolic.kernel")
+
+
+def _layout(result: ca.SX) -> Layout:
+    return Layout((result.size1(),) if result.size2() == 1 else result.shape)
+
+
+def _numpy(function: ca.Function, arguments: Sequence[Argument]) -> Callable[..., None]:
     source = _source(function, [a.read for a in arguments])
     scope: dict[str, Any] = {"np": np, "scipy": scipy, "inf": np.inf, "nan": np.nan}
     exec(compile(source, "<orbitrace kernel>", "exec"), scope)  # source is made above from an operation table
@@ -131,6 +168,4 @@ def _statement(function: ca.Function, k: int, reads: list[str], targets: list[li
     if operation == ca.OP_OUTPUT:
         return f"{targets[outputs[0]][outputs[1]]} = w{inputs[0]}"
     table = _UNARY if len(inputs) == 1 else _BINARY
-    if operation not in table:
-        raise NotImplementedError(f"CasADi operation {operation} has no NumPy counterpart in symbolic.kernel")
     return f"w{outputs[0]} = {table[operation].format(*[f'w{i}' for i in inputs])}"

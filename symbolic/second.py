@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from symbolic.choice import Kernels
 from symbolic.kernel import Argument, batch, build, points, vector
 
 Array = NDArray[np.float64]
@@ -44,7 +45,7 @@ class Symbols:
     parameter: ca.SX
 
 
-def contraction(symbols: Symbols, rows: ca.SX) -> Callable[..., Gradient]:
+def contraction(symbols: Symbols, rows: ca.SX, kernels: Kernels = Kernels.NUMPY) -> Callable[..., Gradient]:
     """Return (x', x, z, tau, p, w, v_x', v_x, v_z, v_p) -> Gradient for batches of points.
 
     w (N, rows), v_p (p,); the others as their symbols.
@@ -71,7 +72,7 @@ def contraction(symbols: Symbols, rows: ca.SX) -> Callable[..., Gradient]:
         batch(along[2], "v_algebraic"),
         vector(along[3], "v_parameter"),
     ]
-    kernel = build(arguments, [ca.gradient(form, symbol) for symbol in base])
+    kernel = build(arguments, [ca.gradient(form, symbol) for symbol in base], kernels)
 
     def evaluated(*given: Array) -> Gradient:
         count = len(given[3])

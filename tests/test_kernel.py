@@ -166,7 +166,7 @@ def test_constant_is_kept_exactly(value: float) -> None:
 def test_unknown_operation_is_refused(expression: ca.SX) -> None:
     """Assert that an operation without a counterpart is named when the kernel is made, not when it runs."""
     (code,) = operations(expression)
-    with pytest.raises(NotImplementedError, match=rf"^CasADi operation {code} has no NumPy counterpart"):
+    with pytest.raises(NotImplementedError, match=rf"^CasADi operation {code} has no counterpart"):
         kernel.build([kernel.points(X, "x"), kernel.points(Y, "y")], [expression])
 
 
