@@ -79,7 +79,7 @@ class Journal:
         self._part.unlink(missing_ok=True)
 
     def add(self, run: Run, points: Sequence[Point]) -> None:
-        """Add points that a run has completed, and where it stands; an interrupt waits until they are kept."""
+        """Add points that a run has completed, and where it stands; interrupts wait until it is done."""
         with _uninterrupted():
             self._add(run, points)
 
