@@ -23,6 +23,7 @@ from periodic.mesh import Mesh
 from periodic.newton import Outcome, at_fixed_phase
 from periodic.orbit import Orbit
 from periodic.point import Point, describe
+from periodic.scheme import Family, Scheme
 from periodic.solve import (
     Solved,
     Task,
@@ -70,6 +71,9 @@ AIM = 0.8
 
 COLLAPSED = 0.1
 """An orbit that is so much smaller than its guess is not what was guessed."""
+
+OTHERS = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
+"""Schemes with which a first orbit is looked for if Newton does not find it with the wanted one."""
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
@@ -266,11 +270,28 @@ class Run:
             return first
         if not self.search:
             return self._at_turn(start, sign, first)
+        found = self._by_others(start, sign)
+        if isinstance(found, Solved):
+            return found
         for factor in ELSEWHERE:
             orbit = self._approached(start, factor)
             if orbit is not None or self._shortfall:
                 return first if orbit is None else settle(task, at_parameter(task, orbit, sign), fixed=True)
         return first
+
+    def _by_others(self, start: Orbit, sign: float) -> Solved | Outcome:
+        """Find the first orbit by that of another scheme: Newton's way from a rest is a matter of luck."""
+        task, mesh = self.task, self.task.settings.mesh
+        found: Solved | Outcome = Outcome.TOO_MANY
+        for scheme in OTHERS:
+            loosely = replace(mesh, scheme=scheme, tolerance=max(LOOSE, mesh.tolerance))
+            other = replace(task, settings=replace(task.settings, mesh=loosely))
+            guess = task.method.adopted(task.system, loosely, start, start.parameter)
+            found = settle(other, at_parameter(other, guess, sign), fixed=True)
+            if isinstance(found, Solved):
+                own = task.method.adopted(task.system, mesh, found.orbit, start.parameter)
+                return settle(task, at_parameter(task, own, sign), fixed=True)
+        return found
 
     def _collapsed(self, start: Orbit, first: Solved) -> bool:
         """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""

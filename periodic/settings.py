@@ -72,7 +72,7 @@ LEAST, MOST = 1e-11, 1e-2
 DEEPEST = 0.1
 """Shallowest switch level worth an anchor, in tolerances."""
 
-DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-8: 6, 1e-10: 7}
+DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
 
 

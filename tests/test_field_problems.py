@@ -34,6 +34,11 @@ ORBIT = {"omega": per.PhaseCondition()}
 LP, PD, NS, BP, HB = per.Label.FOLD, per.Label.DOUBLING, per.Label.TORUS, per.Label.BRANCH, per.Label.HOPF
 
 
+def trace(*arguments: Any, **options: Any) -> per.Branch:
+    """Trace to 1e-9 unless told otherwise."""
+    return per.trace(*arguments, **{"tol": 1e-9, **options})
+
+
 def places(branch: per.Branch) -> list[tuple[str, float]]:
     """Label and parameter of the special points between the ends."""
     return [(p.label.value, p.parameter) for p in branch.special_points if p.label is not per.Label.END]
@@ -60,7 +65,7 @@ def born(
 ) -> per.Branch:
     """The branch of orbits from a Hopf point."""
     guess = per.hopf(system, point.orbit, parameter)
-    return per.trace(system, parameter, bounds, guess=guess, determined=ORBIT, **more)
+    return trace(system, parameter, bounds, guess=guess, determined=ORBIT, **more)
 
 
 def settled(field: Any, begin: list[float], until: float, period: float, parameter: list[float]) -> per.Orbit:
@@ -103,7 +108,7 @@ def lopsided() -> per.Branch:
     """AUTO tor, third run: the orbits without the symmetry."""
     point = circuit_orbits().labelled(BP)[0]
     guess = per.branched(circuit(), point.orbit, "nu", determined=ORBIT)
-    return per.trace(circuit(), "nu", (-0.9, -0.5), guess=guess, determined=ORBIT, limits=shorter_than(15))
+    return trace(circuit(), "nu", (-0.9, -0.5), guess=guess, determined=ORBIT, limits=shorter_than(15))
 
 
 def test_torus_of_the_electronic_oscillator() -> None:
@@ -139,13 +144,13 @@ def test_isola_of_the_enzyme() -> None:
     """Assert that orbits at s0 = 111 form an isola, whose folds lie on the curve of folds."""
     orbits = enzyme_orbits()
     (inside,) = orbits.labelled(per.Label.USER)
-    raised = per.trace(enzyme(), "s0", (110, 111), guess=inside.orbit, determined=ORBIT)
-    isola = per.trace(enzyme(), "rho", (2, 6), guess=raised[-1].orbit, determined=ORBIT)
+    raised = trace(enzyme(), "s0", (110, 111), guess=inside.orbit, determined=ORBIT)
+    isola = trace(enzyme(), "rho", (2, 6), guess=raised[-1].orbit, determined=ORBIT)
     assert isola.stop.reason is per.Reason.CLOSED
     assert places(isola) == expected(("LP", 2.98629481), ("LP", 4.722125236))
     determined = {**ORBIT, "rho": per.FoldCondition()}
     begin = orbits.labelled(LP)[0].orbit
-    curve = per.trace(enzyme(), "s0", (109, 125), guess=begin, determined=determined, at=111)
+    curve = trace(enzyme(), "s0", (109, 125), guess=begin, determined=determined, at=111)
     met = [rho for rho, p in zip(curve.column("rho"), curve, strict=True) if p.label is per.Label.USER]
     assert sorted(met) == pytest.approx([p.parameter for p in isola.labelled(LP)], rel=1e-9)
 
@@ -212,7 +217,7 @@ def test_doublings_of_the_spiral() -> None:
     guess = settled(field, [1, 1, 0], 600, near, [0.2, 0.2, 2.5, 2 * np.pi / near])
     known = [(2.83244502786, 5.7698200165), (3.83735816841, 11.572688804), (4.12421473207, 23.202611202)]
     for place, duration in known:
-        branch = per.trace(spiral(), "c", (2.4, 4.5), guess=guess, determined=ORBIT, stop={"PD": 1})
+        branch = trace(spiral(), "c", (2.4, 4.5), guess=guess, determined=ORBIT, stop={"PD": 1})
         (point, *_) = (p for p in branch.labelled(PD) if p.nontrivial.real.min() < -0.5)
         assert point.parameter == pytest.approx(place, rel=1e-9)
         assert period(point, branch) == pytest.approx(duration, rel=1e-9)
@@ -222,7 +227,7 @@ def test_doublings_of_the_spiral() -> None:
 @cache
 def entrained() -> per.Branch:
     """Van der Pol's oscillator forced near resonance."""
-    return per.trace(forced_van_der_pol(), "Omega", (0.8, 1.3), start=1.0)
+    return trace(forced_van_der_pol(), "Omega", (0.8, 1.3), start=1.0)
 
 
 def test_entrainment() -> None:
@@ -236,7 +241,7 @@ def test_curves_of_entrainment() -> None:
     """Assert that the curves of folds and of tori meet in two 1:1 resonances, beside two cusps."""
     system, near = forced_van_der_pol(), {"F": (0.01, 0.25)}
     folds, tori = (
-        per.trace(
+        trace(
             system,
             "Omega",
             (0.9, 1.1),
@@ -263,11 +268,11 @@ def test_ueda() -> None:
         return [x[1], -0.1 * x[1] - x[0] ** 3 + 0.2 * np.cos(t)]
 
     guess = settled(field, [0, 0], 600 * np.pi, 2 * np.pi, [0.1, 0.2, 1.0])
-    branch = per.trace(ueda(), "B", (0.1, 5), guess=guess)
+    branch = trace(ueda(), "B", (0.1, 5), guess=guess)
     assert places(branch)[:2] == expected(("LP", 0.446437077048), ("LP", 0.114639389052))
     (point,) = branch.labelled(BP)
     assert point.parameter == pytest.approx(2.28638171, rel=5e-7)
-    lopsided = per.trace(ueda(), "B", (2.29, 5), start=2.29, guess=per.branched(ueda(), point.orbit, "B"))
+    lopsided = trace(ueda(), "B", (2.29, 5), start=2.29, guess=per.branched(ueda(), point.orbit, "B"))
     known = [("LP", 3.56585349679), ("LP", 3.0850826389), ("PD", 4.87609115004)]
     assert places(lopsided) == expected(*known)
 
@@ -275,7 +280,7 @@ def test_ueda() -> None:
 @pytest.mark.parametrize("method", [per.Collocation(), per.HarmonicBalance()])
 def test_two_springs(method: Any) -> None:
     """Assert folds and doublings of NLvib's mass on two springs through its 1:2 internal resonance."""
-    branch = per.trace(two_springs(), "Omega", (1.05, 1.2), start=1.2, method=method)
+    branch = trace(two_springs(), "Omega", (1.05, 1.2), start=1.2, method=method)
     known = [("PD", 1.09889178332), ("LP", 1.08792661835), ("PD", 1.09450652656), ("LP", 1.12299180655)]
     assert places(branch) == expected(*known)
 
@@ -283,7 +288,7 @@ def test_two_springs(method: Any) -> None:
 def test_absorber() -> None:
     """Assert tori and folds of NLvib's two masses on cubic springs, by two methods."""
     branches = [
-        per.trace(absorber(), "Omega", (1.0, 1.4), method=method)
+        trace(absorber(), "Omega", (1.0, 1.4), method=method)
         for method in (per.Collocation(), per.HarmonicBalance())
     ]
     known = [("NS", 1.11271123928), ("NS", 1.19573666912), ("LP", 1.21462622516), ("LP", 1.20621945737)]
@@ -305,10 +310,10 @@ def test_pendula() -> None:
     state = np.stack([ahead, ahead, speed, speed], axis=1)
     guess = per.sampled(phase, state, np.zeros((401, 0)), np.array([0.175, 0.1, 0.4, 2 * np.pi / duration]))
     rotating = {"rate": per.PhaseCondition()}
-    branch = per.trace(pendula(), "torque", (0.17, 0.4), guess=guess, determined=rotating)
+    branch = trace(pendula(), "torque", (0.17, 0.4), guess=guess, determined=rotating)
     ((label, torque),) = places(branch)
     assert label == "PD" and torque == pytest.approx(0.17916377626865, rel=1e-10)
-    curve = per.trace(
+    curve = trace(
         pendula(),
         "gamma",
         (0.1, 1.0),

@@ -11,7 +11,7 @@ from equations import oscillator, two_masses
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import fsolve, minimize_scalar
 from scipy.special import ellipk
-from traces import FINE, STANDARD
+from traces import STANDARD
 
 import periodic as per
 import symbolic as sym
@@ -19,13 +19,11 @@ import symbolic as sym
 FREE = {"c": per.Conservative()}
 
 
-def backbone(
-    system: sym.CompiledSystem, end: float, which: int = 0, accuracy: per.Accuracy = STANDARD
-) -> per.Branch:
+def backbone(system: sym.CompiledSystem, end: float, which: int = 0, tol: float = 1e-8) -> per.Branch:
     """The family of a mode, from small amplitude to an angular frequency."""
     guess = per.mode(system, per.equilibria(system, "c", (0, 1))[0].orbit, "c", which=which)
     begin = float(guess.parameter[[p.name for p in system.parameters].index("omega")])
-    return per.trace(system, "omega", (begin, end), guess=guess, determined=FREE, accuracy=accuracy)
+    return per.trace(system, "omega", (begin, end), guess=guess, determined=FREE, tol=tol)
 
 
 def labels(branch: per.Branch) -> list[str]:
@@ -40,15 +38,13 @@ def duffing_period(amplitude: float, linear: float, cubic: float) -> float:
 
 
 @pytest.mark.parametrize("linear, cubic, end", [(1.0, 1.0, 3.0), (1.0, -1.0, 0.4)])
-@pytest.mark.parametrize("accuracy, digits", [(STANDARD, 1e-9), (FINE, 1e-12)])
-def test_backbone_of_duffing(
-    linear: float, cubic: float, end: float, accuracy: per.Accuracy, digits: float
-) -> None:
+@pytest.mark.parametrize("tol, digits", [(1e-8, 1e-9), (1e-9, 1e-12)])
+def test_backbone_of_duffing(linear: float, cubic: float, end: float, tol: float, digits: float) -> None:
     """Assert period, energy and dummy damping of the hardening and the softening oscillator, all stable.
 
     Its two multipliers of 1 are its only ones; they are not taken for a branch point or an instability.
     """
-    branch = backbone(oscillator(linear, cubic), end, accuracy=accuracy)
+    branch = backbone(oscillator(linear, cubic), end, tol=tol)
     assert branch.stop.reason is per.Reason.BOUND and labels(branch) == []
     assert branch[0].maximum["x"] == pytest.approx(0.02, rel=1e-2)
     assert branch.stable.all()
@@ -122,9 +118,9 @@ MODES = {0: (1.0, 1.25), 1: (np.sqrt(3), 3.0)}
 
 
 @cache
-def normal_mode(which: int, accuracy: per.Accuracy = STANDARD, everywhere: bool = True) -> per.Branch:
+def normal_mode(which: int, tol: float = 1e-8, everywhere: bool = True) -> per.Branch:
     """A nonlinear normal mode of Kerschen's two masses."""
-    return backbone(two_masses(everywhere), MODES[which][1], which, accuracy)
+    return backbone(two_masses(everywhere), MODES[which][1], which, tol)
 
 
 def shot(omega: float, near: list[float]) -> np.ndarray:
@@ -163,7 +159,7 @@ def test_nonlinear_normal_modes(which: int) -> None:
 
 def test_orbits_do_not_depend_on_the_dummy() -> None:
     """Assert that a damper on one mass alone gives the same orbits as one on each, and that both stay 0."""
-    ends = [normal_mode(1, FINE, everywhere)[-1] for everywhere in (True, False)]
+    ends = [normal_mode(1, 1e-9, everywhere)[-1] for everywhere in (True, False)]
     assert ends[0].parameter == ends[1].parameter == 3.0
     for output in ("x1", "x2", "energy"):
         assert ends[0].maximum[output] == pytest.approx(ends[1].maximum[output], rel=1e-9)

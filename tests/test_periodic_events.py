@@ -61,7 +61,7 @@ def tongue(order: int) -> tuple[float, float]:
 
 def test_torus_of_an_oscillator_that_loses_its_damping() -> None:
     """Assert that NS is found where the damping of a linear oscillator vanishes, and only there."""
-    branch = per.trace(LinearOscillator(Omega=0.8), "zeta", (-0.1, 0.1), start=0.1)
+    branch = per.trace(LinearOscillator(Omega=0.8), "zeta", (-0.1, 0.1), start=0.1, tol=1e-8)
     ((label, zeta),) = labels(branch)
     assert label == "NS"
     assert zeta == pytest.approx(0.0, abs=1e-9)
@@ -199,9 +199,9 @@ def test_ueda(lowest: float, factor: float) -> None:
 @pytest.mark.parametrize("which", [0, 1])
 def test_start_at_a_fold(which: int) -> None:
     """Assert that a branch started at one of its folds goes on both ways to its ends."""
-    whole = duffing()
+    whole = duffing(accuracy=FINE)
     fold = whole.labelled(per.Label.FOLD)[which]
-    branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 3.0), guess=fold.orbit)
+    branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 3.0), guess=fold.orbit, accuracy=FINE)
     assert {branch[0].parameter, branch[-1].parameter} == {0.3, 3.0}
     assert branch.labelled(per.Label.BRANCH) == ()
     other = [p.parameter for p in branch.labelled(per.Label.FOLD)]
