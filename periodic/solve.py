@@ -20,6 +20,7 @@ from periodic.scheme import Array
 from periodic.settings import Settings
 from periodic.system import System
 from periodic.watch import Watch
+from periodic.work import Work
 
 ROUNDS = 8
 
@@ -29,13 +30,6 @@ SHIFTS = 64
 
 KEPT = 30.0
 """How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
-
-
-@dataclass
-class Work:
-    """What has been spent so far: Newton iterations, failed and rejected ones included."""
-
-    iterations: int = 0
 
 
 @dataclass(frozen=True)
@@ -110,7 +104,7 @@ def on_plane(task: Task, guess: Orbit, plane: Plane) -> Solved | Outcome:
     """Solve on a plane from a guess on the same mesh; the tangent points to the plane's positive side."""
     closing = [*closures(task.conditions, task.others, plane.origin), plane]
     result = task.method.correct(task.system, guess, task.free, closing, task.settings.newton)
-    task.work.iterations += result.iterations
+    task.work.add(result.iterations)
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
     if not task.method.genuine(task.system, result.orbit):

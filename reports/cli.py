@@ -111,6 +111,11 @@ How = Annotated[Method, typer.Option("--method", help="How orbits are represente
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on from an interrupted trace in DIR; all else as it was.")
 ]
+MaxPoints = Annotated[str | None, typer.Option("--max-points", metavar="N", help="Stop after N steps.")]
+MaxNewton = Annotated[
+    str | None,
+    typer.Option("--max-newton", metavar="N", help="Stop after N Newton iterations, failed ones included."),
+]
 Sweep = Annotated[
     bool,
     typer.Option(
@@ -163,6 +168,8 @@ def trace(
     method: How = Method.COLLOCATION,
     out: Out = None,
     resume: Resume = False,
+    max_points: MaxPoints = None,
+    max_newton: MaxNewton = None,
     sweep: Sweep = False,
     as_json: Json = False,
 ) -> int:
@@ -178,12 +185,16 @@ def trace(
 
     overrides = tuple(_pair(change) for change in changes or ())
     task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
+    limits = {
+        "max_points": _count("--max-points", max_points),
+        "max_newton": _count("--max-newton", max_newton),
+    }
     name = short_name(scene)
     folder = writable(out or Path("orbitrace-out", name))
     before = run.interrupted(task, folder) if resume else None
     with heard_once():
         try:
-            branch = _traced(name, task, accuracy, method, before, folder)
+            branch = _traced(name, task, accuracy, method, before, folder, limits)
             integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
             (folder / run.JOURNAL).unlink(missing_ok=True)
@@ -263,10 +274,26 @@ def _pair(change: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
+def _count(option: str, text: str | None) -> int | None:
+    try:
+        count = None if text is None else int(text)
+    except ValueError:
+        count = 0
+    if count is not None and count < 1:
+        raise refused(option, text, "a whole number of at least 1")
+    return count
+
+
 def _traced(
-    name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None, folder: Path
+    name: str,
+    task: run.Task,
+    accuracy: Effort,
+    method: Method,
+    before: Branch | None,
+    folder: Path,
+    limits: dict[str, int | None],
 ) -> Branch:
-    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting
+    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting, StepSettings
     from reports import console, run
 
     methods = {
@@ -274,8 +301,10 @@ def _traced(
         Method.SHOOTING: Shooting,
         Method.HARMONIC_BALANCE: HarmonicBalance,
     }
+    step = StepSettings(**{key: value for key, value in limits.items() if value is not None})
+    dial = Accuracy[accuracy.name]
     with console.progress(name, task.scene) as progress:
-        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before, folder)
+        branch = run.trace(task, dial, progress, methods[method](), before, folder, step)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
     return branch

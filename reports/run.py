@@ -16,7 +16,7 @@ from reports.summary import csv_text, json_text
 from reports.view import view_of
 
 if TYPE_CHECKING:
-    from periodic import Accuracy, Branch, Point
+    from periodic import Accuracy, Branch, Point, StepSettings
     from periodic.methods.protocol import Method
     from reports.sweep import Settled
 
@@ -119,6 +119,7 @@ def trace(
     method: Method | None = None,
     resume: Branch | None = None,
     folder: Path | None = None,
+    step: StepSettings | None = None,
 ) -> Branch:
     """Build the system of a scene and trace its branch over its range, with a journal in `folder`.
 
@@ -137,6 +138,7 @@ def trace(
             start=begin,
             at=[value * view.unit for value in task.at],
             accuracy=accuracy,
+            settings=accuracy.settings(step),
             method=method,
             resume=resume,
             journal=None if folder is None else folder / JOURNAL,
