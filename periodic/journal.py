@@ -12,6 +12,7 @@ import json
 import os
 import struct
 import warnings
+import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -113,6 +114,8 @@ def recovered(path: str | Path) -> Branch:
         pieces = list(_pieces(Path(path).read_bytes()))
     except OSError as error:
         raise BranchFileError(f"journal is {str(path)!r}; it cannot be read ({error.strerror})") from error
+    except (*storage.DAMAGE, zipfile.BadZipFile) as error:
+        raise BranchFileError(f"journal is {str(path)!r}; it is damaged or not a journal") from error
     if not pieces:
         raise BranchFileError(f"journal is {str(path)!r}; it holds no complete step")
     halves: list[Half] = []

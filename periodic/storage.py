@@ -34,6 +34,22 @@ FOURIER = "Fourier series"
 """Stands for the scheme of orbits that are such series."""
 
 
+SLACK = 100_000
+"""Bytes that texts may take more in memory than in a file; numbers are not packed."""
+
+DAMAGE = (
+    KeyError,
+    ValueError,
+    IndexError,
+    TypeError,
+    RuntimeError,
+    AttributeError,
+    OverflowError,
+    MemoryError,
+)
+"""What reading numbers that make no sense raises."""
+
+
 def save(branch: Branch, path: Path) -> None:
     """Write a branch; an existing file is replaced only when the new one is complete.
 
@@ -64,12 +80,16 @@ def load(path: Path) -> Branch:
                 raise BranchFileError(
                     f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}"
                 )
+            if data.nbytes > path.stat().st_size + SLACK:
+                raise BranchFileError(
+                    f"branch file {str(path)!r} is damaged (it is too short for its arrays)"
+                )
             if data.attrs.pop("checksum", None) != checksum(data.load()):
                 raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
             return branch_of(data)
     except BranchFileError:
         raise
-    except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
+    except (OSError, *DAMAGE) as error:
         raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch") from error
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from enum import Enum
 from io import TextIOWrapper
@@ -201,7 +202,10 @@ def trace(
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
         journal, folder = folder / run.JOURNAL, _place(branch, folder)
-        files = run.save(folder, name, task.scene, branch, integrated)
+        try:
+            files = run.save(folder, name, task.scene, branch, integrated)
+        except InputError as error:
+            raise _kept(error, journal) from error
         journal.unlink(missing_ok=True)
         _report(name, task, branch, files, as_json)
     return _verdict(branch, folder)
@@ -303,7 +307,8 @@ def _traced(
     }
     step = StepSettings(**{key: value for key, value in limits.items() if value is not None})
     dial = Accuracy[accuracy.name]
-    with console.progress(name, task.scene) as progress:
+    with console.progress(name, task.scene) as progress, warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: _say(str(message))
         branch = run.trace(task, dial, progress, methods[method](), before, folder, step)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
@@ -326,6 +331,13 @@ def _place(branch: Branch, folder: Path) -> Path:
     from reports.files import INCOMPLETE, writable
 
     return writable(folder / INCOMPLETE)
+
+
+def _kept(error: InputError, journal: Path) -> InputError:
+    """Return the error of results that could not be written, with what is left of them."""
+    if not (journal.is_file() and journal.stat().st_size):
+        return error
+    return InputError(error.field, error.what, f"{error.allowed}; --resume goes on from {journal.name} there")
 
 
 def _swept(name: str, task: run.Task) -> run.Settlements | None:
