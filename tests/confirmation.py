@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 PIECES = 60
 """Most of the period that a step of the integrator may take: no kink is passed over."""
 
+LOST = 1e-4
+"""Uncertainty of perturbations where contact is lost: the unknown is then held by a regularisation."""
+
 
 @dataclass(frozen=True)
 class Return:
@@ -57,6 +60,7 @@ class Integrator:
         }
         self.constraints = ca.Function("constraints", [y, e.phase, e.parameter], [rows, ca.jacobian(rows, y)])
         self.states, self.size, self.tolerance = len(system.states), y.size1(), tolerance
+        self.uncertainty = LOST if system.algebraics else 1e3 * tolerance
 
     def well_posed(self, orbit: Orbit, phases: Array) -> float:
         """Return the phase at which the states determine the unknowns best: that of firm contact."""

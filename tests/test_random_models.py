@@ -16,7 +16,7 @@ from random_models import Case, drawn
 import periodic as per
 from periodic import Reason, storage
 
-STEP = per.StepSettings(max_points=40, max_newton=1500)
+STEP = per.StepSettings(max_points=30, max_newton=600)
 
 CONFIRMED = 3
 """Orbits of each branch that are confirmed."""
@@ -84,7 +84,7 @@ def check_point(
     found = integrator.once_round(orbit, tau)
     assert np.abs(found.gap).max() <= 2 * tolerance * orbit.span() * max(1.0, found.growth)
     own, theirs = np.abs(point.multipliers), np.abs(found.multipliers)
-    apart = 20 * point.error.multiplier + 10 * tolerance + 1e-6 * found.growth
+    apart = 20 * point.error.multiplier + 10 * tolerance + integrator.uncertainty * found.growth
     assert theirs[0] == pytest.approx(own[0], rel=apart, abs=apart)
     if not (np.abs(np.concatenate([own, theirs]) - 1) < max(CLOSENESS, 2 * apart)).any():
         assert (own > 1).sum() == (theirs > 1).sum()
