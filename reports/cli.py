@@ -69,9 +69,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         sentence = f"standard output cannot be written to ({error.strerror})"
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - Python flushes it once more at its end
-    except typer.Abort:  # what typer makes of a Ctrl-C that no command has heard
-        _say("interrupted; nothing was saved")
-        return INTERRUPTED
     except ClickException as error:
         sentence = " ".join(error.format_message().replace("Value error, ", "").split())
     _say(sentence)

@@ -270,3 +270,16 @@ def test_file_that_promises_more_than_it_has(tmp_path: Path) -> None:
         file.create_dataset("value", shape=(2**40,), dtype=float, chunks=(1024,))
     with pytest.raises(per.BranchFileError, match="is damaged"):
         per.Branch.load(path)
+
+
+def test_interrupt_where_nothing_listens(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that Ctrl-C in a command that has nothing to save ends it quietly, with a shell's exit code."""
+
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("reports.linear.study", interrupted)
+    assert main(["linear", "duffing", "--out", str(tmp_path)]) == 130
+    assert capsys.readouterr().err == "" and list(tmp_path.iterdir()) == []
