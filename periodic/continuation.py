@@ -176,7 +176,7 @@ class Run:
         if s is None:
             return self.ended
         tangent = s.last.tangent
-        done = self.stop is not None and self.stop.reason not in (Reason.INTERRUPTED, Reason.MAX_POINTS)
+        done = self.stop is not None and not self.stop.reason.resumable
         numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)
         return Checkpoint(s.sign, tangent.profile, tangent.parameter, *numbers)
 

@@ -14,6 +14,7 @@ import signal
 import struct
 import threading
 import warnings
+import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -143,6 +144,8 @@ def recovered(path: str | Path) -> Branch:
         pieces = list(_pieces(Path(path).read_bytes()))
     except OSError as error:
         raise BranchFileError(f"journal is {str(path)!r}; it cannot be read ({error.strerror})") from error
+    except (*storage.DAMAGE, zipfile.BadZipFile) as error:
+        raise BranchFileError(f"journal is {str(path)!r}; it is damaged or not a journal") from error
     if not pieces:
         raise BranchFileError(f"journal is {str(path)!r}; it holds no complete step")
     halves: list[Half] = []

@@ -38,13 +38,19 @@ class MeshSettings:
 
 @dataclass(frozen=True, kw_only=True)
 class StepSettings:
-    """Arclength steps, as parts of the parameter's range; `turn` is the least cosine between tangents."""
+    """Arclength steps, as parts of the parameter's range; `turn` is the least cosine between tangents.
+
+    max_points bounds the steps in each direction; max_newton the Newton iterations of the whole trace, those
+    for rejected steps and for the first orbit included, and with them all that it costs: one is a linear
+    solve on at most MeshSettings.ntst_max intervals.
+    """
 
     ds: float = 0.02
     ds_min: float = 1e-7
     ds_max: float = 0.2
     turn: float = 0.8
     max_points: int = 5000
+    max_newton: int = 1_000_000
 
     def __post_init__(self) -> None:
         if not 0 < self.ds_min <= self.ds <= self.ds_max:
@@ -55,6 +61,8 @@ class StepSettings:
             raise ValueError(f"turn is {self.turn}; it must lie between 0 and 1")
         if self.max_points < 1:
             raise ValueError(f"max_points is {self.max_points}; it must be at least 1")
+        if not self.max_newton >= 1:
+            raise ValueError(f"max_newton is {self.max_newton}; it must be at least 1")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ from periodic.scheme import Array
 from periodic.settings import Settings
 from periodic.system import System
 from periodic.watch import Watch
+from periodic.work import Work
 
 ROUNDS = 8
 
@@ -33,13 +34,6 @@ KEPT = 30.0
 
 DISTINCT = 0.05
 """Orbits as far apart, in peaks to peak, are two."""
-
-
-@dataclass
-class Work:
-    """What has been spent so far: Newton iterations, failed and rejected ones included."""
-
-    iterations: int = 0
 
 
 @dataclass(frozen=True)
@@ -132,7 +126,7 @@ def on_plane(
     """
     closing = [*closures(task.conditions, task.others, plane.origin), plane]
     result = task.method.correct(task.system, guess, task.free, closing, newton or task.settings.newton)
-    task.work.iterations += result.iterations
+    task.work.add(result.iterations)
     if result.outcome is not Outcome.CONVERGED:
         return result.outcome
     if not task.method.genuine(task.system, result.orbit):

@@ -14,6 +14,7 @@ class Reason(Enum):
     ASKED = "stopped as asked"
     EQUILIBRIUM = "equilibrium reached"
     MAX_POINTS = "largest number of points reached"
+    MAX_NEWTON = "largest number of Newton iterations reached"
     SMALL_STEP = "step size below its minimum"
     NO_START = "no orbit found at the start"
     INACCURATE = "tolerance not reached"
@@ -22,7 +23,18 @@ class Reason(Enum):
     @property
     def numerical(self) -> bool:
         """Whether the branch ended for a numerical reason."""
-        return self in (Reason.MAX_POINTS, Reason.SMALL_STEP, Reason.NO_START, Reason.INACCURATE)
+        return self in (
+            Reason.MAX_POINTS,
+            Reason.MAX_NEWTON,
+            Reason.SMALL_STEP,
+            Reason.NO_START,
+            Reason.INACCURATE,
+        )
+
+    @property
+    def resumable(self) -> bool:
+        """Whether the branch goes on from there when it is allowed to."""
+        return self in (Reason.MAX_POINTS, Reason.MAX_NEWTON, Reason.INTERRUPTED)
 
 
 @dataclass(frozen=True)
@@ -65,6 +77,11 @@ class Stop:
     def max_points(cls, count: int) -> Stop:
         """The allowed number of points was used up."""
         return cls(Reason.MAX_POINTS, f"{count} points")
+
+    @classmethod
+    def max_newton(cls, count: float) -> Stop:
+        """The allowed number of Newton iterations was used up."""
+        return cls(Reason.MAX_NEWTON, f"{count:g} iterations")
 
     @classmethod
     def small_step(cls, why: str) -> Stop:

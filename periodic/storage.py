@@ -14,6 +14,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import xarray as xr
 
@@ -32,6 +33,16 @@ FORMAT = "orbitrace branch 4"
 
 FOURIER = "Fourier series"
 """Stands for the scheme of orbits that are such series."""
+
+
+SLACK = 100_000
+"""Bytes that texts may take more in memory than in a file; numbers are not packed."""
+
+DAMAGE = (
+    *(KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError),
+    *(OverflowError, MemoryError, EOFError),
+)
+"""What reading numbers that make no sense raises."""
 
 
 def save(branch: Branch, path: Path) -> None:
@@ -59,17 +70,23 @@ def load(path: Path) -> Branch:
     if not path.is_file():
         raise BranchFileError(f"branch file is {str(path)!r}; there is no such file")
     try:
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
+        with h5py.File(path, "r"):
+            pass  # on a file that is none h5netcdf complains from its destructor, where nobody can catch it
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False, phony_dims="access") as data:
             if data.attrs.get("format") != FORMAT:
                 raise BranchFileError(
                     f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}"
+                )
+            if data.nbytes > path.stat().st_size + SLACK:
+                raise BranchFileError(
+                    f"branch file {str(path)!r} is damaged (it is too short for its arrays)"
                 )
             if data.attrs.pop("checksum", None) != checksum(data.load()):
                 raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
             return branch_of(data)
     except BranchFileError:
         raise
-    except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
+    except (OSError, *DAMAGE) as error:
         raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch") from error
 
 

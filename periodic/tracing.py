@@ -32,8 +32,12 @@ from periodic.solve import Task
 from periodic.stop import Reason, Stop
 from periodic.system import System, VariableLike, index_of
 from periodic.watch import Watch
+from periodic.work import SpentError, Work
 
 Progress = Callable[[Point], None]
+
+ENDS_ALL = (Reason.INTERRUPTED, Reason.CLOSED, Reason.MAX_NEWTON)
+"""Reasons for which the other direction is not traced either."""
 
 
 class ResumeError(ValueError):
@@ -82,8 +86,9 @@ def trace(
     or event, {"LP": 2}, counted from the start in each direction. `method` is the discretisation (default:
     Collocation()).
 
-    An interrupt (Ctrl-C) returns the branch so far; `resume` takes such a branch up where it stands, with all
-    other arguments as before. `journal` is a file that keeps every step as it is done, for
+    An interrupt (Ctrl-C) returns the branch so far, and so do the largest numbers of points and of Newton
+    iterations in `settings.step`; `resume` takes such a branch up where it stands, with all other arguments
+    as before but for those numbers. `journal` is a file that keeps every step as it is done, for
     `periodic.recovered` if the process is killed. A numerical failure is the branch's `stop`. Raises
     ValueError, in one sentence, for a parameter, bound or value that is not allowed.
     """
@@ -114,12 +119,14 @@ def trace(
     if method is not None and (isinstance(method, type) or not hasattr(method, "correct")):
         raise ValueError(f"method is {method!r}; it must be Collocation(), Shooting() or HarmonicBalance()")
     watch = Watch(columns or {}, events or {}, limits or {}, stop or {})
+    settings = settings or settings_for(accuracy.value if tol is None else tol)
     task = Task(
         system,
         index,
         Metric(high - low),
-        settings or settings_for(accuracy.value if tol is None else tol),
+        settings,
         method or Collocation(),
+        work=Work(settings.step.max_newton),
         others=tuple(index_of(system, name) for name in determined),
         conditions=tuple(determined.values()),
         watch=watch,
@@ -140,13 +147,13 @@ def trace(
     with keeping as kept, threadpool_limits(limits=1, user_api="blas"):
         for run, points in zip(runs, generators, strict=True):
             _collect(run, points, progress, kept)
-            if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
+            if run.stop is not None and run.stop.reason in ENDS_ALL:
                 break
     return _joined(empty, runs, time.perf_counter() - clock, resume)
 
 
 def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journal: Journal | None) -> None:
-    """Let a run go on to its end, or to an interrupt: then what its last step began is left out."""
+    """Let a run go on to its end, or be cut short: then what its last step began is left out."""
     written = 0
     try:
         for point in points:
@@ -155,10 +162,11 @@ def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journ
                 written = run.state.kept
             if progress is not None:
                 progress(point)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SpentError) as end:
         if run.state is not None:
             del run.collected[run.state.kept :]
-        run.stop = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
+        interrupted = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
+        run.stop = Stop.max_newton(run.task.work.most) if isinstance(end, SpentError) else interrupted
     if journal is not None:
         journal.add(run, run.collected[written:])
 
@@ -202,13 +210,13 @@ def _check_made(branch: Branch, parameter: str, layout: Layout, made: dict[str, 
         )
     for name, now in made.items():
         before = branch.made.get(name)
-        if before != now and not (name == "settings" and _more_points(before, now)):
+        if before != now and not (name == "settings" and _only_more(before, now)):
             raise ResumeError(f"resume is a branch made with {name} {before}; now they are {now}")
 
 
-def _more_points(before: str | None, now: str) -> bool:
-    """Whether settings differ in the largest number of points alone."""
-    plain = [re.sub(r"max_points=\d+", "", text or "") for text in (before, now)]
+def _only_more(before: str | None, now: str) -> bool:
+    """Whether settings differ in the largest numbers of points and of Newton iterations alone."""
+    plain = [re.sub(r"max_(points|newton)=\d+", "", text or "") for text in (before, now)]
     return plain[0] == plain[1]
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from enum import Enum
 from io import TextIOWrapper
@@ -111,6 +112,11 @@ How = Annotated[Method, typer.Option("--method", help="How orbits are represente
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on from an interrupted trace in DIR; all else as it was.")
 ]
+MaxPoints = Annotated[str | None, typer.Option("--max-points", metavar="N", help="Stop after N steps.")]
+MaxNewton = Annotated[
+    str | None,
+    typer.Option("--max-newton", metavar="N", help="Stop after N Newton iterations, failed ones included."),
+]
 Sweep = Annotated[
     bool,
     typer.Option(
@@ -163,6 +169,8 @@ def trace(
     method: How = Method.COLLOCATION,
     out: Out = None,
     resume: Resume = False,
+    max_points: MaxPoints = None,
+    max_newton: MaxNewton = None,
     sweep: Sweep = False,
     as_json: Json = False,
 ) -> int:
@@ -178,19 +186,26 @@ def trace(
 
     overrides = tuple(_pair(change) for change in changes or ())
     task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
+    limits = {
+        "max_points": _count("--max-points", max_points),
+        "max_newton": _count("--max-newton", max_newton),
+    }
     name = short_name(scene)
     folder = writable(out or Path("orbitrace-out", name))
     before = run.interrupted(task, folder) if resume else None
     with heard_once():
         try:
-            branch = _traced(name, task, accuracy, method, before, folder)
+            branch = _traced(name, task, accuracy, method, before, folder, limits)
             integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
             (folder / run.JOURNAL).unlink(missing_ok=True)
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
         journal, folder = folder / run.JOURNAL, _place(branch, folder)
-        files = run.save(folder, name, task.scene, branch, integrated)
+        try:
+            files = run.save(folder, name, task.scene, branch, integrated)
+        except InputError as error:
+            raise _kept(error, journal) from error
         journal.unlink(missing_ok=True)
         _report(name, task, branch, files, as_json)
     return _verdict(branch, folder)
@@ -263,10 +278,26 @@ def _pair(change: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
+def _count(option: str, text: str | None) -> int | None:
+    try:
+        count = None if text is None else int(text)
+    except ValueError:
+        count = 0
+    if count is not None and count < 1:
+        raise refused(option, text, "a whole number of at least 1")
+    return count
+
+
 def _traced(
-    name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None, folder: Path
+    name: str,
+    task: run.Task,
+    accuracy: Effort,
+    method: Method,
+    before: Branch | None,
+    folder: Path,
+    limits: dict[str, int | None],
 ) -> Branch:
-    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting
+    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting, StepSettings
     from reports import console, run
 
     methods = {
@@ -274,8 +305,11 @@ def _traced(
         Method.SHOOTING: Shooting,
         Method.HARMONIC_BALANCE: HarmonicBalance,
     }
-    with console.progress(name, task.scene) as progress:
-        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before, folder)
+    step = StepSettings(**{key: value for key, value in limits.items() if value is not None})
+    dial = Accuracy[accuracy.name]
+    with console.progress(name, task.scene) as progress, warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: _say(str(message))
+        branch = run.trace(task, dial, progress, methods[method](), before, folder, step)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
     return branch
@@ -297,6 +331,13 @@ def _place(branch: Branch, folder: Path) -> Path:
     from reports.files import INCOMPLETE, writable
 
     return writable(folder / INCOMPLETE)
+
+
+def _kept(error: InputError, journal: Path) -> InputError:
+    """Return the error of results that could not be written, with what is left of them."""
+    if not (journal.is_file() and journal.stat().st_size):
+        return error
+    return InputError(error.field, error.what, f"{error.allowed}; --resume goes on from {journal.name} there")
 
 
 def _swept(name: str, task: run.Task) -> run.Settlements | None:

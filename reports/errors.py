@@ -6,14 +6,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 LONGEST = 60
-"""Values longer than this are cut in a sentence."""
+"""Names and values longer than this are cut in a sentence."""
+
+HUGE = 10**LONGEST
+"""Whole numbers of which it is enough to say so; Python refuses to write the largest out."""
 
 
 class InputError(Exception):
     """Bad input: `field` and `what` was found there ("is -3"); `allowed` says what it must be."""
 
     def __init__(self, field: str, what: str, allowed: str) -> None:
-        super().__init__(f"{field} {what}; {allowed}")
+        super().__init__(plain(f"{field} {what}; {allowed}"))
         self.field, self.what, self.allowed = field, what, allowed
 
     def renamed(self, names: Mapping[str, str]) -> InputError:
@@ -35,9 +38,21 @@ def shown(value: Any) -> str:
         return "a table"
     if isinstance(value, list):
         return "a list"
-    text = str(value).lower() if isinstance(value, bool) else " ".join(str(value).split())
-    text = text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    if isinstance(value, int) and abs(value) >= HUGE:
+        return "a number of too many digits"
+    text = cut(str(value).lower() if isinstance(value, bool) else " ".join(str(value).split()))
     return f'"{text}"' if isinstance(value, str) else text
+
+
+def plain(text: str) -> str:
+    """Return a text with escapes in place of what a terminal does not show but obeys."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def cut(text: str, longest: int = LONGEST) -> str:
+    """Return the plain text, or as much of its beginning as is not too long."""
+    text = plain(text)
+    return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
 def listed(names: Sequence[str], last: str = "or") -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.linear_text import degrees, shown, units
-from reports.picture import BLUE, INK, ORANGE
+from reports.picture import BLUE, INK, ORANGE, entitled
 from reports.view import view_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,6 @@ def draw(path: Path, found: Study, dpi: int = 150) -> None:
         ylabel=f"phase of x to the {source} (°)",
     )
     lower.yaxis.set_major_locator(MultipleLocator(90))
-    upper.set_title(found.scene.title, fontsize="medium")
     for axes in (upper, lower):
         axes.grid(alpha=0.25)
         axes.margins(x=0.02)
@@ -46,7 +45,7 @@ def draw(path: Path, found: Study, dpi: int = 150) -> None:
             axes.axvline(found.resonance / view.unit, color=INK, linewidth=0.8, linestyle=":")
     if upper.get_legend_handles_labels()[1]:
         upper.legend(frameon=False, loc="upper right")
-    figure.savefig(path, format="png", dpi=dpi)
+    entitled(path, figure, upper, found.scene.title, dpi)
 
 
 def _mark(axes: Axes, found: Study, scale: float) -> None:

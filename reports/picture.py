@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from reports.view import View, view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from periodic import Branch
 
@@ -42,13 +44,20 @@ def draw(
         _integrated(axes, *integrated)
     _marks(axes, view, branch)
     axes.set(xlabel=view.axes[0], ylabel=view.axes[1])
-    axes.set_title(scene.title, fontsize="medium", parse_math=False)
     axes.grid(alpha=0.25)
     axes.set_ylim(bottom=0)
     axes.margins(x=0.02)
     if axes.get_legend_handles_labels()[1]:
         axes.legend(frameon=False, loc="upper right")
-    figure.savefig(path, format="png", dpi=dpi)
+    entitled(path, figure, axes, scene.title, dpi)
+
+
+def entitled(path: Path, figure: Figure, axes: Axes, title: str, dpi: int) -> None:
+    """Write a figure as a PNG file, its axes under a title in any script that is no formula."""
+    axes.set_title(title, fontsize="medium", parse_math=False)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
+        figure.savefig(path, format="png", dpi=dpi)
 
 
 def _curve(axes: Axes, view: View, branch: Branch) -> None:

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.errors import InputError, refused
-from reports.files import INCOMPLETE, write
+from reports.files import INCOMPLETE, unwritable, write
 from reports.scene import Override, ends, load
 from reports.schema import Scene
 from reports.summary import csv_text, json_text
 from reports.view import view_of
 
 if TYPE_CHECKING:
-    from periodic import Accuracy, Branch, Point
+    from periodic import Accuracy, Branch, Point, StepSettings
     from periodic.methods.protocol import Method
     from reports.sweep import Settled
 
@@ -94,7 +94,8 @@ def interrupted(task: Task, folder: Path) -> Branch:
     from reports.build import build
 
     places = [folder / JOURNAL, folder / INCOMPLETE / BRANCH, folder / BRANCH]
-    there = [place for place in places if place.is_file()]
+    # A journal is empty until the first step.
+    there = [place for place in places if place.is_file() and place.stat().st_size]
     path = max(there, key=lambda place: (place.name == JOURNAL, place.stat().st_mtime), default=None)
     if path is None:
         raise refused("--resume", str(folder), "a directory with the branch.nc of an interrupted trace")
@@ -119,6 +120,7 @@ def trace(
     method: Method | None = None,
     resume: Branch | None = None,
     folder: Path | None = None,
+    step: StepSettings | None = None,
 ) -> Branch:
     """Build the system of a scene and trace its branch over its range, with a journal in `folder`.
 
@@ -137,6 +139,7 @@ def trace(
             start=begin,
             at=[value * view.unit for value in task.at],
             accuracy=accuracy,
+            settings=accuracy.settings(step),
             method=method,
             resume=resume,
             journal=None if folder is None else folder / JOURNAL,
@@ -145,6 +148,10 @@ def trace(
     except periodic.JournalError as error:
         allowed = "it must be one that no other trace is writing to"
         raise InputError("--out", f'is "{folder}"', allowed) from error
+    except OSError as error:
+        if folder is None:
+            raise
+        raise unwritable(folder, error) from error
     except periodic.ResumeError as error:
         raise refused("--resume", "another branch", f"one of this scene ({error})") from error
 

@@ -11,11 +11,19 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from reports.errors import InputError, listed, refused, shown
+from reports.errors import LONGEST, InputError, cut, listed, refused, shown
 from reports.schema import KINDS, Scene
 
 Override = tuple[str, str]
 """A key, dotted or its last component alone, and the text of its value; no text takes the key out."""
+
+
+LARGEST = 32768
+"""Bytes of a scene file; what is larger is none, and may take Python's reader of TOML for ever."""
+
+
+BARE = re.compile(r"[A-Za-z0-9_-]{1,60}")
+"""Keys that stand in a sentence without quotes."""
 
 
 def scene_names() -> list[str]:
@@ -62,7 +70,12 @@ def _text(source: str) -> str:
     names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
     try:
-        return path.read_text("utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
+        if len(content) > LARGEST:
+            found = f'file "{source}" is larger than {LARGEST} bytes'
+            raise InputError("scene", found, "it must be a TOML file like those built in")
+        return content.decode("utf-8-sig")
     except (FileNotFoundError, ValueError) as error:
         if path.is_file():
             found = f'file "{source}" is not text in UTF-8'
@@ -77,7 +90,7 @@ def _parsed(source: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        found = f'file "{source}" is not TOML: {error}'
+        found = f'file "{source}" is not TOML: {cut(str(error), 3 * LONGEST)}'
         raise InputError("scene", found, "it must hold lines like preload = 810") from error
 
 
@@ -134,7 +147,7 @@ def _complaint(schema: type[BaseModel], error: ValidationError) -> InputError:
     """Return the first of pydantic's errors as a sentence; a mistyped key before what it leaves missing."""
     first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
     path = [str(part) for part in first["loc"]]
-    key = ".".join(path)
+    key = ".".join(part if BARE.fullmatch(part) else shown(part) for part in path)
     table: type[BaseModel] = schema
     for name in path[:-1]:
         table = _table(table.model_fields[name].annotation) or table

@@ -7,7 +7,7 @@ from functools import cache
 from importlib import resources
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from reports.errors import InputError, listed, refused
 
@@ -24,6 +24,20 @@ def whole(low: int, high: int) -> Any:
 
 Speed = Annotated[float, number(0.1, 1e5, "rev/min")]
 Frequency = Annotated[float, number(1e-9, 1e9, "rad/s")]
+
+
+def one_line(text: str) -> str:
+    """Refuse a text that a terminal would not show as a line."""
+    if not text.isprintable():
+        raise ValueError
+    return text
+
+
+Title = Annotated[
+    str,
+    AfterValidator(one_line),
+    Field(max_length=200, description="one line of text, at most 200 characters"),
+]
 
 
 class Table(BaseModel):
@@ -154,7 +168,7 @@ class SpeedRange(Table):
 class DiscScene(Table):
     """Two discs in rolling contact, one of them wavy."""
 
-    title: str = Field(description="text")
+    title: Title
     kind: Literal["disc"]
     discs: Discs
     contact: Contact
@@ -218,7 +232,7 @@ class FrequencyRange(Table):
 class OscillatorScene(Table):
     """A forced oscillator with a linear and a cubic spring."""
 
-    title: str = Field(description="text")
+    title: Title
     kind: Literal["oscillator"]
     oscillator: Oscillator
     trace: FrequencyRange
