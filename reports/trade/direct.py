@@ -1,0 +1,124 @@
+"""Orbits found directly: collocation on uniform, adaptive and anchored meshes, shooting, harmonic balance.
+
+All begin from the same neighbouring orbit, as continuation does: on the even mesh that is theirs, or on the
+mesh that their tolerance asks for there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+import periodic as per
+from periodic.anchors import AnchorSettings
+from periodic.closure import Metric
+from periodic.mesh import uniform
+from periodic.methods.protocol import Method
+from periodic.newton import Correction, Outcome
+from periodic.orbit import transfer
+from periodic.solve import Solved, Task, at_parameter, remesh, settle
+from reports.trade.problems import Problem, nearby
+
+NEWTON = per.NewtonSettings(tolerance=1e-8, max_iterations=16)
+"""The last step is smaller; what it leaves is of the order of its square."""
+
+MOST = 800
+"""Most intervals of an adaptive mesh."""
+
+NO_ANCHORS = AnchorSettings(appear=1e3, vanish=1e3)
+"""Excursions of a thousand rad do not come about."""
+
+SLIMMING = 5
+"""How many times the neighbouring orbit's mesh is made anew for a tolerance; each at most halves it."""
+
+NONE = np.zeros(0)
+
+
+class FailedError(ArithmeticError):
+    """A method did not find the orbit; the message says why."""
+
+
+@dataclass(frozen=True)
+class Even:
+    """Collocation on `ntst` equal intervals: Newton from the neighbouring orbit and nothing else."""
+
+    scheme: per.Scheme
+    ntst: int
+
+    def solve(self, problem: Problem) -> Correction:
+        """Return the orbit. Raises FailedError."""
+        guess = transfer(nearby(problem), uniform(self.scheme, self.ntst), NONE)
+        return _converged(per.Collocation(), problem, guess)
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """Harmonic balance with a fixed number of harmonics."""
+
+    count: int
+
+    def solve(self, problem: Problem) -> Correction:
+        """Return the orbit. Raises FailedError."""
+        method = per.HarmonicBalance(harmonics=self.count, most=self.count)
+        guess = method.adopted(problem.system, per.MeshSettings(), nearby(problem), problem.values)
+        return _converged(method, problem, guess)
+
+
+@dataclass(frozen=True)
+class Adaptive:
+    """A method whose error estimate is to fall below a tolerance, on meshes that it chooses."""
+
+    method: Method
+    scheme: per.Scheme
+    tolerance: float
+    anchored: bool = True
+
+    def solve(self, problem: Problem) -> Correction:
+        """Return the orbit. Raises FailedError."""
+        task, begin = self._task(problem), neighbour(self, problem)
+        guess = replace(begin, parameter=problem.values)
+        return self._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True)).correction
+
+    def _task(self, problem: Problem) -> Task:
+        anchors = AnchorSettings(deepest=0.1 * self.tolerance) if self.anchored else NO_ANCHORS
+        mesh = per.MeshSettings(tolerance=self.tolerance, scheme=self.scheme, ntst_max=MOST, anchors=anchors)
+        newton = replace(NEWTON, tolerance=max(1e-2 * self.tolerance, 1e-10) ** 0.75)
+        settings = per.Settings(mesh=mesh, newton=newton)
+        scale = abs(problem.bounds[1] - problem.bounds[0])
+        return Task(problem.system, problem.index, Metric(scale), settings, self.method)
+
+    def _accurate(self, task: Task, solved: Solved | Outcome) -> Solved:
+        if isinstance(solved, Outcome):
+            raise FailedError(solved.value)
+        if solved.error.orbit > self.tolerance:
+            raise FailedError(self.method.shortfall(task, solved))
+        return solved
+
+
+@cache
+def neighbour(way: Adaptive, problem: Problem) -> per.Orbit:
+    """Return the neighbouring orbit as the method has it at its tolerance: on a mesh of its own for it."""
+    task, orbit = way._task(problem), nearby(problem)
+    guess = way.method.adopted(problem.system, task.settings.mesh, orbit, orbit.parameter)
+    solved = way._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True))
+    for _ in range(SLIMMING):
+        slimmer = remesh(task, solved, fixed=True)
+        if isinstance(slimmer, Outcome) or slimmer.error.orbit > way.tolerance or not slimmer.anchored:
+            break
+        solved = slimmer
+    return solved.orbit
+
+
+def shooting(tolerance: float) -> Adaptive:
+    """Return single shooting whose integrator has a tolerance, interpolated as well as that allows."""
+    orbit = min(1e3 * tolerance, 0.1)
+    return Adaptive(per.Shooting(tolerance=tolerance), per.Scheme(per.Family.RADAU, 6), orbit)
+
+
+def _converged(method: Method, problem: Problem, guess: per.Orbit) -> Correction:
+    found = method.correct(problem.system, replace(guess, parameter=problem.values), (), (), NEWTON)
+    if found.outcome is not Outcome.CONVERGED:
+        raise FailedError(found.outcome.value)
+    return found

@@ -1,0 +1,170 @@
+"""Whole branches: what is traced, how, and the error of the folds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import periodic as per
+from periodic.anchors import AnchorSettings
+from periodic.methods.protocol import Method
+from reports.sweep import Settled, SweepSettings, sweep
+from reports.trade.measure import Measured, timed
+from reports.trade.problems import Problem
+from reports.trade.words import power
+
+INTEGRATION = "sweep by CVODES"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traced:
+    """A trace from one bound to the other with a method and settings."""
+
+    family: str
+    setting: str
+    settings: per.Settings
+    method: Method
+
+    def branch(self, problem: Problem) -> per.Branch:
+        """Return the branch."""
+        low, high = problem.bounds
+        start = high if problem.parameter == "speed" else low
+        return per.trace(
+            problem.system,
+            problem.parameter,
+            (low, high),
+            start=start,
+            settings=self.settings,
+            method=self.method,
+        )
+
+    def measured(self, problem: Problem, folds: Sequence[float]) -> Measured:
+        """Trace, time and compare."""
+        branch, seconds = timed(lambda: self.branch(problem))
+        found = [p.parameter for p in branch.labelled(per.Label.FOLD)]
+        if len(found) != len(folds):
+            failure = f"{len(found)} folds of {len(folds)}; {branch.stop}"
+            return Measured(family=self.family, setting=self.setting, failure=failure)
+        return Measured(
+            family=self.family,
+            setting=self.setting,
+            seconds=seconds,
+            error=worst(found, folds),
+            size=len(branch),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swept:
+    """Time integration to steady state at equally spaced values, up and down; the jumps tell the folds."""
+
+    count: int
+
+    def measured(self, problem: Problem, folds: Sequence[float]) -> Measured:
+        """Sweep, time and compare: each jump lies in the middle of a step."""
+        values = [float(v) for v in np.linspace(*problem.bounds, self.count)]
+        settings = SweepSettings(tolerance=1e-6)
+        ways, seconds = timed(
+            lambda: [
+                sweep(problem.system, problem.parameter, way, settings) for way in (values, values[::-1])
+            ]
+        )
+        found = [jump(way) for way in ways]
+        return Measured(
+            family=INTEGRATION,
+            setting=f"{self.count} values each way",
+            seconds=seconds,
+            error=worst(sorted(found), sorted(folds)),
+            size=2 * self.count,
+        )
+
+
+def jump(way: Sequence[Settled]) -> float:
+    """Return where the amplitude changes most from one value to the next."""
+    swing = np.array([s.maximum - s.minimum for s in way])
+    place = int(np.abs(np.diff(swing)).argmax())
+    return (way[place].parameter + way[place + 1].parameter) / 2
+
+
+def worst(found: Sequence[float], folds: Sequence[float]) -> float:
+    """Return the largest relative difference."""
+    return float(np.abs(np.array(found) / np.array(folds) - 1).max())
+
+
+def dialled(tolerances: Sequence[float], ncol: int = 5) -> Iterator[Traced]:
+    """Yield collocation at tolerances."""
+    for tolerance in tolerances:
+        yield Traced(
+            family=f"Radau {ncol}, anchored",
+            setting=f"tol {power(tolerance)}",
+            settings=settings_for(tolerance, per.Scheme(per.Family.RADAU, ncol)),
+            method=per.Collocation(),
+        )
+
+
+def accuracies() -> Iterator[Traced]:
+    """Yield draft, standard and fine."""
+    for accuracy in per.Accuracy:
+        yield Traced(
+            family="--accuracy",
+            setting=accuracy.name.lower(),
+            settings=accuracy.settings(),
+            method=per.Collocation(),
+        )
+
+
+def balanced(counts: Sequence[int]) -> Iterator[Traced]:
+    """Yield harmonic balance with at most so many harmonics, its tolerance as loose as need be."""
+    for count in counts:
+        yield Traced(
+            family="harmonic balance",
+            setting=f"H {count}",
+            settings=settings_for(0.1, per.Scheme(), newton=1e-8),
+            method=per.HarmonicBalance(harmonics=count, most=count),
+        )
+
+
+def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
+    """Yield single shooting."""
+    for tolerance in tolerances:
+        yield Traced(
+            family="shooting",
+            setting=f"tol {power(tolerance)}",
+            settings=settings_for(1e3 * tolerance, per.Scheme(per.Family.RADAU, 6)),
+            method=per.Shooting(tolerance=tolerance),
+        )
+
+
+def folds_near(
+    problem: Problem, branch: per.Branch, method: Method, settings: per.Settings, width: float
+) -> list[float]:
+    """Return the folds of a branch located anew by another method, each on a short branch about it."""
+    found = []
+    for place, point in enumerate(branch):
+        if point.label is not per.Label.FOLD:
+            continue
+        near = branch[place - 1]
+        reach = max(width * abs(point.parameter), 2 * abs(point.parameter - near.parameter))
+        again = per.trace(
+            problem.system,
+            problem.parameter,
+            (point.parameter - reach, point.parameter + reach),
+            guess=near.orbit,
+            settings=settings,
+            method=method,
+            stop={"LP": 1},
+        )
+        (fold,) = again.labelled(per.Label.FOLD)
+        found.append(fold.parameter)
+    return found
+
+
+def settings_for(tolerance: float, scheme: per.Scheme, newton: float | None = None) -> per.Settings:
+    """Return the settings of a tolerance as the dial has them."""
+    mesh = per.MeshSettings(
+        tolerance=tolerance, scheme=scheme, anchors=AnchorSettings(deepest=0.1 * tolerance)
+    )
+    limit = newton or max(1e-2 * tolerance, 1e-10) ** 0.75
+    return per.Settings(mesh=mesh, newton=per.NewtonSettings(tolerance=limit, max_iterations=16))
