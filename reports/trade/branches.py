@@ -11,7 +11,7 @@ from reports.pages.report import table
 from reports.pages.section import Section, Tell
 from reports.trade.figures import branches
 from reports.trade.measure import Measured, digits
-from reports.trade.problems import Problem, chain, disc, duffing
+from reports.trade.problems import Problem, disc, duffing
 from reports.trade.whole import Swept, Traced, accuracies, balanced, dialled, folds_near, settings_for, shot
 from reports.trade.words import advice, failures, power, seconds
 
@@ -49,11 +49,6 @@ class Study:
         return folds, max(abs(b / a - 1) for a, b in zip(folds, again, strict=True))
 
 
-def chain_cases() -> list[Traced | Swept]:
-    """Return what can be paid for on the chain."""
-    return [*[*accuracies()][:2], *balanced((3, 5))]
-
-
 STUDIES = (
     Study(
         key="disc",
@@ -61,13 +56,14 @@ STUDIES = (
         problem=lambda: disc(360.0),
         cases=lambda: [*accuracies(), *dialled(DIAL), *balanced((10, 20)), Swept(count=33), Swept(count=81)],
         tight=1e-10,
+        loose=1e-6,
         other=per.Shooting(tolerance=1e-12),
         by="shooting (CVODES, 1e-12)",
         width=2e-4,
         remark=(
             "A sweep in time finds the jumps to half the distance of its speeds, never the unstable sheet, "
-            "and takes longer than `fine`; halving its error doubles its time. The series does not get past the "
-            "loss of contact."
+            "and takes longer than `fine`; halving its error doubles its time. The series does not get past "
+            "the loss of contact."
         ),
     ),
     Study(
@@ -88,18 +84,6 @@ STUDIES = (
         width=1e-3,
         remark="`standard` is enough for all that is drawn or designed.",
     ),
-    Study(
-        key="chain",
-        title="The chain of 50 from Ω = 1.1 to 1.2",
-        problem=chain,
-        cases=chain_cases,
-        tight=1e-8,
-        other=per.HarmonicBalance(harmonics=12, most=12),
-        by="harmonic balance (12 harmonics)",
-        width=1e-3,
-        loose=1e-5,
-        remark="With 100 states a branch takes minutes: screen with `draft`.",
-    ),
 )
 
 
@@ -117,16 +101,21 @@ def measured(study: Study, tell: Tell) -> tuple[list[Measured], dict[str, float]
 
 
 def section(tell: Tell) -> Section:
+    """Trace the disc and Duffing A."""
+    return traced("Whole branches", STUDIES, tell)
+
+
+def traced(title: str, studies: Sequence[Study], tell: Tell) -> Section:
     """Trace everything."""
     rows: list[Measured] = []
     numbers: dict[str, float] = {}
-    for study in STUDIES:
+    for study in studies:
         found, known = measured(study, tell)
         rows += found
         numbers |= known
-    figures = {f"branch-{s.key}": branches(of(s, rows)) for s in STUDIES}
+    figures = {f"branch-{s.key}": branches(of(s, rows)) for s in studies}
     return Section(
-        title="Whole branches", text=text(rows, numbers), numbers=numbers, rows=rows, figures=figures
+        title=title, text=told(studies, rows, numbers), numbers=numbers, rows=rows, figures=figures
     )
 
 
@@ -138,8 +127,13 @@ def of(study: Study, rows: Sequence[Measured]) -> list[Measured]:
 
 def text(rows: Sequence[Measured], n: Mapping[str, float]) -> str:
     """Return the section in Markdown."""
+    return told(STUDIES, rows, n)
+
+
+def told(studies: Sequence[Study], rows: Sequence[Measured], n: Mapping[str, float]) -> str:
+    """Return what was measured on some branches in Markdown."""
     lead = "The error is that of the folds, the time that of the whole branch with multipliers.\n\n"
-    return lead + "".join(_told(study, of(study, rows), n) for study in STUDIES)
+    return lead + "".join(_told(study, of(study, rows), n) for study in studies)
 
 
 def _told(study: Study, rows: Sequence[Measured], n: Mapping[str, float]) -> str:

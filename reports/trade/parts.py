@@ -141,7 +141,10 @@ every 10 rev/min, against the full model.
 
 def _cells(row: Model, n: Mapping[str, float]) -> tuple[str, ...]:
     def share(key: str) -> str:
-        return "" if row.name == FULL else f"{n[f'{row.name} {key}']:.1%}"
+        if row.name == FULL:
+            return ""
+        value = n[f"{row.name} {key}"]
+        return f"{value:.1%}" if value < 1 else f"{value:.1f} times"
 
     wrong = "" if row.name == FULL else f"{n[f'{row.name} wrong speeds']:.0f} of {len(SPEEDS)}"
     folds = ", ".join(f"{fold:.2f}" for fold in sorted(row.folds))
@@ -165,9 +168,10 @@ def _advice(rows: Sequence[Model]) -> str:
         f"Leaving the squeeze out makes the branch {full.seconds / film.seconds:.1f} times as quick, leaving "
         f"the film out {full.seconds / dry.seconds:.1f} times; per Newton iteration the gain is "
         f"{_each(full) / _each(film):.1f} and {_each(full) / _each(dry):.1f}. Away from resonance, where the "
-        "errors of the table are small, a smaller model is enough to screen with. Near it the folds move by "
-        f"{_shift(full, film):.1f} and {_shift(full, dry):.1f} rev/min: what decides on damping there has "
-        "to be in the model."
+        "errors of the table are small, a smaller model is enough to screen with. The large "
+        f"sheet ends {_shift(full, film):.1f} and {_shift(full, dry):.1f} rev/min too low, and below the true "
+        "end its amplitude is one that the disc never has: the squeeze of the film is what ends the "
+        "resonance, and has to be in the model."
     )
 
 
@@ -176,8 +180,8 @@ def _each(row: Model) -> float:
 
 
 def _shift(full: Model, other: Model) -> float:
-    """Largest distance of a fold of the full model from the nearest of another."""
-    return max(min(abs(a - b) for b in other.folds) for a in full.folds)
+    """How much further down another model's large sheet reaches, in rev/min."""
+    return min(full.folds) - min(other.folds)
 
 
 def picture(rows: Sequence[Model]) -> Figure:
