@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
 
 .DEFAULT_GOAL := help
-.PHONY: help run test long lint types wheel clean
+.PHONY: help run test long bench lint types wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -20,6 +20,9 @@ test: $(VENV)/.installed-dev ## Run the tests
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(BIN)/python -m pytest -m long
+
+bench: $(VENV)/.installed ## Run the benchmarks, compare with the last record
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.bench
 
 lint: $(VENV)/.installed-dev ## Check style and formatting
 	$(BIN)/ruff check .

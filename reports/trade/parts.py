@@ -167,10 +167,10 @@ def _advice(rows: Sequence[Model]) -> str:
     return (
         f"Leaving the squeeze out makes the branch {full.seconds / film.seconds:.1f} times as quick, leaving "
         f"the film out {full.seconds / dry.seconds:.1f} times; per Newton iteration the gain is "
-        f"{_each(full) / _each(film):.1f} and {_each(full) / _each(dry):.1f}. Away from resonance, where the "
-        "errors of the table are small, a smaller model is enough to screen with. The large "
-        f"sheet ends {_shift(full, film):.1f} and {_shift(full, dry):.1f} rev/min too low, and below the true "
-        "end its amplitude is one that the disc never has: the squeeze of the film is what ends the "
+        f"{_each(full) / _each(film):.1f} and {_each(full) / _each(dry):.1f}. Away from resonance, where "
+        "the errors of the table are small, a smaller model is enough to screen with. The large "
+        f"sheet ends {_shift(full, film):.1f} and {_shift(full, dry):.1f} rev/min too low, and below the "
+        "true end its amplitude is one that the disc never has: the squeeze of the film is what ends the "
         "resonance, and has to be in the model."
     )
 

@@ -1,0 +1,129 @@
+"""What is measured of this project: branches, Newton iterations, start-up."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+import periodic as per
+import symbolic as sym
+from periodic.mesh import uniform
+from periodic.newton import correct
+from periodic.orbit import transfer
+from reports.bench.clock import median
+from reports.build import build
+from reports.scene import load
+from reports.trade.problems import chain_model
+from reports.view import RPM
+
+NTST = (50, 100, 200, 400)
+COUNTS = (2, 10, 20, 50, 100)
+RADAU_4 = per.Scheme(per.Family.RADAU, 4)
+
+FOLDS = (2.211935317020, 1.438670145514)
+"""Of Duffing A in rad/s, by shooting with DOP853."""
+
+Numbers = dict[str, float]
+"""Results by name; a name ends with its unit."""
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A benchmark and what measures it."""
+
+    name: str
+    run: Callable[[], Numbers]
+
+
+def disc(accuracy: per.Accuracy) -> Numbers:
+    """Trace the disc from 500 to 100 rev/min."""
+    system = build(load("vitrea79-810N"))
+    return _branch(lambda: per.trace(system, "speed", (500 * RPM, 100 * RPM), accuracy=accuracy))
+
+
+def duffing(accuracy: per.Accuracy) -> Numbers:
+    """Trace Duffing A from 0.3 to 3 rad/s."""
+    system = build(load("duffing"))
+    found = per.trace(system, "Omega", (0.3, 3.0), accuracy=accuracy)
+    folds = [p.parameter for p in found.labelled(per.Label.FOLD)]
+    numbers = _branch(lambda: per.trace(system, "Omega", (0.3, 3.0), accuracy=accuracy))
+    return numbers | {"fold error": fold_error(folds)}
+
+
+def fold_error(folds: Sequence[float]) -> float:
+    """Return the largest relative error of both folds of Duffing A, infinite where there are not two."""
+    if len(folds) != len(FOLDS):
+        return math.inf
+    return max(abs(f / known - 1) for f, known in zip(folds, FOLDS, strict=True))
+
+
+def _branch(traced: Callable[[], per.Branch]) -> Numbers:
+    branch = traced()
+    seconds = median(traced)
+    return {
+        "s": seconds,
+        "points": float(len(branch)),
+        "iterations": float(branch.newton_iterations),
+        "per point ms": 1e3 * seconds / len(branch),
+    }
+
+
+def disc_iterations() -> Numbers:
+    """Newton iterations on the disc at 360 rev/min, ncol 4: ms for each, by ntst."""
+    system = build(load("vitrea79-810N"))
+    return {f"ntst {ntst} ms": _iteration(system, {"speed": 360 * RPM}, ntst) for ntst in NTST}
+
+
+def chain_iterations() -> Numbers:
+    """The same on chains of oscillators at ntst 20, by their number."""
+    return {
+        f"{count} oscillators ms": _iteration(sym.compile(chain_model(count)), {"Omega": 1.1}, 20)
+        for count in COUNTS
+    }
+
+
+def _iteration(system: sym.CompiledSystem, values: Mapping[str, float], ntst: int) -> float:
+    """Return the ms of one Newton iteration: those of a converged orbit corrected again and again."""
+    (name, value), mesh = next(iter(values.items())), uniform(RADAU_4, ntst)
+    parameter = np.array(system.nominal, dtype=float)
+    parameter[[p.name for p in system.parameters].index(name)] = value
+    rest = per.Collocation().rest(system, per.MeshSettings(scheme=RADAU_4, ntst=ntst), parameter)
+    orbit = correct(system, transfer(rest, mesh, rest.phases)).orbit
+
+    def again() -> int:
+        return correct(system, orbit).iterations
+
+    # A correction linearises once more at its end, for the multipliers.
+    return 1e3 * median(again, 15) / (again() + 1)
+
+
+def start_up() -> Numbers:
+    """Fresh processes: the import, the help, and a first trace from the command line to its files."""
+    main = "import sys; from reports.cli import main; sys.exit(main())"
+    with tempfile.TemporaryDirectory() as folder:
+        trace = [sys.executable, "-c", main, "trace", "vitrea79-810N", "--out", folder]
+        return {
+            "import s": median(lambda: _run([sys.executable, "-c", "import periodic, symbolic"])),
+            "help s": median(lambda: _run([sys.executable, "-c", main, "--help"])),
+            "first trace s": median(lambda: _run(trace), 3),
+        }
+
+
+def _run(command: list[str]) -> None:
+    subprocess.run(command, check=True, capture_output=True)
+
+
+OWN = (
+    *(Benchmark(f"disc branch, {a.name.lower()}", partial(disc, a)) for a in per.Accuracy),
+    *(Benchmark(f"Duffing A branch, {a.name.lower()}", partial(duffing, a)) for a in per.Accuracy),
+    Benchmark("disc iteration", disc_iterations),
+    Benchmark("chain iteration", chain_iterations),
+    Benchmark("start", start_up),
+)
