@@ -40,13 +40,13 @@ def main(arguments: list[str] | None = None) -> int:
                 results[benchmark.name] = benchmark.run()
             except MissingError as error:
                 skipped[benchmark.name] = str(error)
-    record = begun(results, skipped, load)
-    width = max((len(name) for name, _, _ in compared(record, before)), default=0)
-    for name, value, ratio in compared(record, before):
+    record, lines = begun(results, skipped, load), compared(results, before)
+    width = max((len(name) for name, _, _ in lines), default=0)
+    for name, value, ratio in lines:
         print(f"{name:{width}}  {value:10.4g}" + ("" if ratio is None else f"  x {ratio:.2f}"))
     for name, reason in skipped.items():
         print(f"{name}: skipped, {reason}")
-    print(f"x: ratio to the record of {before.date}" if before else "no record to compare with")
+    print("x: ratio to the last record that has it" if before else "there is no earlier record")
     print(f"written: {record.save(asked.out)}")
     return 0
 

@@ -13,10 +13,7 @@ from functools import partial
 from typing import Any
 
 from reports.bench.clock import median
-from reports.bench.suite import Benchmark, Numbers
-
-FOLDS = (2.211935317020, 1.438670145514)
-"""Of Duffing A, rad/s."""
+from reports.bench.suite import Benchmark, Numbers, fold_error
 
 
 class MissingError(Exception):
@@ -44,7 +41,7 @@ def auto(ntst: int) -> Numbers:
         "s": seconds,
         "points": float(len(points)),
         "per point ms": 1e3 * seconds / len(points),
-        "fold error": _error(folds),
+        "fold error": fold_error(folds),
     }
 
 
@@ -80,13 +77,6 @@ def _imported(module: str, package: str) -> Any:
         return importlib.import_module(module)
     except ImportError as error:
         raise MissingError(f"{package} is not installed (pip install 'orbitrace[peers]')") from error
-
-
-def _error(folds: Sequence[float]) -> float:
-    """Return the largest relative error of both folds, infinite where there are not two."""
-    if len(folds) != len(FOLDS):
-        return math.inf
-    return max(abs(f / known - 1) for f, known in zip(folds, FOLDS, strict=True))
 
 
 PEERS = tuple(Benchmark(f"AUTO-07p, ntst {ntst}", partial(auto, ntst)) for ntst in (20, 50, 100))

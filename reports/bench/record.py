@@ -21,7 +21,7 @@ class RecordError(ValueError):
 
 @dataclass(frozen=True, kw_only=True)
 class Record:
-    """date (UTC, ISO), machine, versions, and the results by benchmark; `skipped` says why some are not there.
+    """date (UTC, ISO), machine, versions, results by benchmark, and why some were `skipped`.
 
     load: of the machine when the run began, in processes; busy machines spoil even processor times.
     """
@@ -54,10 +54,12 @@ def begun(results: dict[str, Numbers], skipped: dict[str, str], load: float) -> 
     return Record(date=date, machine=machine, versions=versions, load=load, results=results, skipped=skipped)
 
 
-def last(folder: Path) -> Record | None:
-    """Return the latest record in a folder, None where there is none. Raises RecordError."""
-    files = sorted(folder.glob("*.json"))
-    return loaded(files[-1]) if files else None
+def last(folder: Path) -> dict[str, Numbers]:
+    """Return the latest results of each benchmark in a folder of records. Raises RecordError."""
+    known: dict[str, Numbers] = {}
+    for path in sorted(folder.glob("*.json")):
+        known |= loaded(path).results
+    return known
 
 
 def loaded(path: Path) -> Record:
@@ -68,13 +70,12 @@ def loaded(path: Path) -> Record:
         raise RecordError(f"{path} is no record of benchmarks ({error})") from error
 
 
-def compared(new: Record, old: Record | None) -> list[tuple[str, float, float | None]]:
-    """Return every result of a record, with its ratio to that of another where it has one."""
+def compared(new: dict[str, Numbers], old: dict[str, Numbers]) -> list[tuple[str, float, float | None]]:
+    """Return every new result, with its ratio to the old one where there is one."""
     lines: list[tuple[str, float, float | None]] = []
-    for name, numbers in new.results.items():
-        before = old.results.get(name, {}) if old else {}
+    for name, numbers in new.items():
         for quantity, value in numbers.items():
-            known = before.get(quantity)
+            known = old.get(name, {}).get(quantity)
             lines.append((f"{name}: {quantity}", value, value / known if known else None))
     return lines
 

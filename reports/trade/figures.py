@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from reports.pages.figures import panels
 from reports.trade.cases import ANCHORED, BALANCE, CVODES, RK4, SHOOTING, UNTIED
@@ -58,6 +59,7 @@ def _curves(axes: Any, rows: Sequence[Measured], colours: dict[str, str]) -> Non
             style = {"color": colours[family]} if family in colours else {}
             marker = MARKERS[index % len(MARKERS)]
             axes.loglog(time, error, marker=marker, markersize=4, linewidth=1, label=family, **style)
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.legend(fontsize=7)
 
 
