@@ -125,7 +125,8 @@ def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> No
 def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
     """One branch out of one or two runs from the same start, and what was spent on it before."""
     reached = [run for run in runs if run.stop is not None]
-    last, first = reached[-1], _reversed(runs[0].collected) if len(reached) == 2 else []
+    last, both = reached[-1], len(reached) == 2 and bool(runs[0].collected)
+    first = _reversed(runs[0].collected) if both else []
     assert last.stop is not None
     return Branch(
         parameter=parameter,

@@ -5,19 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
+
 import periodic as per
 import symbolic as sym
+from periodic.mesh import uniform
+from periodic.newton import Outcome, correct
+from periodic.orbit import transfer
 from periodic.scheme import Array
 from reports.build import build, disc_model
 from reports.scene import load
 from reports.schema import DiscScene
 from reports.view import RPM
+from symbolic.flow import Flow
 from symbolic.linear import with_values
 
 DISC = "vitrea79-810N"
 
 NEARBY = 1.005
 """Where the orbit lies that every method starts from, in units of the parameter."""
+
+SETTLING, SAMPLES = 300, 200
+"""Periods that a motion is left to settle, and samples of the last."""
 
 CHAIN = {"m": 1.0, "c": 0.05, "k": 1.0, "k3": 0.1, "link": 0.05, "F": 0.3}
 """Of each oscillator of the chain in SI: mass, damper, linear and cubic spring to ground, spring to the next;
@@ -29,7 +38,7 @@ class Problem:
     """One orbit of a system, at `value` of `parameter`, and its branch between `bounds` (SI).
 
     explicit: the same system without algebraic unknowns, for explicit steps. begin: from where the first
-    sheet of the branch leads to the neighbouring orbit.
+    sheet of the branch leads to the neighbouring orbit; None: what the motion settles to from rest is one.
     """
 
     name: str
@@ -38,7 +47,7 @@ class Problem:
     parameter: str
     value: float
     bounds: tuple[float, float]
-    begin: float
+    begin: float | None
 
     @property
     def values(self) -> Array:
@@ -115,7 +124,7 @@ def chain(count: int = 50) -> Problem:
         parameter="Omega",
         value=1.1,
         bounds=(1.1, 1.2),
-        begin=NEARBY * 1.1,
+        begin=None,
     )
 
 
@@ -133,14 +142,29 @@ def chain_model(count: int) -> sym.Model:
 
 @cache
 def nearby(problem: Problem) -> per.Orbit:
-    """Return the orbit at NEARBY times the value."""
+    """Return the orbit at NEARBY times the value. Raises ArithmeticError where it is not found."""
     value = NEARBY * problem.value
-    if problem.begin == value:
-        bounds = (value, value + 1e-3 * abs(problem.bounds[1] - problem.bounds[0]))
-    else:
-        bounds = (min(problem.begin, value), max(problem.begin, value))
+    if problem.begin is None:
+        return _settled(problem, value)
+    bounds = (min(problem.begin, value), max(problem.begin, value))
     branch = per.trace(problem.system, problem.parameter, bounds, start=problem.begin)
-    found = [p for p in branch if abs(p.parameter / value - 1) < 1e-12]
-    if not found:
+    if branch.stop.reason is not per.Reason.BOUND:
         raise ArithmeticError(f"{problem.name} was not reached: {branch.stop}")
-    return found[0].orbit
+    return branch[-1].orbit
+
+
+def _settled(problem: Problem, value: float) -> per.Orbit:
+    """Where the motion settles from rest, as an orbit by collocation."""
+    system, parameter = problem.system, with_values(problem.system, {problem.parameter: value})
+    state, unknown = system.rest(parameter)
+    flow, phase = Flow(system, 1e-6), 2 * np.pi * np.arange(SETTLING + 1.0)
+    path = flow.run(state, unknown, parameter, phase)
+    last = flow.run(
+        path.state[-1], path.algebraic[-1], parameter, 2 * np.pi * np.arange(SAMPLES + 1.0) / SAMPLES
+    )
+    guess = per.sampled(last.phase, last.state, last.algebraic, parameter)
+    mesh = uniform(per.Scheme(per.Family.GAUSS, 5), 16)
+    found = correct(system, transfer(guess, mesh, guess.phases))
+    if found.outcome is not Outcome.CONVERGED:
+        raise ArithmeticError(f"{problem.name} was not reached: {found.outcome.value}")
+    return found.orbit

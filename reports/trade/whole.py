@@ -140,25 +140,44 @@ def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
 def folds_near(
     problem: Problem, branch: per.Branch, method: Method, settings: per.Settings, width: float
 ) -> list[float]:
-    """Return the folds of a branch located anew by another method, each on a short branch about it."""
+    """Return the folds of a branch located anew by another method, each on a short branch about it.
+
+    That one begins at most `width` (relative) from the fold, or at the last point of the branch before it.
+    Raises ArithmeticError where the other method does not find it.
+    """
     found = []
     for place, point in enumerate(branch):
         if point.label is not per.Label.FOLD:
             continue
-        near = branch[place - 1]
-        reach = max(width * abs(point.parameter), 2 * abs(point.parameter - near.parameter))
-        again = per.trace(
-            problem.system,
-            problem.parameter,
-            (point.parameter - reach, point.parameter + reach),
-            guess=near.orbit,
-            settings=settings,
-            method=method,
-            stop={"LP": 1},
-        )
-        (fold,) = again.labelled(per.Label.FOLD)
-        found.append(fold.parameter)
+        near, reach = branch[place - 1], width * abs(point.parameter)
+        while abs(near.parameter - point.parameter) > reach:
+            finer = _about(problem, near, point.parameter, per.Collocation(), settings)
+            closer = finer[[p.label for p in finer].index(per.Label.FOLD) - 1]
+            if closer.parameter == near.parameter:
+                break
+            near = closer
+        again = _about(problem, near, point.parameter, method, settings)
+        found += [p.parameter for p in again.labelled(per.Label.FOLD)]
     return found
+
+
+def _about(
+    problem: Problem, near: per.Point, fold: float, method: Method, settings: per.Settings
+) -> per.Branch:
+    """Trace from a point over a fold and no further. Raises ArithmeticError where that does not succeed."""
+    branch = per.trace(
+        problem.system,
+        problem.parameter,
+        (near.parameter, 2 * fold - near.parameter),
+        start=near.parameter,
+        guess=near.orbit,
+        settings=settings,
+        method=method,
+        stop={"LP": 1},
+    )
+    if not branch.labelled(per.Label.FOLD):
+        raise ArithmeticError(f"the fold at {fold:.6g} was not found again: {branch.stop}")
+    return branch
 
 
 def settings_for(tolerance: float, scheme: per.Scheme, newton: float | None = None) -> per.Settings:
