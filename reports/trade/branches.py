@@ -14,6 +14,7 @@ from reports.trade.measure import Measured, digits
 from reports.trade.problems import Problem, disc, duffing
 from reports.trade.whole import Swept, Traced, accuracies, balanced, dialled, folds_near, settings_for, shot
 from reports.trade.words import advice, failures, power, seconds
+from reports.view import RPM
 
 DIAL = tuple(10.0**-k for k in range(2, 10))
 
@@ -22,7 +23,7 @@ DIAL = tuple(10.0**-k for k in range(2, 10))
 class Study:
     """One branch: what is measured on it, and by which other method its folds are confirmed.
 
-    tight: tolerance of the reference. width: how far about a fold the other method begins, relative.
+    tight: tolerance of the reference, traced between `within`; loose: that of the other method's mesh.
     """
 
     key: str
@@ -32,13 +33,13 @@ class Study:
     tight: float
     other: Method
     by: str
-    width: float
     remark: str
+    within: tuple[float, float] | None = None
     loose: float = 1e-8
 
     def reference(self) -> tuple[list[float], float]:
         """Return the parameter at the folds, and the largest relative difference of the other method's."""
-        problem = self.problem()
+        problem = replace(self.problem(), bounds=self.within or self.problem().bounds)
         scheme = per.Scheme(per.Family.RADAU, 7)
         traced = Traced(
             family="", setting="", settings=settings_for(self.tight, scheme), method=per.Collocation()
@@ -46,7 +47,7 @@ class Study:
         branch = traced.branch(problem)
         folds = [p.parameter for p in branch.labelled(per.Label.FOLD)]
         loose = settings_for(self.loose, per.Scheme(per.Family.RADAU, 6), 1e-8)
-        again = folds_near(problem, branch, self.other, loose, self.width)
+        again = folds_near(problem, branch, self.other, loose)
         return folds, max(abs(b / a - 1) for a, b in zip(folds, again, strict=True))
 
 
@@ -56,11 +57,11 @@ STUDIES = (
         title="The disc from 500 to 100 rev/min",
         problem=lambda: disc(360.0),
         cases=lambda: [*accuracies(), *dialled(DIAL), *balanced((10, 20)), Swept(count=33), Swept(count=81)],
-        tight=1e-10,
+        tight=1e-9,
         loose=1e-6,
         other=per.Shooting(tolerance=1e-12),
         by="shooting (CVODES, 1e-12)",
-        width=6e-4,
+        within=(235 * RPM, 255 * RPM),
         remark=(
             "A sweep in time finds the jumps to half the distance of its speeds, never the unstable sheet, "
             "and takes longer than `fine`; halving its error doubles its time. The series does not get past "
@@ -82,7 +83,6 @@ STUDIES = (
         tight=1e-11,
         other=per.HarmonicBalance(harmonics=24, most=40),
         by="harmonic balance",
-        width=1e-3,
         remark="`standard` is enough for all that is drawn or designed.",
     ),
 )

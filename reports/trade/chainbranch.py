@@ -25,7 +25,6 @@ STUDY = Study(
     tight=1e-8,
     other=per.HarmonicBalance(harmonics=12, most=12),
     by="harmonic balance (12 harmonics)",
-    width=1e-3,
     loose=1e-5,
     remark="With 100 states a branch takes minutes: screen with `draft`.",
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -137,27 +138,16 @@ def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
         )
 
 
-def folds_near(
-    problem: Problem, branch: per.Branch, method: Method, settings: per.Settings, width: float
-) -> list[float]:
-    """Return the folds of a branch located anew by another method, each on a short branch about it.
+def folds_near(problem: Problem, branch: per.Branch, method: Method, settings: per.Settings) -> list[float]:
+    """Return the folds of a branch located anew by another method, from the last points before them.
 
-    That one begins at most `width` (relative) from the fold, or at the last point of the branch before it.
-    Raises ArithmeticError where the other method does not find it.
+    Raises ArithmeticError where the other method does not find one.
     """
     found = []
-    for place, point in enumerate(branch):
-        if point.label is not per.Label.FOLD:
-            continue
-        near, reach = branch[place - 1], width * abs(point.parameter)
-        while abs(near.parameter - point.parameter) > reach:
-            finer = _about(problem, near, point.parameter, per.Collocation(), settings)
-            closer = finer[[p.label for p in finer].index(per.Label.FOLD) - 1]
-            if closer.parameter == near.parameter:
-                break
-            near = closer
-        again = _about(problem, near, point.parameter, method, settings)
-        found += [p.parameter for p in again.labelled(per.Label.FOLD)]
+    for near, point in pairwise(branch):
+        if point.label is per.Label.FOLD:
+            again = _about(problem, near, point.parameter, method, settings)
+            found += [p.parameter for p in again.labelled(per.Label.FOLD)]
     return found
 
 
