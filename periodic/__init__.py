@@ -17,6 +17,7 @@ from periodic.functionals import (
     Value,
     mean,
 )
+from periodic.journal import JournalError, recovered
 from periodic.label import Label
 from periodic.measure import extrema, outputs
 from periodic.methods.collocation import Collocation
@@ -35,7 +36,7 @@ from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
 from periodic.stop import Reason, Stop
 from periodic.switching import SwitchError, branched, doubled
 from periodic.system import System
-from periodic.tracing import trace
+from periodic.tracing import ResumeError, trace
 
 __all__ = [
     "Accuracy",
@@ -60,6 +61,7 @@ __all__ = [
     "Conservative",
     "Family",
     "HarmonicBalance",
+    "JournalError",
     "Label",
     "MeshSettings",
     "NewtonSettings",
@@ -67,6 +69,7 @@ __all__ = [
     "PhaseCondition",
     "Point",
     "Reason",
+    "ResumeError",
     "Run",
     "Scheme",
     "Settings",
@@ -85,6 +88,7 @@ __all__ = [
     "mode",
     "outputs",
     "plot",
+    "recovered",
     "sampled",
     "trace",
 ]

@@ -61,10 +61,7 @@ class Linear:
 
         Raises ValueError for an orbit that is no piecewise polynomial.
         """
-        if orbit.mesh.scheme not in (Scheme(f, orbit.mesh.scheme.ncol) for f in Family):
-            raise ValueError(
-                f"orbit is a {orbit!r}; derivatives of multipliers need one found by Collocation or Shooting"
-            )
+        polynomial(orbit)
         condensed = condense(system, orbit, free)
         return Linear(system, orbit, free, condensed, bordered.chain(condensed))
 
@@ -98,6 +95,12 @@ class Linear:
         nodes = np.zeros_like(self.orbit.nodes)
         nodes[-1] = end
         return Row(0.0, nodes, np.zeros(len(self.orbit.phases) + len(self.free)))
+
+
+def polynomial(orbit: Orbit) -> None:
+    """Raise ValueError for an orbit that is no piecewise polynomial."""
+    if orbit.mesh.scheme not in (Scheme(f, orbit.mesh.scheme.ncol) for f in Family):
+        raise ValueError(f"orbit is a {orbit!r}; exact derivatives need one found by Collocation or Shooting")
 
 
 def gradient(linear: Linear, tangent: Tangent, source: Row, free: tuple[int, ...]) -> Row:

@@ -93,7 +93,8 @@ def increment(
     change = moved(system, orbit.algebraic, newton.algebraic) - orbit.algebraic
     n = orbit.nodes.shape[1]
     effect = np.abs(samples.columns[:, :, 1 + 2 * n :]).max(axis=(0, 1))
-    size, length = sizes(orbit, newton.nodes, newton.stages, change, newton.outer, free, effect)
+    moves = (newton.nodes, newton.stages, change, newton.outer)
+    size, length = sizes(orbit, *moves, free, effect, system.nominal)
     return Step(
         orbit,
         newton.nodes,

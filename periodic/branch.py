@@ -44,7 +44,7 @@ class Branch:
 
     `stop` says why the branch ended; a branch traced both ways from its start has a second reason in
     `stop_backwards`. `elapsed` in s. `checkpoints` are where its runs (one or two) stand, for `trace` to
-    resume them; the first `backwards` points are those of the first of two runs.
+    resume them; the first `backwards` points are those of the first of two runs. `made`: with what settings.
     """
 
     parameter: str
@@ -57,6 +57,7 @@ class Branch:
     versions: dict[str, str] = field(default_factory=dict)
     checkpoints: tuple[Checkpoint, ...] = ()
     backwards: int = 0
+    made: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"Branch({self.parameter}, {len(self)} points, {self.stop})"

@@ -10,11 +10,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic import events
+from periodic.closure import Metric
 from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
 from periodic.events import Test
 from periodic.label import Label
+from periodic.scheme import Array
+
+Complex = NDArray[np.complex128]
 
 if TYPE_CHECKING:
     from periodic.closure import Condition
@@ -29,6 +34,8 @@ REVERSED = 0.05
 def second_at(task: Task, solved: Solved, at: float) -> float:
     """Sum of the products of all (mu_i - at) / (1 + |mu_i|) but one, the trivial multiplier left out."""
     found = events.multipliers(task, solved)
+    if np.sort(np.abs(found - at))[1:2].min(initial=np.inf) < events.noise(solved):
+        return 0.0
     factors = np.poly((found - at) / (1 + np.abs(found)))
     return float(factors[-2].real)
 
@@ -36,39 +43,62 @@ def second_at(task: Task, solved: Solved, at: float) -> float:
 def _cosine(task: Task, solved: Solved) -> float:
     """Half the sum of the pair whose product is 1: the cosine of its angle while it is complex."""
     found = events.multipliers(task, solved)
+    return float(found[_pair(found)].sum().real) / 2
+
+
+def _pair(found: Complex) -> list[int]:
+    """Indices of the two multipliers whose product is nearest 1."""
     first, second = np.triu_indices(len(found), 1)
     nearest = np.abs(found[first] * found[second] - 1).argmin()
-    return float((found[first[nearest]] + found[second[nearest]]).real) / 2
+    return [int(first[nearest]), int(second[nearest])]
+
+
+def _beside(task: Task, solved: Solved) -> Complex:
+    """The multipliers without the one that is held at 1 or -1."""
+    found = events.multipliers(task, solved)
+    return np.delete(found, np.abs(np.abs(found) - 1).argmin())
+
+
+def _passing_beside(task: Task, solved: Solved, at: int) -> float:
+    """Whether one passes 1 or -1 of the multipliers without the pair whose product is held at 1."""
+    found = events.multipliers(task, solved)
+    return events.passing(np.delete(found, _pair(found)), at)
 
 
 def _torus_beside(task: Task, solved: Solved) -> float:
-    """The torus test of the multipliers without the one that is held on the unit circle."""
-    found = events.multipliers(task, solved)
-    return events.torus_of(np.delete(found, np.abs(np.abs(found) - 1).argmin()), 0.0)
+    return events.torus_of(_beside(task, solved), events.noise(solved))
+
+
+def _complex_beside(task: Task, solved: Solved) -> bool:
+    return events.complex_pair(_beside(task, solved))
 
 
 FOLDS = (
     Test(Label.RESONANCE_1, lambda task, solved: second_at(task, solved, 1.0), PRECISION),
     Test(Label.FOLD_DOUBLING, events.doubling, PRECISION),
-    Test(Label.FOLD_TORUS, _torus_beside, PRECISION),
+    Test(Label.FOLD_TORUS, _torus_beside, PRECISION, _complex_beside),
 )
 DOUBLINGS = (
     Test(Label.RESONANCE_2, lambda task, solved: second_at(task, solved, -1.0), PRECISION),
     Test(Label.FOLD_DOUBLING, events.branching, PRECISION),
-    Test(Label.DOUBLING_TORUS, _torus_beside, PRECISION),
+    Test(Label.DOUBLING_TORUS, _torus_beside, PRECISION, _complex_beside),
 )
 TORI = (
     Test(Label.RESONANCE_1, lambda task, solved: _cosine(task, solved) - 1.0, PRECISION),
     Test(Label.RESONANCE_2, lambda task, solved: _cosine(task, solved) + 1.0, PRECISION),
     Test(Label.RESONANCE_3, lambda task, solved: _cosine(task, solved) + 0.5, PRECISION),
     Test(Label.RESONANCE_4, _cosine, PRECISION),
+    Test(Label.FOLD_TORUS, lambda task, solved: _passing_beside(task, solved, 1), PRECISION),
+    Test(Label.DOUBLING_TORUS, lambda task, solved: _passing_beside(task, solved, -1), PRECISION),
 )
 CURVES = {FoldCondition: FOLDS, DoublingCondition: DOUBLINGS, TorusCondition: TORI}
+HELD = {FoldCondition: 1.0, DoublingCondition: -1.0}
 
 
 def picked(task: Task) -> Condition | None:
     """Return the condition that picks the orbits of a curve, if there is one."""
-    return next((c for c in task.conditions if not c.intrinsic), None)
+    chosen = [c for c in task.conditions if not c.intrinsic]
+    return next((c for c in chosen if type(c) in CURVES), chosen[0] if chosen else None)
 
 
 def marginal(task: Task) -> bool:
@@ -88,6 +118,28 @@ def sought(task: Task, turned: bool) -> tuple[Test, ...]:
     if type(condition) in CURVES:
         return CURVES[type(condition)]
     return (*method.passages, Test(Label.FOLD, events.branching, PRECISION))
+
+
+def alignment(task: Task, base: Solved, new: Solved) -> float:
+    """Cosine between the critical motions of two orbits on one mesh: eigenvectors carried over the period.
+
+    The two sides of a narrow tongue have nearly the same orbits, but critical motions across each other. 1
+    on a curve that holds no simple multiplier.
+    """
+    held = HELD.get(type(picked(task)))
+    if held is None:
+        return 1.0
+    weights = Metric.weights(base.orbit)
+    a, b = (_critical(solved, held) for solved in (base, new))
+    square = np.einsum("j,sjn,tjn->st", weights, (a, b), (a, b))
+    return float(abs(square[0, 1]) / np.sqrt(square[0, 0] * square[1, 1]))
+
+
+def _critical(solved: Solved, held: float) -> Array:
+    """The disturbance (N+1, n) that comes back `held` times itself."""
+    monodromy = solved.correction.monodromy
+    vector = np.linalg.svd(monodromy - held * np.eye(len(monodromy)))[2][-1]
+    return solved.correction.fundamental @ vector
 
 
 def turn(task: Task, found: Solved, base: Solved, new: Solved) -> Label:

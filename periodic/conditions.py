@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 
 from periodic.adjoint import Linear, Tangent, gradient
 from periodic.closure import Closure, Given, Row
-from periodic.functionals import Functional, Smooth
+from periodic.functionals import Functional, Smooth, apart
 from periodic.orbit import Orbit
 from periodic.scheme import Array
 from periodic.system import System, differentiable
 
-STEP = 1e-5
-"""Step, in peak-to-peak values, of differences of a functional's derivative: they only steer Newton."""
+STEP = 1e-4
+"""Step, in peak-to-peak values, of differences of a functional's derivative."""
 
 
 def smooth(functional: Functional) -> Smooth:
@@ -24,7 +25,7 @@ def smooth(functional: Functional) -> Smooth:
             f"functional is {functional!r}, which has no derivative; it must be one of periodic's own, or "
             f"have a method linearise(system, orbit, free)"
         )
-    return functional  # type: ignore[return-value]
+    return cast(Smooth, functional)
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,10 @@ class Level:
     functional: Functional
     value: float
     intrinsic = False
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.value, int | float | np.number) and np.isfinite(self.value)):
+            raise ValueError(f"value of a Level is {self.value!r}; it must be a finite number")
 
     def at(self, origin: Orbit, given: Given) -> Closure:
         """Return the condition near an orbit."""
@@ -48,7 +53,7 @@ class _Level:
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return f - value and its gradient."""
         row = self.functional.linearise(system, orbit, free)
-        return Row(row.value - self.value, row.nodes, row.outer, row.stages)
+        return Row(apart(self.functional, row.value, self.value), row.nodes, row.outer, row.stages)
 
 
 @dataclass(frozen=True)
@@ -96,13 +101,13 @@ class _Peak:
             source += row.scaled(float(weight))
         tangent = linear.tangent(direction)
         found = gradient(linear, tangent, source, free)
-        found += self._bent(system, orbit, tangent, aim, free)
+        found += self._bent(system, orbit, tangent, free)
         value = float(slope @ direction) + found.value
         return Row(value, found.nodes, found.outer, found.stages)
 
-    def _bent(self, system: System, orbit: Orbit, tangent: Tangent, aim: Row, free: tuple[int, ...]) -> Row:
-        """Return the second derivative of the functional along the tangent, by a difference."""
+    def _bent(self, system: System, orbit: Orbit, tangent: Tangent, free: tuple[int, ...]) -> Row:
+        """Return the second derivative of the functional along the tangent, by a central difference."""
         size = STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
-        further = self.functional.linearise(system, tangent.moved(orbit, size), free)
-        row = (further + aim.scaled(-1.0)).scaled(1 / size)
+        ends = [self.functional.linearise(system, tangent.moved(orbit, h), free) for h in (size, -size)]
+        row = (ends[0] + ends[1].scaled(-1.0)).scaled(1 / (2 * size))
         return Row(0.0, row.nodes, row.outer, row.stages)

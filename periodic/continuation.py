@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from periodic import codimension
 from periodic.checkpoint import Checkpoint
 from periodic.closure import Metric, Plane
 from periodic.label import Label
@@ -136,7 +137,7 @@ class Run:
     def resumed(self, start: Orbit, points: list[Point], checkpoint: Checkpoint) -> Iterator[Point]:
         """Yield the points that follow those of an interrupted run, which began at `start`."""
         task, c = self.task, checkpoint
-        self.collected, last = points, points[-1].orbit
+        self.stop, last = None, points[-1].orbit
         begun = self._first(start, float(c.sign))
         direction = replace(parameter_direction(last, task.metric), profile=c.profile, parameter=c.slope)
         again = on_plane(task, last, Plane(last, direction, 0.0, task.metric, task.index))
@@ -145,6 +146,9 @@ class Run:
                 self.stop = Stop.no_start(found.value)
                 return
         assert isinstance(begun, Solved) and isinstance(again, Solved)
+        # Newton has moved it by rounding; what follows shall be just what would have followed.
+        tangent = replace(again.tangent, profile=c.profile, parameter=c.slope)
+        again = replace(again, correction=replace(again.correction, orbit=last), tangent=tangent)
         self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
         self._since_remesh, self._count = c.since_remesh, dict(c.met)
         yield from self._onward(self._prepared(again) if c.steps else again)
@@ -328,6 +332,8 @@ class Run:
             raise RejectedError("the step does not follow its tangents")
         if not task.method.resolved(base.correction, new.correction):
             raise RejectedError("the multipliers turn too far past 1 for the step")
+        if codimension.alignment(task, base, new) < task.settings.step.turn:
+            raise RejectedError("the critical motion turns too far for the step")
         return new
 
     def _bend(self, base: Solved, new: Solved, ds: float) -> float:

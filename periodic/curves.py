@@ -56,9 +56,6 @@ class TorusCondition:
         return _Pair()
 
 
-CRITICAL = (FoldCondition, DoublingCondition, TorusCondition)
-
-
 @dataclass
 class _Border:
     """The columns b and rows c that border K, chosen at the first orbit and kept."""

@@ -103,7 +103,7 @@ def increment(
     outer = solution[len(rows.residual) :]
     unit = np.abs(rows.d_unknown[:, :n]).max()
     effect = np.abs(rows.d_unknown[:, len(rows.residual) :]).max(axis=0) / unit if unit else 0 * outer
-    size, length = sizes(orbit, step.nodes, step.stages, change, outer, free, effect)
+    size, length = sizes(orbit, step.nodes, step.stages, change, outer, free, effect, system.nominal)
     along = direction(orbit, kernel, len(free)) if free else None
     residual = float(np.abs(rows.residual).max())
     return Step(

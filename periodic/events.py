@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 Complex = NDArray[np.complex128]
 
+LOST = 0.1
+"""Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+
 NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
@@ -57,21 +60,30 @@ def multipliers(task: Task, solved: Solved) -> Complex:
     return without_unit(found, task.unit)
 
 
+def known(task: Task, solved: Solved) -> bool:
+    """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
+    found = np.linalg.eigvals(solved.correction.monodromy)
+    return not task.autonomous or bool(np.abs(found - 1).min() <= LOST)
+
+
 def slope(task: Task, solved: Solved) -> float:
     """d parameter / d arclength."""
     return solved.tangent.parameter
 
 
 def doubling(task: Task, solved: Solved) -> float:
-    """prod (mu + 1) / (1 + |mu|)."""
-    found = multipliers(task, solved)
-    return float(np.prod((found + 1) / (1 + np.abs(found))).real)
+    """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
+    return passing(multipliers(task, solved), -1) if known(task, solved) else 0.0
 
 
 def branching(task: Task, solved: Solved) -> float:
-    """prod (mu - 1) / (1 + |mu|)."""
-    found = multipliers(task, solved)
-    return float(np.prod((found - 1) / (1 + np.abs(found))).real)
+    """prod (mu - 1) / (1 + |mu|); 0 where it is not known."""
+    return passing(multipliers(task, solved), 1) if known(task, solved) else 0.0
+
+
+def passing(found: Complex, at: int) -> float:
+    """prod (mu - at) / (1 + |mu|) of given multipliers."""
+    return float(np.prod((found - at) / (1 + np.abs(found))).real)
 
 
 def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
@@ -81,17 +93,18 @@ def touches(task: Task, turn: Solved, base: Solved, new: Solved) -> bool:
         return abs(branching(task, turn)) < TOUCHED * min(map(abs, values))
     if values[0] * values[1] < 0:
         return False
-    ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), _noise(end)) for end in (base, new)]
+    ends = [(np.abs(multipliers(task, end) - 1).min(initial=np.inf), noise(end)) for end in (base, new)]
     return all(distance > noise for distance, noise in ends)
 
 
-def _noise(solved: Solved) -> float:
+def noise(solved: Solved) -> float:
+    """What multipliers cannot be told apart by."""
     return CONSERVED * solved.error.multiplier + ROUNDING
 
 
 def torus(task: Task, solved: Solved) -> float:
-    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error."""
-    return torus_of(multipliers(task, solved), _noise(solved))
+    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
+    return torus_of(multipliers(task, solved), noise(solved)) if known(task, solved) else 0.0
 
 
 def torus_of(found: Complex, noise: float) -> float:
@@ -109,7 +122,11 @@ def _products(found: Complex) -> Complex:
 
 def _complex(task: Task, solved: Solved) -> bool:
     """Whether the pair whose product is nearest 1 is complex: else it is a neutral saddle."""
-    found = multipliers(task, solved)
+    return known(task, solved) and complex_pair(multipliers(task, solved))
+
+
+def complex_pair(found: Complex) -> bool:
+    """The same of given multipliers."""
     first, second = np.triu_indices(len(found), 1)
     nearest = np.abs(found[first] * found[second] - 1).argmin()
     return bool(found[first[nearest]].imag != 0)
@@ -134,8 +151,8 @@ TURN = Test(Label.FOLD, slope, 1e-6)
 """Its parameter is second order in its place; those of the others are first order."""
 
 PASSAGES = (
-    Test(Label.DOUBLING, doubling, 1e-10, twice=doubles_twice),
+    Test(Label.DOUBLING, doubling, 1e-10, known, doubles_twice),
     Test(Label.TORUS, torus, 1e-10, _complex),
 )
 
-BRANCHING = Test(Label.BRANCH, branching, 1e-10, twice=branches_twice, touches=touches)
+BRANCHING = Test(Label.BRANCH, branching, 1e-10, known, branches_twice, touches)

@@ -44,6 +44,13 @@ class Smooth(Functional, Protocol):
         """Return value and gradient in the orbit's numbers and the parameters `free`."""
 
 
+def apart(functional: Functional, value: float, level: float) -> float:
+    """Return value - level; of an angle the difference between -pi and pi."""
+    if getattr(functional, "angle", False):
+        return float(np.remainder(value - level + np.pi, 2 * np.pi) - np.pi)
+    return value - level
+
+
 def output_index(system: System, output: str) -> int:
     """Return the index of an output. Raises ValueError for a name that is none."""
     names = [o.name for o in system.outputs]
@@ -179,6 +186,7 @@ class PhaseLag:
 
     output: str
     order: float = 1.0
+    angle = True
 
     def __call__(self, system: System, orbit: Orbit) -> float:
         """Return the phase lag in rad."""
@@ -216,11 +224,15 @@ class Value:
 
 @dataclass(frozen=True)
 class Multiplier:
-    """Real or imaginary part or modulus of a Floquet multiplier, counted from 0 by falling modulus."""
+    """Modulus, angle (rad), real or imaginary part of a multiplier, counted from 0 by falling modulus.
+
+    Of a pair the one with positive imaginary part comes first. Where its angle is 2 pi k/n an orbit is in
+    resonance with motions of n periods.
+    """
 
     which: int = 0
     part: str = "modulus"
-    _parts: tuple[str, ...] = field(default=("modulus", "real", "imaginary"), repr=False)
+    _parts: tuple[str, ...] = field(default=("modulus", "angle", "real", "imaginary"), repr=False)
 
     def __post_init__(self) -> None:
         if self.part not in self._parts:
@@ -233,17 +245,22 @@ class Multiplier:
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return value and gradient, d mu = w' dM v / w' v; the multiplier must be a simple one."""
         linear, value, right, left = self._eigen(differentiable(system), orbit)
-        factor = (
-            1.0 if self.part == "real" else -1j if self.part == "imaginary" else np.conj(value) / abs(value)
-        )
-        left = factor * left / (left @ right)
+        unit = np.conj(value) / abs(value)
+        factors = {"modulus": unit, "angle": -1j * unit / abs(value), "real": 1.0, "imaginary": -1j}
+        left = factors[self.part] * left / (left @ right)
         source = (linear.source(left.real), linear.source(-left.imag))
         row = gradient(linear, linear.tangent(right.real), source[0], free)
         row += gradient(linear, linear.tangent(right.imag), source[1], free)
         return Row(self._taken(value) + row.value, row.nodes, row.outer, row.stages)
 
+    @property
+    def angle(self) -> bool:
+        """Whether the value is an angle."""
+        return self.part == "angle"
+
     def _taken(self, value: complex) -> float:
-        return {"modulus": abs(value), "real": value.real, "imaginary": value.imag}[self.part]
+        angle = float(np.angle(value))
+        return {"modulus": abs(value), "angle": angle, "real": value.real, "imaginary": value.imag}[self.part]
 
     def _eigen(self, system: Differentiable, orbit: Orbit) -> tuple[Linear, complex, Complex, Complex]:
         """The linearised flow; the multiplier, its eigenvector v and left eigenvector w (w' M = mu w')."""

@@ -29,11 +29,17 @@ MERGED = 0.05
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
 
+BESIDE = 1e-3
+"""How far from a turn its multipliers are looked at, as a part of the step."""
+
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
 
 ORBITS = 1e3
 """How many times as far that is of orbits, which have errors of their own."""
+
+JUMP = 1e-3
+"""What is left of a user's function where it vanishes, as a part of the larger value at its ends."""
 
 TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
@@ -86,7 +92,7 @@ def special_points(
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(task, pieces)
-    found = [_named(task, turn, base, new) for turn in turns]
+    found = [_named(task, turn, base, new, ds) for turn in turns]
     for test in (*codimension.sought(task, bool(turns) or from_turn), *task.watch.tests()):
         found += _where(task, base, new, ds, test)
     starts = [since, *(_value(task, turn.solved) for turn in turns)]
@@ -162,6 +168,10 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
         raise RejectedError("a special point of another branch was met")
     if not test.genuine(task, solved):
         return []
+    if test.name and _jumps(value, solved, [_at_distance(task, base, end) for end in span]):
+        return []
+    if not crossed and _shrinks(task, solved, *(_at_distance(task, base, end) for end in span)):
+        return [Found(test.label, distance, solved)]  # it has no size for its error to be a part of
     refined = _accepted(task, settle(task, solved))
     if refined is solved:
         return [Found(test.label, distance, solved, test.name)]
@@ -173,25 +183,43 @@ def _located(task: Task, base: Solved, span: tuple[float, float], ds: float, tes
     raise RejectedError("a special point was not found again on a finer mesh")
 
 
-def _named(task: Task, turn: Found, base: Solved, new: Solved) -> Found:
+def _jumps(value: Callable[[Solved], float], solved: Solved, ends: Sequence[Solved]) -> bool:
+    """Whether a function does not vanish where it changes sign between two ends."""
+    return abs(value(solved)) > JUMP * max(abs(value(end)) for end in ends)
+
+
+def _named(task: Task, turn: Found, base: Solved, new: Solved, ds: float) -> Found:
     """A turn of the branch by its name.
 
     PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
     more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
     follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
-    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp.
+    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp. Raises
+    RejectedError where a multiplier passes 1 and comes back within the step: a fold and a branch point.
     """
     if codimension.picked(task) is not None:
         return replace(turn, label=codimension.turn(task, turn.solved, base, new))
-    spans = [solved.orbit.span() for solved in (turn.solved, base, new)]
-    if task.autonomous and spans[0] < MERGED * min(spans[1:]):
+    if _shrinks(task, turn.solved, base, new):
         return replace(turn, label=Label.HOPF)
     apart = [from_itself(task, solved) for solved in (turn.solved, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.DOUBLING)
     tests = (*task.method.passages, *task.method.branching)
     labels = [test.label for test in tests if test.touches(task, turn.solved, base, new)]
+    if labels and task.method.branching and task.unit < 2 and _passes(task, turn, base, ds):
+        raise RejectedError("the branch turns beside a branch point")
     return replace(turn, label=labels[0]) if labels else turn
+
+
+def _passes(task: Task, turn: Found, base: Solved, ds: float) -> bool:
+    """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
+    sides = [_at_distance(task, base, turn.distance + side * BESIDE * ds) for side in (-1, 1)]
+    return events.branching(task, sides[0]) * events.branching(task, sides[1]) < 0
+
+
+def _shrinks(task: Task, turn: Solved, *ends: Solved) -> bool:
+    """Whether autonomous orbits shrink to an equilibrium at a turn of their branch."""
+    return task.autonomous and turn.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
 
 
 def _accepted(task: Task, solved: Solved | Outcome) -> Solved:

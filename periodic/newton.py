@@ -28,6 +28,9 @@ SHORT = 1e-3
 NEGLIGIBLE = 1e-3
 """Change of the scaled states that a parameter about zero is compared with."""
 
+TINY = 1e-3
+"""Nominal value that a parameter of 0 is given for this."""
+
 
 class Outcome(Enum):
     """How a Newton iteration ended; the value says it in words."""
@@ -176,7 +179,8 @@ def linear_step(
     stages, algebraic = condensed.recover(solution.nodes, solution.outer, 1.0)
     change = moved(system, orbit.algebraic, algebraic) - orbit.algebraic
     effect = _effect(condensed)
-    size, length = sizes(orbit, solution.nodes, stages, change, solution.outer, free, effect)
+    moves = (solution.nodes, stages, change, solution.outer)
+    size, length = sizes(orbit, *moves, free, effect, system.nominal)
     kernel = _direction(condensed, solution) if closures else None
     return Step(
         orbit,
@@ -200,6 +204,7 @@ def sizes(
     outer: Array,
     free: tuple[int, ...],
     effect: Array,
+    nominal: Array,
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
@@ -207,12 +212,13 @@ def sizes(
     rounding in the rates of very short intervals keeps their own increments from falling further. For
     damping they count the less in short intervals, over whose width they hardly act on the states. Free
     parameters count relative to their values, or where these are about zero to what changes the states by
-    NEGLIGIBLE; effect (q,) is the states' change with each of y.
+    NEGLIGIBLE, at most the `nominal` value; effect (q,) is the states' change with each of y.
     """
     k = len(orbit.phases)
     sizes = [np.abs(nodes).max(), np.abs(stages).max(), np.abs(outer[:k]).max(initial=0.0)]
-    least = NEGLIGIBLE / np.maximum(effect[k:], 1e-300)
-    sizes += list(np.abs(outer[k:]) / np.maximum(np.abs(orbit.parameter[list(free)]), least))
+    chosen = list(free)
+    least = np.minimum(NEGLIGIBLE / np.maximum(effect[k:], 1e-300), np.maximum(np.abs(nominal[chosen]), TINY))
+    sizes += list(np.abs(outer[k:]) / np.maximum(np.abs(orbit.parameter[chosen]), least))
     regular = float(max(sizes))
     unknowns = (np.abs(algebraic) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     width = orbit.grid.width

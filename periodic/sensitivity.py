@@ -13,6 +13,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from periodic import bordered, collocation
+from periodic.adjoint import polynomial
 from periodic.closure import Condition, Event, Row, closures
 from periodic.conditions import smooth
 from periodic.functionals import Functional
@@ -30,10 +31,12 @@ def sensitivities(
 ) -> dict[str, dict[str, float]]:
     """Return the derivatives of functionals in every parameter that is not determined, by both names.
 
-    SI units. `determined` as in `trace`: with {"speed": FoldCondition()} the functional Value("speed") gives
-    the derivatives of a fold's speed. Raises ValueError for a functional without derivative and
-    numpy.linalg.LinAlgError where the orbit is not determined (at a fold, of the parameters alone).
+    SI units; the orbit must be one of Collocation or Shooting. `determined` as in `trace`: with
+    {"speed": FoldCondition()} the functional Value("speed") gives the derivatives of a fold's speed. Those of
+    a fold whose place is not determined are without bound. Raises ValueError for a functional without
+    derivative and an orbit that is a Fourier series.
     """
+    polynomial(orbit)
     names = [p.name for p in system.parameters]
     own = tuple(index_of(system, name) for name in determined or {})
     others = tuple(k for k in range(len(names)) if k not in own)

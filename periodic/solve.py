@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy import optimize
 
 from periodic import anchors
 from periodic.accuracy import LEAST_SPAN, ErrorEstimate
@@ -22,6 +23,9 @@ from periodic.watch import Watch
 
 ROUNDS = 8
 
+
+SHIFTS = 64
+"""How many phases are tried for the least distance of two autonomous orbits."""
 
 KEPT = 30.0
 """How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
@@ -204,10 +208,11 @@ def _first_of(
 def closes(task: Task, start: Solved, new: Solved) -> bool:
     """Whether the branch comes back to its start on the way it left it.
 
-    The same orbit a whole number of excitation periods later counts as the start again. A branch that comes
+    The same orbit a whole number of excitation periods later counts as the start again, an autonomous one
+    from any phase on: nothing brings it back to that of the start. A branch that comes
     back the other way has passed through an orbit of fewer periods and goes on.
     """
-    for later in range(start.orbit.periods):
+    for later in [_ahead(task, start.orbit, new.orbit)] if task.autonomous else range(start.orbit.periods):
         if same(task, start, new, later):
             onward = on_mesh(new.tangent, new.orbit, start.orbit, FORCED * later)
             return task.metric.dot(start.orbit, start.tangent, onward) > 0
@@ -225,7 +230,19 @@ def from_itself(task: Task, solved: Solved) -> float:
     return min((distance(task, orbit, orbit, FORCED * k) for k in range(1, orbit.periods)), default=np.inf)
 
 
-def same(task: Task, a: Solved, b: Solved, later: int = 0) -> bool:
+def _ahead(task: Task, a: Orbit, b: Orbit) -> float:
+    """By how much b is ahead of a, in units of 2 pi: where their distance is least."""
+
+    def apart(later: float) -> float:
+        return distance(task, a, b, FORCED * later)
+
+    step = a.periods / SHIFTS
+    nearest = min((step * k for k in range(SHIFTS)), key=apart)
+    around = (nearest - step, nearest + step)
+    return float(optimize.minimize_scalar(apart, bounds=around, method="bounded", options={"xatol": 1e-10}).x)
+
+
+def same(task: Task, a: Solved, b: Solved, later: float = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
     allowed = KEPT * max(a.error.worst, task.settings.mesh.tolerance) * max(a.orbit.span(), LEAST_SPAN)
     return distance(task, a.orbit, b.orbit, FORCED * later) <= allowed

@@ -66,7 +66,7 @@ def load(path: Path) -> Branch:
                 )
             if data.attrs.pop("checksum", None) != checksum(data.load()):
                 raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
-            return _branch(data)
+            return branch_of(data)
     except BranchFileError:
         raise
     except (OSError, KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError) as error:
@@ -84,8 +84,16 @@ def checksum(data: xr.Dataset) -> str:
     return found.hexdigest()
 
 
+Tables = dict[str, tuple[tuple[str, ...], np.ndarray]]
+
+
 def dataset(branch: Branch) -> xr.Dataset:
     """Return the branch as an xarray Dataset."""
+    return xr.Dataset(tables(branch), attrs=attributes(branch))
+
+
+def tables(branch: Branch) -> Tables:
+    """Return all arrays of a branch by name, with their dimensions."""
     points = branch.points
     per_point = {
         "value": [p.parameter for p in points],
@@ -102,7 +110,7 @@ def dataset(branch: Branch) -> xr.Dataset:
         "marginal": [p.marginal for p in points],
         "event": [p.event for p in points],
     }
-    data = xr.Dataset({name: ("point", np.array(column)) for name, column in per_point.items()})
+    data: Tables = {name: (("point",), np.array(column)) for name, column in per_point.items()}
     outputs = [q.name for q in branch.layout.outputs]
     for name, extreme in (("minimum", [p.minimum for p in points]), ("maximum", [p.maximum for p in points])):
         data[name] = (("point", "output"), _table([[e[o] for o in outputs] for e in extreme], len(outputs)))
@@ -119,10 +127,9 @@ def dataset(branch: Branch) -> xr.Dataset:
         _table([p.orbit.parameter for p in points], len(branch.layout.parameters)),
     )
     profiles = [c.profile for c in branch.checkpoints]
-    data["checkpoint_nodes"] = ("checkpoint", np.array([len(p) for p in profiles], dtype=int))
+    data["checkpoint_nodes"] = (("checkpoint",), np.array([len(p) for p in profiles], dtype=int))
     data["checkpoint_profile"] = (("checkpoint_node", "state"), _joined(profiles, (states,)))
     _add_orbits(data, branch)
-    data.attrs = _attributes(branch)
     return data
 
 
@@ -134,26 +141,27 @@ def _joined(arrays: list[np.ndarray], tail: tuple[int, ...] = ()) -> np.ndarray:
     return np.concatenate([np.zeros((0, *tail)), *[a.reshape(-1, *tail) for a in arrays]])
 
 
-def _add_orbits(data: xr.Dataset, branch: Branch) -> None:
+def _add_orbits(data: Tables, branch: Branch) -> None:
     orbits = [p.orbit for p in branch.points]
     n, m = len(branch.layout.states), len(branch.layout.algebraics)
-    data["segment_count"] = ("point", np.array([len(o.mesh.breaks) for o in orbits], dtype=int))
-    data["anchor_count"] = ("point", np.array([len(o.mesh.anchors) for o in orbits], dtype=int))
-    data["period"] = ("point", np.array([o.mesh.period for o in orbits]))
-    data["break_count"] = ("segment", np.array([len(b) for o in orbits for b in o.mesh.breaks], dtype=int))
-    data["sigma"] = ("break", _joined([b for o in orbits for b in o.mesh.breaks]))
+    data["segment_count"] = (("point",), np.array([len(o.mesh.breaks) for o in orbits], dtype=int))
+    data["anchor_count"] = (("point",), np.array([len(o.mesh.anchors) for o in orbits], dtype=int))
+    data["period"] = (("point",), np.array([o.mesh.period for o in orbits]))
+    data["break_count"] = (("segment",), np.array([len(b) for o in orbits for b in o.mesh.breaks], dtype=int))
+    data["sigma"] = (("break",), _joined([b for o in orbits for b in o.mesh.breaks]))
     anchors = [a for o in orbits for a in o.mesh.anchors]
-    data["anchor_switch"] = ("anchor", np.array([a.switch for a in anchors], dtype=int))
-    data["anchor_direction"] = ("anchor", np.array([a.direction for a in anchors], dtype=int))
-    data["anchor_level"] = ("anchor", np.array([a.level for a in anchors], dtype=float))
-    data["anchor_phase"] = ("anchor", _joined([o.phases for o in orbits]))
+    data["anchor_switch"] = (("anchor",), np.array([a.switch for a in anchors], dtype=int))
+    data["anchor_direction"] = (("anchor",), np.array([a.direction for a in anchors], dtype=int))
+    data["anchor_level"] = (("anchor",), np.array([a.level for a in anchors], dtype=float))
+    data["anchor_phase"] = (("anchor",), _joined([o.phases for o in orbits]))
     data["node_state"] = (("node", "state"), _joined([o.nodes for o in orbits], (n,)))
     data["stage_state"] = (("stage", "state"), _joined([o.stages for o in orbits], (n,)))
     if m:
         data["stage_algebraic"] = (("stage", "algebraic"), _joined([o.algebraic for o in orbits], (m,)))
 
 
-def _attributes(branch: Branch) -> dict[str, Any]:
+def attributes(branch: Branch) -> dict[str, Any]:
+    """Return what else is said of a branch: names, units, reasons, as texts and numbers."""
     schemes = {p.orbit.mesh.scheme for p in branch.points}
     scheme = schemes.pop() if schemes else Scheme()
     quantities = {
@@ -175,6 +183,7 @@ def _attributes(branch: Branch) -> dict[str, Any]:
         "columns": json.dumps(list(branch.points[0].columns) if branch.points else []),
         "checkpoints": json.dumps([_progress(c) for c in branch.checkpoints]),
         "backwards": branch.backwards,
+        "made": json.dumps(branch.made),
     }
 
 
@@ -183,7 +192,8 @@ def _progress(checkpoint: Checkpoint) -> dict[str, Any]:
     return {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint) if f.name != "profile"}
 
 
-def _branch(data: xr.Dataset) -> Branch:
+def branch_of(data: xr.Dataset) -> Branch:
+    """Return the branch that a dataset holds."""
     groups = json.loads(data.attrs["layout"])
     layout = Layout(**{name: tuple(Quantity(*q) for q in items) for name, items in groups.items()})
     orbits = _orbits(data, layout)
@@ -198,6 +208,7 @@ def _branch(data: xr.Dataset) -> Branch:
         versions=json.loads(data.attrs["versions"]),
         checkpoints=_checkpoints(data),
         backwards=int(data.attrs["backwards"]),
+        made=json.loads(data.attrs["made"]),
     )
 
 

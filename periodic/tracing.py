@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -16,6 +19,8 @@ from periodic.closure import Condition, Metric
 from periodic.conditions import Level
 from periodic.continuation import Run
 from periodic.functionals import Functional
+from periodic.halves import Half, joined, turned
+from periodic.journal import Journal
 from periodic.methods.collocation import Collocation
 from periodic.methods.protocol import Method
 from periodic.orbit import Orbit
@@ -28,6 +33,10 @@ from periodic.system import System, VariableLike, index_of
 from periodic.watch import Watch
 
 Progress = Callable[[Point], None]
+
+
+class ResumeError(ValueError):
+    """A branch that is not one of the trace that it shall resume."""
 
 
 def trace(
@@ -48,6 +57,7 @@ def trace(
     limits: Mapping[str, tuple[float, float]] | None = None,
     stop: Mapping[str, int] | None = None,
     resume: Branch | None = None,
+    journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Branch:
     """Trace the branch of periodic orbits through `start` within `bounds`.
@@ -67,8 +77,9 @@ def trace(
     Collocation()).
 
     An interrupt (Ctrl-C) returns the branch so far; `resume` takes such a branch up where it stands, with all
-    other arguments as before. A numerical failure is the branch's `stop`. Raises ValueError, in one sentence,
-    for a parameter, bound or value that is not allowed.
+    other arguments as before. `journal` is a file that keeps every step as it is done, for
+    `periodic.recovered` if the process is killed. A numerical failure is the branch's `stop`. Raises
+    ValueError, in one sentence, for a parameter, bound or value that is not allowed.
     """
     _checked(system, accuracy)
     index = index_of(system, parameter)
@@ -84,6 +95,16 @@ def trace(
         if not low <= value <= high:
             raise ValueError(f"at is {value}; it must lie within the bounds {low} to {high}")
     determined = determined or {}
+    for name, condition in determined.items():
+        if isinstance(condition, type) or not hasattr(condition, "at"):
+            raise ValueError(
+                f"determined has {condition!r} for {name}; it must be a condition, as FoldCondition() is"
+            )
+        if name == parameter or (guess is not None and name in (values or {})):
+            place = "the parameter continued in" if name == parameter else "in values"
+            raise ValueError(f"determined has {name!r}, which is also {place}; it must be one or the other")
+    if method is not None and (isinstance(method, type) or not hasattr(method, "correct")):
+        raise ValueError(f"method is {method!r}; it must be Collocation(), Shooting() or HarmonicBalance()")
     watch = Watch(columns or {}, events or {}, limits or {}, stop or {})
     task = Task(
         system,
@@ -98,89 +119,111 @@ def trace(
     clock = time.perf_counter()
     signs = [sign for sign, end in ((-1, low), (1, high)) if begin != end]
     runs = [Run(task, (low, high), user, search=guess is None) for _ in signs]
+    first = _parameters(system, base, {**(values or {}), parameter: begin})
+    made = _made(task, (low, high), user, first)
     if resume is None:
-        orbit = _start(task, guess, _parameters(system, base, {**(values or {}), parameter: begin}))
+        orbit = _start(task, guess, first)
         generators = [run.points(orbit, sign) for run, sign in zip(runs, signs, strict=True)]
     else:
-        generators = _taken_up(runs, signs, parameter, layout_of(system), resume)
-    with threadpool_limits(limits=1, user_api="blas"):  # threads only slow these small matrices down
+        _check_made(resume, parameter, layout_of(system), made)
+        generators = _taken_up(runs, signs, resume)
+    empty = joined(parameter, layout_of(system), [], made)
+    keeping = nullcontext() if journal is None else Journal(Path(journal), empty)
+    with keeping as kept, threadpool_limits(limits=1, user_api="blas"):
         for run, points in zip(runs, generators, strict=True):
-            _collect(run, points, progress)
+            _collect(run, points, progress, kept)
             if run.stop is not None and run.stop.reason in (Reason.INTERRUPTED, Reason.CLOSED):
                 break
-    return _joined(system, parameter, runs, time.perf_counter() - clock, resume)
+    return _joined(empty, runs, time.perf_counter() - clock, resume)
 
 
-def _collect(run: Run, points: Iterator[Point], progress: Progress | None) -> None:
+def _collect(run: Run, points: Iterator[Point], progress: Progress | None, journal: Journal | None) -> None:
     """Let a run go on to its end, or to an interrupt: then what its last step began is left out."""
+    written = 0
     try:
         for point in points:
+            if journal is not None and run.state is not None and run.state.kept > written:
+                journal.add(run, run.collected[written : run.state.kept])
+                written = run.state.kept
             if progress is not None:
                 progress(point)
     except KeyboardInterrupt:
-        del run.collected[run.state.kept if run.state else 1 :]
+        if run.state is not None:
+            del run.collected[run.state.kept :]
         run.stop = Stop(Reason.INTERRUPTED, f"after {len(run.collected)} points")
+    if journal is not None:
+        journal.add(run, run.collected[written:])
 
 
-def _joined(system: System, parameter: str, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
+def _joined(empty: Branch, runs: list[Run], elapsed: float, before: Branch | None) -> Branch:
     """One branch out of one or two runs from the same start, and what was spent on it before."""
-    reached = [run for run in runs if run.stop is not None]
-    last, both = reached[-1], len(reached) == 2 and bool(runs[0].collected)
-    first = _reversed(runs[0].collected) if both else []
-    assert last.stop is not None
-    return Branch(
-        parameter=parameter,
-        layout=layout_of(system),
-        points=(*first, *(last.collected or runs[0].collected[:1])),
-        stop=last.stop,
-        stop_backwards=runs[0].stop if len(reached) == 2 else None,
+    halves = [Half(run.collected, run.stop, run.checkpoint) for run in runs if run.stop is not None]
+    return replace(
+        joined(empty.parameter, empty.layout, halves, empty.made),
         newton_iterations=runs[0].task.work.iterations + (before.newton_iterations if before else 0),
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions=_versions("orbitrace", "numpy", "scipy"),
-        checkpoints=tuple(run.checkpoint for run in runs if run.checkpoint is not None),
-        backwards=len(first),
     )
 
 
-def _taken_up(
-    runs: list[Run], signs: list[int], parameter: str, layout: Layout, branch: Branch
-) -> list[Iterator[Point]]:
-    """The runs of an interrupted branch, each from where it stands. Raises ValueError for another one."""
+def _made(task: Task, bounds: tuple[float, float], user: Sequence[float], parameter: Array) -> dict[str, str]:
+    """What a branch is made with, in words: whoever resumes it must ask for the same."""
+    free, names = task.free, [p.name for p in task.system.parameters]
+    values = {
+        name: float(v) for k, (name, v) in enumerate(zip(names, parameter, strict=True)) if k not in free
+    }
+    determined = {names[k]: condition for k, condition in zip(task.others, task.conditions, strict=True)}
+    return {
+        "bounds": repr(bounds),
+        "at": repr(tuple(user)),
+        "settings": repr(task.settings),
+        "method": repr(task.method),
+        "values": repr(values),
+        "determined": repr(determined),
+        "columns": repr(sorted(task.watch.columns)),
+        "events": repr(sorted(task.watch.events)),
+    }
+
+
+def _check_made(branch: Branch, parameter: str, layout: Layout, made: dict[str, str]) -> None:
+    """Raise ResumeError for a branch of another system, or made with anything else."""
     if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
-        raise ValueError(
+        raise ResumeError(
             f"resume is a branch in {branch.parameter} with {len(branch)} points; it must be one in "
             f"{parameter} of this system, with points"
         )
+    for name, now in made.items():
+        before = branch.made.get(name)
+        if before != now and not (name == "settings" and _more_points(before, now)):
+            raise ResumeError(f"resume is a branch made with {name} {before}; now they are {now}")
+
+
+def _more_points(before: str | None, now: str) -> bool:
+    """Whether settings differ in the largest number of points alone."""
+    plain = [re.sub(r"max_points=\d+", "", text or "") for text in (before, now)]
+    return plain[0] == plain[1]
+
+
+def _taken_up(runs: list[Run], signs: list[int], branch: Branch) -> list[Iterator[Point]]:
+    """The runs of an interrupted branch, each from where it stands. Raises ResumeError for another start."""
     begun = {c.sign: c for c in branch.checkpoints}
     if not set(begun) <= set(signs):
-        raise ValueError("resume is a branch with another start; start and bounds must be as before")
+        raise ResumeError("resume is a branch with another start; start and bounds must be as before")
     start = branch.points[branch.backwards]
     own = [[*branch.points[branch.backwards :]]]
-    if branch.backwards:
-        own.insert(0, [start, *_turned(branch.points[: branch.backwards])])
+    if branch.stop_backwards is not None:
+        own.insert(0, [start, *turned(branch.points[: branch.backwards])])
     stops = [branch.stop_backwards or branch.stop, branch.stop]
     generators: list[Iterator[Point]] = []
     for run, sign, stop in zip(runs, signs, stops, strict=False):
         checkpoint = begun.get(sign)
         if checkpoint is None:
             generators.append(run.points(start.orbit, sign))
-        elif checkpoint.done:
-            run.collected, run.stop, run.ended = own.pop(0), stop, checkpoint
-            generators.append(iter(()))
-        else:
-            generators.append(run.resumed(start.orbit, own.pop(0), checkpoint))
+            continue
+        run.collected, run.stop, run.ended = own.pop(0), stop, checkpoint
+        going = run.resumed(start.orbit, run.collected, checkpoint)
+        generators.append(iter(()) if checkpoint.done else going)
     return generators
-
-
-def _reversed(half: list[Point]) -> list[Point]:
-    """A half run backwards as the first part of a branch, without its start."""
-    start = half[0].parameter
-    return _turned([p for i, p in enumerate(half) if i > 1 or p.parameter != start])
-
-
-def _turned(points: Sequence[Point]) -> list[Point]:
-    """Points in the opposite order."""
-    return [replace(point, slope=-point.slope) for point in reversed(points)]
 
 
 def _versions(*names: str) -> dict[str, str]:
@@ -232,6 +275,8 @@ def _base(system: System, guess: Orbit | None) -> Array:
     nominal = np.array(system.nominal, dtype=float)
     if guess is None:
         return nominal
+    if not isinstance(guess, Orbit):
+        raise ValueError(f"guess is a {type(guess).__name__}; it must be an Orbit, as point.orbit is")
     counts = {
         "states": (guess.nodes.shape[1], len(system.states)),
         "algebraic unknowns": (guess.algebraic.shape[2], len(system.algebraics)),

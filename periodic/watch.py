@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from periodic.conditions import Level
 from periodic.events import Test
-from periodic.functionals import Functional, Value
+from periodic.functionals import Functional, Value, apart
 from periodic.label import Label
 from periodic.orbit import Orbit
 from periodic.system import System, index_of
+
+if TYPE_CHECKING:
+    from periodic.solve import Solved, Task
 
 
 @dataclass(frozen=True)
@@ -45,9 +49,9 @@ class Watch:
         """Return the test functions of events and limits."""
         events = [_passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
         limits = [
-            _passing(Value(name), value, Label.END, f"{side} limit of {name}")
+            _passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
             for name, ends in self.limits.items()
-            for side, value in zip(("lower", "upper"), ends, strict=True)
+            for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
         return (*events, *limits)
 
@@ -59,9 +63,17 @@ class Watch:
         """Raise ValueError if an orbit to start from lies outside the limits."""
         for name, (low, high) in self.limits.items():
             value = float(orbit.parameter[index_of(system, name)])
-            if not low <= value <= high:
+            if not low - slack(low) <= value <= high + slack(high):
                 raise ValueError(f"{name} is {value} at the start; its limits are {low} to {high}")
 
 
+def slack(limit: float) -> float:
+    """How far beyond a limit a parameter may lie: by rounding."""
+    return 1e-12 * abs(limit)
+
+
 def _passing(functional: Functional, level: float, label: Label, name: str) -> Test:
-    return Test(label, lambda task, solved: functional(task.system, solved.orbit) - level, 1e-10, name=name)
+    def value(task: Task, solved: Solved) -> float:
+        return apart(functional, functional(task.system, solved.orbit), level)
+
+    return Test(label, value, 1e-10, name=name)

@@ -42,6 +42,14 @@ class Effort(Enum):
     FINE = "fine"
 
 
+class Method(Enum):
+    """Discretisations by the names that they have here."""
+
+    COLLOCATION = "collocation"
+    SHOOTING = "shooting"
+    HARMONIC_BALANCE = "harmonic-balance"
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code; bad input ends in one sentence on standard error."""
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
@@ -99,6 +107,10 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
 ]
+How = Annotated[Method, typer.Option("--method", help="How orbits are represented and solved for.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on from an interrupted trace in DIR; all else as it was.")
+]
 Sweep = Annotated[
     bool,
     typer.Option(
@@ -148,7 +160,9 @@ def trace(
     at: At = None,
     changes: Changes = None,
     accuracy: Dial = Effort.STANDARD,
+    method: How = Method.COLLOCATION,
     out: Out = None,
+    resume: Resume = False,
     sweep: Sweep = False,
     as_json: Json = False,
 ) -> int:
@@ -166,15 +180,19 @@ def trace(
     task = run.validated(run.Request(source=scene, begin=begin, end=end, at=at, overrides=overrides))
     name = short_name(scene)
     folder = writable(out or Path("orbitrace-out", name))
+    before = run.interrupted(task, folder) if resume else None
     with heard_once():
         try:
-            branch = _traced(name, task, accuracy)
+            branch = _traced(name, task, accuracy, method, before, folder)
             integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
+            (folder / run.JOURNAL).unlink(missing_ok=True)
             _say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
-        folder = _place(branch, folder)
-        _report(name, task, branch, integrated, folder, as_json)
+        journal, folder = folder / run.JOURNAL, _place(branch, folder)
+        files = run.save(folder, name, task.scene, branch, integrated)
+        journal.unlink(missing_ok=True)
+        _report(name, task, branch, files, as_json)
     return _verdict(branch, folder)
 
 
@@ -246,12 +264,19 @@ def _pair(change: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def _traced(name: str, task: run.Task, accuracy: Effort) -> Branch:
-    from periodic import Accuracy, Reason
+def _traced(
+    name: str, task: run.Task, accuracy: Effort, method: Method, before: Branch | None, folder: Path
+) -> Branch:
+    from periodic import Accuracy, Collocation, HarmonicBalance, Reason, Shooting
     from reports import console, run
 
+    methods = {
+        Method.COLLOCATION: Collocation,
+        Method.SHOOTING: Shooting,
+        Method.HARMONIC_BALANCE: HarmonicBalance,
+    }
     with console.progress(name, task.scene) as progress:
-        branch = run.trace(task, Accuracy[accuracy.name], progress)
+        branch = run.trace(task, Accuracy[accuracy.name], progress, methods[method](), before, folder)
     if branch.stop.reason is Reason.INTERRUPTED and not len(branch):
         raise KeyboardInterrupt
     return branch
@@ -270,9 +295,9 @@ def _place(branch: Branch, folder: Path) -> Path:
     cut = branch.stop.reason.numerical or branch.stop.reason is Reason.INTERRUPTED
     if not (cut and (folder / "branch.nc").exists()):
         return folder
-    from reports.files import writable
+    from reports.files import INCOMPLETE, writable
 
-    return writable(folder / "incomplete")
+    return writable(folder / INCOMPLETE)
 
 
 def _swept(name: str, task: run.Task) -> run.Settlements | None:
@@ -296,13 +321,11 @@ def _report(
     name: str,
     task: run.Task,
     branch: Branch,
-    integrated: run.Settlements | None,
-    folder: Path,
+    files: list[Path],
     as_json: bool,
 ) -> None:
-    from reports import console, run, summary
+    from reports import console, summary
 
-    files = run.save(folder, name, task.scene, branch, integrated)
     if as_json:
         typer.echo(summary.json_text(name, task.scene, branch), nl=False)
     else:

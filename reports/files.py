@@ -11,6 +11,9 @@ from pathlib import Path
 from reports.errors import InputError
 from reports.interrupts import unheard
 
+INCOMPLETE = "incomplete"
+"""Where a result goes that was cut short, beside an earlier one."""
+
 
 def writable(folder: Path) -> Path:
     """Make a directory if need be and return it. Raises InputError if no file can be made in it."""

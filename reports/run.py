@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from reports.errors import InputError, refused
-from reports.files import write
+from reports.files import INCOMPLETE, write
 from reports.scene import Override, ends, load
 from reports.schema import Scene
 from reports.summary import csv_text, json_text
@@ -17,7 +17,15 @@ from reports.view import view_of
 
 if TYPE_CHECKING:
     from periodic import Accuracy, Branch, Point
+    from periodic.methods.protocol import Method
     from reports.sweep import Settled
+
+
+BRANCH = "branch.nc"
+"""File of a branch in its directory."""
+
+JOURNAL = "branch.journal"
+"""File that keeps each step of a trace under way; what is left of it was killed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,22 +85,68 @@ def _number(text: str) -> float:
         return math.nan
 
 
-def trace(task: Task, accuracy: Accuracy, progress: Callable[[Point], None] | None = None) -> Branch:
-    """Build the system of a scene and trace its branch over its range."""
+def interrupted(task: Task, folder: Path) -> Branch:
+    """Return the interrupted branch that a directory holds, to be resumed.
+
+    Raises InputError where there is none, or one of another scene.
+    """
+    from periodic import Branch, BranchFileError, recovered
+    from reports.build import build
+
+    places = [folder / JOURNAL, folder / INCOMPLETE / BRANCH, folder / BRANCH]
+    there = [place for place in places if place.is_file()]
+    path = max(there, key=lambda place: (place.name == JOURNAL, place.stat().st_mtime), default=None)
+    if path is None:
+        raise refused("--resume", str(folder), "a directory with the branch.nc of an interrupted trace")
+    try:
+        branch = recovered(path) if path.name == JOURNAL else Branch.load(path)
+    except BranchFileError as error:
+        raise refused("--resume", str(path), f"a branch that can be read ({error})") from error
+    parameter, system = view_of(task.scene).parameter, build(task.scene)
+    known = [quantity.name for quantity in branch.layout.parameters]
+    for k, wanted in enumerate(system.parameters) if known == [p.name for p in system.parameters] else ():
+        own = float(branch.points[0].orbit.parameter[k]) if len(branch) else wanted.value
+        if wanted.name != parameter and own != wanted.value:
+            allowed = f"one traced with {wanted.name} = {wanted.value:g}, as now (it has {own:g})"
+            raise refused("--resume", str(path), allowed)
+    return branch
+
+
+def trace(
+    task: Task,
+    accuracy: Accuracy,
+    progress: Callable[[Point], None] | None = None,
+    method: Method | None = None,
+    resume: Branch | None = None,
+    folder: Path | None = None,
+) -> Branch:
+    """Build the system of a scene and trace its branch over its range, with a journal in `folder`.
+
+    Raises InputError for a branch to resume that is another's, or a directory in use.
+    """
     import periodic
     from reports.build import build
 
     view = view_of(task.scene)
     begin, end = (value * view.unit for value in task.scene.trace.ends)
-    return periodic.trace(
-        build(task.scene),
-        view.parameter,
-        (min(begin, end), max(begin, end)),
-        start=begin,
-        at=[value * view.unit for value in task.at],
-        accuracy=accuracy,
-        progress=progress,
-    )
+    try:
+        return periodic.trace(
+            build(task.scene),
+            view.parameter,
+            (min(begin, end), max(begin, end)),
+            start=begin,
+            at=[value * view.unit for value in task.at],
+            accuracy=accuracy,
+            method=method,
+            resume=resume,
+            journal=None if folder is None else folder / JOURNAL,
+            progress=progress,
+        )
+    except periodic.JournalError as error:
+        allowed = "it must be one that no other trace is writing to"
+        raise InputError("--out", f'is "{folder}"', allowed) from error
+    except periodic.ResumeError as error:
+        raise refused("--resume", "another branch", f"one of this scene ({error})") from error
 
 
 SPEEDS = 33
@@ -126,7 +180,7 @@ def save(
     from reports.picture import draw
 
     writers: dict[str, Callable[[Path], object]] = {
-        "branch.nc": branch.save,
+        BRANCH: branch.save,
         "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
         "branch.png": lambda path: draw(path, scene, branch, integrated),

@@ -19,6 +19,8 @@ from reports.paper import (
     frequency,
     method,
     method_text,
+    regions,
+    regions_text,
     supports,
     supports_text,
     timedomain,
@@ -51,6 +53,9 @@ TEXTS: dict[str, Callable[[Mapping[str, float]], str]] = {
     "damping": damping_text.text,
     "supports": lambda n: supports_text.text(n, supports.SHARES, supports.TARGETS),
     "timedomain": timedomain._text,
+    "regions": lambda n: regions_text.text(
+        n, {key.removeprefix("difference "): n[key] for key in n if key.startswith("difference ")}
+    ),
 }
 """Texts that follow from the numbers alone."""
 
@@ -60,6 +65,7 @@ ROWS: dict[str, Callable[[Mapping[str, float]], tuple[Row, ...]]] = {
     "frequency": lambda n: frequency._rows(dict(n)),
     "supports": lambda n: supports._rows(dict(n)),
     "damping": lambda _: damping.rows(),
+    "regions": lambda n: regions._rows(dict(n)),
 }
 """Rows from the kept numbers; those of damping are computed anew."""
 
@@ -108,6 +114,12 @@ def test_film_laws_are_fresh() -> None:
     assert_fresh("filmlaws", filmlaws.numbers())
 
 
+@pytest.mark.long
+def test_regions_are_fresh() -> None:
+    """Assert the same of the section on regions, which takes minutes."""
+    assert_fresh("regions", regions.numbers())
+
+
 def test_page_is_complete() -> None:
     """Assert that every section is there, and that the first table has a row for every row of the paper."""
     said = REPORT.kept(FOLDER)
@@ -147,7 +159,8 @@ def test_section_is_kept(tmp_path: Path) -> None:
     assert "![What it shows.](figures/curve.png)\n\n*What it shows.*" in text
     assert "| P9 | speed | 325 rev/min | 330.5 rev/min | +1.7 % | reproduced within 2 % | two ways |" in text
     assert text.index("| P9 |") < text.index("| P10 |")
-    assert "Sections not computed yet: method, timedomain, damping, supports, filmlaws, unseen." in text
+    missing = "method, timedomain, damping, supports, filmlaws, unseen, regions"
+    assert f"Sections not computed yet: {missing}." in text
     assert (tmp_path / FIGURES / "curve.png").stat().st_size > 1000
 
 

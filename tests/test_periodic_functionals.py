@@ -63,6 +63,7 @@ def test_sensitivities_of_a_linear_oscillator() -> None:
             "modulus": per.Multiplier(),
             "real": per.Multiplier(0, "real"),
             "imaginary": per.Multiplier(0, "imaginary"),
+            "angle": per.Multiplier(0, "angle"),
         },
     )
 
@@ -76,7 +77,8 @@ def test_sensitivities_of_a_linear_oscillator() -> None:
             "lag": -float(np.angle(response)),
             "modulus": abs(multiplier),
             "real": multiplier.real,
-            "imaginary": abs(multiplier.imag),
+            "imaginary": multiplier.imag * math.copysign(1, multiplier.imag),
+            "angle": abs(float(np.angle(multiplier))),
         }
 
     values = {p.name: float(v) for p, v in zip(system.parameters, orbit.parameter, strict=True)}
@@ -150,11 +152,25 @@ def test_fold_moves_as_its_sensitivity_says() -> None:
     assert "Omega" not in found["fold"]
 
 
-def test_multiplier_of_a_fold_has_no_derivative_of_its_own() -> None:
-    """Assert that sensitivities at a fold with all parameters held are refused by their linear algebra."""
+def test_derivatives_at_a_fold_are_without_bound() -> None:
+    """Assert that they are huge at a fold whose place is not determined."""
     (fold, _) = duffing(accuracy=FINE).labelled(per.Label.FOLD)
     found = per.sensitivities(duffing_system(*DUFFING_A), fold.orbit, {"x": per.Maximum("x")})
     assert abs(found["x"]["Omega"]) > 1e3
+
+
+def test_fourier_series_have_no_exact_derivatives() -> None:
+    """Assert that sensitivities of an orbit of harmonic balance are refused in one sentence."""
+    system = duffing_system(*DUFFING_A)
+    orbit = per.trace(system, "Omega", (0.8, 1.0), start=0.8, method=per.HarmonicBalance())[0].orbit
+    with pytest.raises(ValueError, match="exact derivatives need one found by Collocation or Shooting"):
+        per.sensitivities(system, orbit, {"x": per.PeakToPeak("x")})
+
+
+def test_level_must_be_a_number() -> None:
+    """Assert the sentence about a level that is none."""
+    with pytest.raises(ValueError, match="value of a Level is nan; it must be a finite number"):
+        per.Level(per.Maximum("x"), math.nan)
 
 
 def test_peak_of_a_linear_oscillator() -> None:
@@ -163,13 +179,15 @@ def test_peak_of_a_linear_oscillator() -> None:
     begin = math.sqrt(1 - DAMPING**2 / 2)
     guess = per.trace(system, "Omega", (0.5, begin), start=begin, accuracy=FINE)[0].orbit
     determined = {"Omega": per.Peak(per.PeakToPeak("x"))}
-    curve = per.trace(system, "c", (0.04, 0.6), guess=guess, at=dampings, determined=determined)
+    curve = per.trace(
+        system, "c", (0.04, 0.6), guess=guess, at=dampings, determined=determined, accuracy=FINE
+    )
     assert curve.stop.reason is per.Reason.BOUND
     at = [p.name for p in system.parameters].index("Omega")
     for c in dampings:
         point, Omega = user_points(curve, c)[0], math.sqrt(1 - c**2 / 2)
-        assert point.orbit.parameter[at] == pytest.approx(Omega, rel=1e-6)
-        assert point.peak_to_peak("x") == pytest.approx(2 * FORCE * abs(gain(Omega, c)), rel=1e-7)
+        assert point.orbit.parameter[at] == pytest.approx(Omega, rel=1e-8)
+        assert point.peak_to_peak("x") == pytest.approx(2 * FORCE * abs(gain(Omega, c)), rel=1e-9)
 
 
 def test_phase_resonance_of_a_linear_oscillator() -> None:
@@ -265,6 +283,13 @@ def test_columns_and_counts() -> None:
         ({"limits": {"G": (2.0, 3.0)}}, "parameter is 'G'; it must be one of"),
         ({"columns": {"y": per.Maximum("y")}}, "output is 'y'; it must be one of x"),
         ({"determined": {"F": per.Level(len, 1.0)}}, "which has no derivative"),
+        (
+            {"determined": {"Omega": per.FoldCondition()}},
+            "determined has 'Omega', which is also the parameter",
+        ),
+        ({"determined": {"F": per.FoldCondition}}, "for F; it must be a condition, as FoldCondition.. is"),
+        ({"method": "shooting"}, "method is 'shooting'; it must be Collocation"),
+        ({"guess": 3.0}, "guess is a float; it must be an Orbit, as point.orbit is"),
     ],
 )
 def test_what_is_refused(options: dict[str, object], sentence: str) -> None:
@@ -283,8 +308,8 @@ def test_derivatives_need_a_differentiable_system() -> None:
 
 def test_part_of_a_multiplier_is_checked() -> None:
     """Assert the sentences about a multiplier that there is not."""
-    with pytest.raises(ValueError, match="part is 'angle'; it must be one of modulus, real, imaginary"):
-        per.Multiplier(0, "angle")
+    with pytest.raises(ValueError, match="part is 'size'; it must be one of modulus, angle, real, imaginary"):
+        per.Multiplier(0, "size")
     system, orbit = linear_orbit()
     with pytest.raises(ValueError, match="which is 2; the orbit has the multipliers 0 to 1"):
         per.Multiplier(2)(system, orbit)

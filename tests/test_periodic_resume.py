@@ -91,6 +91,30 @@ def test_interrupted_again_and_again() -> None:
     assert branch.values == pytest.approx(expected.values, rel=1e-11)
 
 
+def test_interrupt_before_a_resumed_run_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that nothing is lost where Ctrl-C comes while a branch is taken up again."""
+    options = duffing_options()
+    part = per.trace(**options, progress=interrupted_after(15))
+
+    def interrupt(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(per.Run, "_first", interrupt)
+        again = per.trace(**options, resume=part)
+    assert again.values == pytest.approx(part.values)
+    found = per.trace(**options, resume=again)
+    assert found.values == pytest.approx(whole("duffing").values, rel=1e-11)
+
+
+def test_interrupt_in_the_first_of_two_keeps_the_second() -> None:
+    """Assert that a run that had used up its points stays while the other goes on."""
+    options = duffing_options()
+    part = per.trace(**options, settings=per.Settings(step=per.StepSettings(max_points=12)))
+    again = per.trace(**options, settings=per.Settings(), resume=part, progress=interrupted_after(3))
+    assert len(again) >= len(part)
+
+
 def test_finished_branch_stays_as_it_is() -> None:
     """Assert that resuming a finished branch gives it back."""
     expected = whole("duffing")
@@ -119,8 +143,21 @@ def test_other_branches_are_refused() -> None:
         per.trace(**disc_options(), resume=branch)
     with pytest.raises(ValueError, match="resume is a branch in Omega with .* it must be one in F"):
         per.trace(duffing_system(*DUFFING_A), "F", (0.1, 1.0), resume=branch)
+    system = duffing_system(*DUFFING_A)
+    changes: dict[str, dict[str, Any]] = {
+        "bounds": {"bounds": (1.0, 3.0)},
+        "method": {"method": per.HarmonicBalance()},
+        "values": {"values": {"c": 0.2}},
+        "settings": {"accuracy": per.Accuracy.FINE},
+        "at": {"at": ()},
+    }
+    for name, change in changes.items():
+        with pytest.raises(ValueError, match=f"resume is a branch made with {name} .*; now they are"):
+            per.trace(**{**duffing_options(), **change}, resume=branch)
+    options: dict[str, Any] = {"system": system, "parameter": "Omega", "bounds": (0.3, 3.0)}
+    part = per.trace(**options, progress=interrupted_after(5))
     with pytest.raises(ValueError, match="start and bounds must be as before"):
-        per.trace(duffing_system(*DUFFING_A), "Omega", (1.0, 3.0), start=1.0, resume=branch)
+        per.trace(**options, start=3.0, resume=part)
 
 
 def test_counts_survive() -> None:

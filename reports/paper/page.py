@@ -27,6 +27,6 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
 
 REPORT = Report(
     name="paper",
-    sections=("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen"),
+    sections=("method", "timedomain", "damping", "frequency", "supports", "filmlaws", "unseen", "regions"),
     summary=summary,
 )
