@@ -9,7 +9,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from reports.bench.peers import PEERS, MissingError
+from reports.bench.others import PEERS, MissingError
 from reports.bench.record import RecordError, begun, compared, last
 from reports.bench.suite import OWN, Numbers
 

@@ -10,9 +10,10 @@ from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 
+from reports.bench import others
 from reports.bench.suite import Numbers
 
-PACKAGES = ("orbitrace", "numpy", "scipy", "casadi", "bifpy")
+PACKAGES = ("orbitrace", "numpy", "scipy", "casadi")
 
 
 class RecordError(ValueError):
@@ -49,7 +50,9 @@ def begun(results: dict[str, Numbers], skipped: dict[str, str], load: float) -> 
         "cores": str(os.cpu_count()),
         "python": platform.python_version(),
     }
-    versions = {name: _version(name) for name in PACKAGES}
+    versions = {name: _version(name) for name in PACKAGES} | {
+        name: others.version(name) for name in others.PACKAGES
+    }
     date = datetime.now(UTC).isoformat(timespec="seconds").removesuffix("+00:00")
     return Record(date=date, machine=machine, versions=versions, load=load, results=results, skipped=skipped)
 

@@ -9,14 +9,15 @@ import periodic as per
 from periodic.methods.protocol import Method
 from reports.pages.report import table
 from reports.pages.section import Section, Tell
+from reports.trade.direct import settings_for
 from reports.trade.figures import branches
 from reports.trade.measure import Measured, digits
 from reports.trade.problems import Problem, disc, duffing
-from reports.trade.whole import Swept, Traced, accuracies, balanced, dialled, folds_near, settings_for, shot
+from reports.trade.whole import Swept, Traced, accuracies, balanced, dialled, folds_near, shot, swept
 from reports.trade.words import advice, failures, power, seconds
 from reports.view import RPM
 
-DIAL = tuple(10.0**-k for k in range(2, 10))
+TOLERANCES = tuple(10.0**-k for k in range(2, 10))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +47,7 @@ class Study:
         )
         branch = traced.branch(problem)
         folds = [p.parameter for p in branch.labelled(per.Label.FOLD)]
-        loose = settings_for(self.loose, per.Scheme(per.Family.RADAU, 6), 1e-8)
+        loose = settings_for(self.loose, per.Scheme(per.Family.RADAU, 6), newton=1e-8)
         again = folds_near(problem, branch, self.other, loose)
         return folds, max(abs(b / a - 1) for a, b in zip(folds, again, strict=True))
 
@@ -56,7 +57,12 @@ STUDIES = (
         key="disc",
         title="The disc from 500 to 100 rev/min",
         problem=lambda: disc(360.0),
-        cases=lambda: [*accuracies(), *dialled(DIAL), *balanced((10, 20)), Swept(count=33), Swept(count=81)],
+        cases=lambda: [
+            *accuracies(),
+            *dialled(TOLERANCES),
+            *balanced((10, 20)),
+            *swept((33, 81)),
+        ],
         tight=1e-9,
         loose=1e-6,
         other=per.Shooting(tolerance=1e-12),
@@ -74,11 +80,10 @@ STUDIES = (
         problem=duffing,
         cases=lambda: [
             *accuracies(),
-            *dialled(DIAL),
+            *dialled(TOLERANCES),
             *balanced((1, 3, 5, 7, 9, 13, 20)),
             *shot((1e-6, 1e-8, 1e-10)),
-            Swept(count=33),
-            Swept(count=81),
+            *swept((33, 81)),
         ],
         tight=1e-11,
         other=per.HarmonicBalance(harmonics=24, most=40),

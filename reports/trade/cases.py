@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import periodic as per
-from reports.trade.direct import Adaptive, Even, Harmonics, shooting
+from reports.trade.direct import Adaptive, Even, Harmonics, settings_for, shooting
 from reports.trade.marching import Integrated, RungeKutta
 from reports.trade.measure import Case, March
+from reports.trade.names import BALANCE, CVODES, DIAL, RADAU_5, RK4, SCHEMES, SHOOTING, Mesh, named
 from reports.trade.words import power
-
-RK4, CVODES, SHOOTING = "RK4 to steady state", "CVODES to steady state", "shooting"
-ANCHORED, UNTIED, BALANCE = "Radau 5, anchored", "Radau 5, adaptive", "harmonic balance"
 
 NTST = (6, 12, 24, 48, 96, 192, 384)
 STEPS = (12, 25, 50, 100, 200)
@@ -19,30 +17,32 @@ HARMONICS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 45, 60)
 INTEGRATOR = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 SHOT = (1e-5, 1e-6, 1e-8, 1e-10, 1e-12)
 TOLERANCES = tuple(10.0**-k for k in range(2, 11))
-COLUMNS = tuple(range(2, 8))
+COARSE = TOLERANCES[::2]
 
 
-def even(family: per.Family, columns: Sequence[int] = COLUMNS, ntst: Sequence[int] = NTST) -> Iterator[Case]:
+def even(schemes: Sequence[per.Scheme] = SCHEMES, ntst: Sequence[int] = NTST) -> Iterator[Case]:
     """Yield collocation on even meshes."""
-    for ncol in columns:
+    for scheme in schemes:
         for count in ntst:
-            yield Case(even_name(family, ncol), f"ntst {count}", Even(per.Scheme(family, ncol), count).solve)
+            yield Case(named(scheme, Mesh.EVEN), f"ntst {count}", Even(scheme, count).solve)
 
 
-def even_name(family: per.Family, ncol: int) -> str:
-    """Return the name of a family of even meshes."""
-    return f"{'Radau' if family is per.Family.RADAU else 'Gauss'} {ncol}, even"
-
-
-def dial(
-    *, anchored: bool, ncol: int = 5, tolerances: Sequence[float] = TOLERANCES, family: str = ""
+def chosen(
+    mesh: Mesh, schemes: Sequence[per.Scheme] = (RADAU_5,), tolerances: Sequence[float] = TOLERANCES
 ) -> Iterator[Case]:
-    """Yield Radau collocation on meshes that it chooses for a tolerance, with anchors or without."""
-    scheme = per.Scheme(per.Family.RADAU, ncol)
-    name = family or (ANCHORED if anchored else UNTIED)
-    for tolerance in tolerances:
-        way = Adaptive(per.Collocation(), scheme, tolerance, anchored)
-        yield Case(name, f"tol {power(tolerance)}", way.solve)
+    """Yield collocation on meshes that it chooses for a tolerance, with anchors or without."""
+    for scheme in schemes:
+        for tolerance in tolerances:
+            settings = settings_for(tolerance, scheme, anchored=mesh is Mesh.ANCHORED)
+            way = Adaptive(per.Collocation(), settings)
+            yield Case(named(scheme, mesh), f"tol {power(tolerance)}", way.solve)
+
+
+def dial() -> Iterator[Case]:
+    """Yield draft, standard and fine."""
+    for accuracy in per.Accuracy:
+        way = Adaptive(per.Collocation(), accuracy.settings())
+        yield Case(DIAL, accuracy.name.lower(), way.solve)
 
 
 def harmonics(counts: Sequence[int] = HARMONICS) -> Iterator[Case]:
@@ -69,12 +69,16 @@ def marches(
 
 def everything(blocks: int) -> list[Case | March]:
     """Return all that a small system is measured with."""
+    others = [scheme for scheme in SCHEMES if scheme != RADAU_5]
     return [
         *marches(blocks),
         *shots(),
-        *even(per.Family.RADAU),
-        *even(per.Family.GAUSS),
-        *dial(anchored=False),
-        *dial(anchored=True),
         *harmonics(),
+        *dial(),
+        *even(),
+        *(
+            case
+            for mesh in (Mesh.ADAPTIVE, Mesh.ANCHORED)
+            for case in (*chosen(mesh), *chosen(mesh, others, COARSE))
+        ),
     ]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import periodic as per
 from reports.trade import cases
 from reports.trade.measure import Case, March
+from reports.trade.names import GAUSS_5, RADAU_5, Mesh
 from reports.trade.orbits import BALANCED, Study
 from reports.trade.problems import CHAIN, chain
 
@@ -16,10 +16,10 @@ def measured() -> list[Case | March]:
     return [
         *cases.marches(30, steps=(12, 25, 50), tolerances=(1e-4, 1e-6, 1e-8, 1e-10)),
         *cases.shots((1e-6, 1e-8, 1e-10)),
-        *cases.even(per.Family.RADAU, columns=(3, 4, 5), ntst=(6, 12, 24)),
-        *cases.even(per.Family.GAUSS, columns=(3, 4, 5), ntst=(6, 12, 24)),
-        *cases.dial(anchored=False, tolerances=(1e-3, 1e-5, 1e-7)),
-        *cases.harmonics((1, 3, 5, 7, 9)),
+        *cases.harmonics((1, 3, 5, 7, 9, 12)),
+        *cases.dial(),
+        *cases.even(ntst=(6, 12, 24)),
+        *cases.chosen(Mesh.ADAPTIVE, (RADAU_5, GAUSS_5), (1e-3, 1e-5, 1e-7)),
     ]
 
 

@@ -24,9 +24,6 @@ from reports.trade.problems import Problem, nearby
 NEWTON = per.NewtonSettings(tolerance=1e-8, max_iterations=16)
 """The last step is smaller; what it leaves is of the order of its square."""
 
-MOST = 800
-"""Most intervals of an adaptive mesh."""
-
 NO_ANCHORS = AnchorSettings(appear=1e3, vanish=1e3)
 """Excursions of a thousand rad do not come about."""
 
@@ -68,12 +65,10 @@ class Harmonics:
 
 @dataclass(frozen=True)
 class Adaptive:
-    """A method whose error estimate is to fall below a tolerance, on meshes that it chooses."""
+    """A method whose error estimate is to fall below its tolerance, on meshes that it chooses."""
 
     method: Method
-    scheme: per.Scheme
-    tolerance: float
-    anchored: bool = True
+    settings: per.Settings
 
     def solve(self, problem: Problem) -> Correction:
         """Return the orbit. Raises FailedError."""
@@ -82,17 +77,13 @@ class Adaptive:
         return self._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True)).correction
 
     def _task(self, problem: Problem) -> Task:
-        anchors = AnchorSettings(deepest=0.1 * self.tolerance) if self.anchored else NO_ANCHORS
-        mesh = per.MeshSettings(tolerance=self.tolerance, scheme=self.scheme, ntst_max=MOST, anchors=anchors)
-        newton = replace(NEWTON, tolerance=max(1e-2 * self.tolerance, 1e-10) ** 0.75)
-        settings = per.Settings(mesh=mesh, newton=newton)
         scale = abs(problem.bounds[1] - problem.bounds[0])
-        return Task(problem.system, problem.index, Metric(scale), settings, self.method)
+        return Task(problem.system, problem.index, Metric(scale), self.settings, self.method)
 
     def _accurate(self, task: Task, solved: Solved | Outcome) -> Solved:
         if isinstance(solved, Outcome):
             raise FailedError(solved.value)
-        if solved.error.orbit > self.tolerance:
+        if solved.error.orbit > self.settings.mesh.tolerance:
             raise FailedError(self.method.shortfall(task, solved))
         return solved
 
@@ -103,18 +94,29 @@ def neighbour(way: Adaptive, problem: Problem) -> per.Orbit:
     task, orbit = way._task(problem), nearby(problem)
     guess = way.method.adopted(problem.system, task.settings.mesh, orbit, orbit.parameter)
     solved = way._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True))
+    limit = way.settings.mesh.tolerance
     for _ in range(SLIMMING):
         slimmer = remesh(task, solved, fixed=True)
-        if isinstance(slimmer, Outcome) or slimmer.error.orbit > way.tolerance or not slimmer.anchored:
+        if isinstance(slimmer, Outcome) or slimmer.error.orbit > limit or not slimmer.anchored:
             break
         solved = slimmer
     return solved.orbit
 
 
+def settings_for(
+    tolerance: float, scheme: per.Scheme, *, anchored: bool = True, newton: float | None = None
+) -> per.Settings:
+    """Return the settings of a tolerance as the dial has them; newton: Newton's, if not the dial's."""
+    anchors = AnchorSettings(deepest=0.1 * tolerance) if anchored else NO_ANCHORS
+    mesh = per.MeshSettings(tolerance=tolerance, scheme=scheme, anchors=anchors)
+    limit = newton or max(1e-2 * tolerance, 1e-10) ** 0.75
+    return per.Settings(mesh=mesh, newton=replace(NEWTON, tolerance=limit))
+
+
 def shooting(tolerance: float) -> Adaptive:
     """Return single shooting whose integrator has a tolerance, interpolated as well as that allows."""
-    orbit = min(1e3 * tolerance, 0.1)
-    return Adaptive(per.Shooting(tolerance=tolerance), per.Scheme(per.Family.RADAU, 6), orbit)
+    scheme = per.Scheme(per.Family.RADAU, 6)
+    return Adaptive(per.Shooting(tolerance=tolerance), settings_for(min(1e3 * tolerance, 0.1), scheme))
 
 
 def _converged(method: Method, problem: Problem, guess: per.Orbit) -> Correction:

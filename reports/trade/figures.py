@@ -9,59 +9,85 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from reports.pages.figures import panels
-from reports.trade.cases import ANCHORED, BALANCE, CVODES, RK4, SHOOTING, UNTIED
 from reports.trade.measure import Measured
+from reports.trade.names import (
+    ANCHORED,
+    BALANCE,
+    CVODES,
+    DIAL,
+    EVEN,
+    RK4,
+    SCHEMES,
+    SHOOTING,
+    UNTIED,
+    Mesh,
+    named,
+)
+from reports.trade.words import families, shown
 
 COLOURS = {
     RK4: "tab:red",
     CVODES: "tab:orange",
     SHOOTING: "tab:purple",
+    BALANCE: "tab:green",
+    DIAL: "tab:pink",
+    EVEN: "black",
+    "Gauss 5, even": "tab:gray",
     UNTIED: "tab:cyan",
     ANCHORED: "tab:blue",
-    BALANCE: "tab:green",
-    "Radau 4, even": "black",
-    "Gauss 4, even": "tab:gray",
 }
-MARKERS = "osv^D*P"
+MARKERS = "osv^D*P<>"
 SHADES = ("#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#d2b000")
+TIME, ERROR = "processor time (s)", "error of the orbit, part of its size"
 
 
 def diagram(rows: Sequence[Measured]) -> Figure:
-    """Return the methods side by side, and beside them collocation on even meshes, Radau and Gauss."""
-    figure, axes = panels(1, 3, width=11.0, height=4.0, sharey=True)
-    main = [r for r in rows if not r.family.endswith("even")]
-    chosen = [r for r in rows if r.family in ("Radau 4, even", "Gauss 4, even")]
-    _curves(axes[0], [*main, *chosen], COLOURS)
-    for ax, kind in zip(axes[1:], ("Radau", "Gauss"), strict=True):
-        shown = [r for r in rows if r.family.startswith(kind) and r.family.endswith("even")]
-        _curves(ax, shown, {f: SHADES[i % len(SHADES)] for i, f in enumerate(_families(shown))})
-    for ax, title in zip(axes, ("methods", "Radau on even meshes", "Gauss on even meshes"), strict=True):
-        ax.set_title(title, fontsize=9)
-        ax.set_xlabel("processor time (s)")
-    axes[0].set_ylabel("error of the orbit, part of its size")
+    """Return the methods side by side."""
+    figure, axes = panels(1, 1, width=8.0, height=4.5)
+    _curves(axes, shown(rows), COLOURS)
+    axes.set_xlabel(TIME)
+    axes.set_ylabel(ERROR)
+    return figure
+
+
+def meshes(rows: Sequence[Measured]) -> Figure:
+    """Return collocation by scheme: Radau above Gauss, a column for each kind of mesh, a colour for ncol."""
+    own = families(rows)
+    kinds = [mesh for mesh in Mesh if any(named(scheme, mesh) in own for scheme in SCHEMES)]
+    figure, axes = panels(2, len(kinds), 3.2 * len(kinds) + 0.8, 3.0, sharex=True, sharey=True, squeeze=False)
+    for index, scheme in enumerate(SCHEMES):
+        for column, mesh in enumerate(kinds):
+            ax, count = axes[index // 6][column], index % 6
+            style = {"color": SHADES[count], "marker": MARKERS[count], "label": f"ncol {scheme.ncol}"}
+            _curve(ax, own.get(named(scheme, mesh), []), **style)
+            ax.set_title(f"{named(scheme, mesh).split()[0]}, {mesh.value} mesh", fontsize=9)
+    for ax in axes[1]:
+        ax.set_xlabel(TIME)
+    for ax in axes[:, 0]:
+        ax.set_ylabel(ERROR)
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside right center", fontsize=8)
     return figure
 
 
 def branches(rows: Sequence[Measured]) -> Figure:
     """Return the error of the folds over the time of the whole branch."""
-    figure, axes = panels(1, 1, width=5.5, height=4.0)
-    _curves(axes, rows, {})
+    figure, axes = panels(1, 1, width=7.0, height=4.0)
+    _curves(axes, rows, COLOURS)
     axes.set_xlabel("processor time of the branch (s)")
     axes.set_ylabel("relative error of the folds")
     return figure
 
 
 def _curves(axes: Any, rows: Sequence[Measured], colours: dict[str, str]) -> None:
-    for index, family in enumerate(_families(rows)):
-        points = [(r.seconds, r.error) for r in rows if r.family == family and r.error is not None]
-        if points:
-            time, error = zip(*points, strict=True)
-            style = {"color": colours[family]} if family in colours else {}
-            marker = MARKERS[index % len(MARKERS)]
-            axes.loglog(time, error, marker=marker, markersize=4, linewidth=1, label=family, **style)
+    for index, (family, own) in enumerate(families(rows).items()):
+        style = {"color": colours[family]} if family in colours else {}
+        _curve(axes, own, marker=MARKERS[index % len(MARKERS)], label=family.replace("`", ""), **style)
+    # Beside the axes: no corner is free of curves.
+    axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def _curve(axes: Any, rows: Sequence[Measured], **style: Any) -> None:
+    points = [(r.seconds, r.error) for r in rows if r.error is not None]
+    time, error = zip(*points, strict=True) if points else ((), ())
+    axes.loglog(time, error, markersize=4, linewidth=1, **style)
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.legend(fontsize=7)
-
-
-def _families(rows: Sequence[Measured]) -> list[str]:
-    return list(dict.fromkeys(r.family for r in rows))

@@ -21,7 +21,7 @@ from reports.trade.problems import Problem
 REPEATS = 5
 """How many times a solution is timed; the median counts."""
 
-ENOUGH = 4.0
+ENOUGH = 2.0
 """s after which it is not timed again."""
 
 PHASES = np.linspace(0, 2 * np.pi, 1024, endpoint=False)

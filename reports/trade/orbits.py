@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import periodic as per
 from periodic.newton import Correction
 from reports.pages.section import Section, Tell
-from reports.trade.direct import Adaptive, Even, Harmonics
-from reports.trade.figures import diagram
+from reports.trade import figures
+from reports.trade.direct import Adaptive, Even, Harmonics, settings_for
 from reports.trade.measure import Case, March, Measured, Reference, digits, measured_all, reference
 from reports.trade.problems import Problem
-from reports.trade.words import advice, failures, power, tiers
+from reports.trade.words import advice, failures, meshes, power, tiers
 
 Solver = Callable[[Problem], Correction]
 
-TIGHT = Adaptive(per.Collocation(), per.Scheme(per.Family.RADAU, 7), 1e-11).solve
+TIGHT = Adaptive(per.Collocation(), settings_for(1e-11, per.Scheme(per.Family.RADAU, 7))).solve
 """Collocation of the 13th order, anchored."""
 
-SHOT = Adaptive(per.Shooting(tolerance=1e-12), per.Scheme(per.Family.RADAU, 6), 1e-8).solve
+SHOT = Adaptive(per.Shooting(tolerance=1e-12), settings_for(1e-8, per.Scheme(per.Family.RADAU, 6))).solve
 """Shooting with CVODES at its tightest; its mesh points are the integrator's own."""
 
 
@@ -51,9 +51,12 @@ class Study:
             "multiplier": known.multiplier,
             "multiplier_agreement": known.multiplier_agreement,
         }
-        figures = {f"orbit-{self.key}": diagram(rows)}
+        drawn = {
+            f"orbit-{self.key}": figures.diagram(rows),
+            f"meshes-{self.key}": figures.meshes(rows),
+        }
         return Section(
-            title=self.title, text=self.text(rows, numbers), numbers=numbers, rows=rows, figures=figures
+            title=self.title, text=self.text(rows, numbers), numbers=numbers, rows=rows, figures=drawn
         )
 
     def text(self, rows: Sequence[Measured], n: Mapping[str, float]) -> str:
@@ -66,7 +69,11 @@ figures is one from collocation alone.
 
 ![Error of one orbit over processor time](orbit-{self.key}.png)
 
-{tiers(rows)}{failures(rows)}
+{tiers(rows)}
+
+![Collocation by scheme and mesh: error over processor time](meshes-{self.key}.png)
+
+{meshes(rows)}{failures(rows)}
 
 **Advice.** {advice(rows)} {self.remark}
 """

@@ -22,4 +22,4 @@ def summary(said: Said) -> str:
     return table(heads, rows) if rows else ""
 
 
-REPORT = Report(name="trade", sections=(*ORBITS, "branches", "chainbranch", "parts"), summary=summary)
+REPORT = Report(name="trade", sections=(*ORBITS, "branches", "chainbranch", "parts", "aims"), summary=summary)

@@ -9,11 +9,12 @@ from itertools import pairwise
 import numpy as np
 
 import periodic as per
-from periodic.anchors import AnchorSettings
 from periodic.methods.protocol import Method
 from reports.sweep import Settled, SweepSettings, sweep
+from reports.trade.direct import settings_for
 from reports.trade.measure import Measured, timed
-from reports.trade.problems import Problem
+from reports.trade.names import DIAL
+from reports.trade.problems import Problem, nearby
 from reports.trade.words import power
 
 INTEGRATION = "sweep by CVODES"
@@ -37,6 +38,7 @@ class Traced:
             problem.parameter,
             (low, high),
             start=start,
+            guess=nearby(problem) if problem.begin is None else None,
             settings=self.settings,
             method=self.method,
         )
@@ -109,7 +111,7 @@ def accuracies() -> Iterator[Traced]:
     """Yield draft, standard and fine."""
     for accuracy in per.Accuracy:
         yield Traced(
-            family="--accuracy",
+            family=DIAL,
             setting=accuracy.name.lower(),
             settings=accuracy.settings(),
             method=per.Collocation(),
@@ -125,6 +127,12 @@ def balanced(counts: Sequence[int]) -> Iterator[Traced]:
             settings=settings_for(0.1, per.Scheme(), newton=1e-8),
             method=per.HarmonicBalance(harmonics=count, most=count),
         )
+
+
+def swept(counts: Sequence[int]) -> Iterator[Swept]:
+    """Yield sweeps in time."""
+    for count in counts:
+        yield Swept(count=count)
 
 
 def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
@@ -168,12 +176,3 @@ def _about(
     if not branch.labelled(per.Label.FOLD):
         raise ArithmeticError(f"the fold at {fold:.6g} was not found again: {branch.stop}")
     return branch
-
-
-def settings_for(tolerance: float, scheme: per.Scheme, newton: float | None = None) -> per.Settings:
-    """Return the settings of a tolerance as the dial has them."""
-    mesh = per.MeshSettings(
-        tolerance=tolerance, scheme=scheme, anchors=AnchorSettings(deepest=0.1 * tolerance)
-    )
-    limit = newton or max(1e-2 * tolerance, 1e-10) ** 0.75
-    return per.Settings(mesh=mesh, newton=per.NewtonSettings(tolerance=limit, max_iterations=16))

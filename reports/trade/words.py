@@ -9,6 +9,7 @@ import numpy as np
 
 from reports.pages.report import table
 from reports.trade.measure import Measured
+from reports.trade.names import DIAL, INTEGRATIONS, MESHES, SCHEMES, SHOWN, Mesh, named
 
 TIERS = {"screening": 1e-2, "design": 1e-5, "publication": 1e-8}
 """Errors that are enough for each."""
@@ -20,16 +21,43 @@ def cheapest(rows: Sequence[Measured], error: float) -> Measured | None:
     return min(enough, key=lambda r: r.seconds or 0.0, default=None)
 
 
+def families(rows: Sequence[Measured]) -> dict[str, list[Measured]]:
+    """Return the measurements by family."""
+    return {f: [r for r in rows if r.family == f] for f in dict.fromkeys(r.family for r in rows)}
+
+
+def direct(rows: Sequence[Measured]) -> list[Measured]:
+    """Return those of methods that say themselves when they are done."""
+    return [r for r in rows if r.family not in INTEGRATIONS]
+
+
 def tiers(rows: Sequence[Measured]) -> str:
     """Return the table of what each family needs for each tier, and how far it gets."""
     heads = ("method", *(f"{name}, {power(error)}" for name, error in TIERS.items()), "best error", "at")
     body = []
-    for family in dict.fromkeys(r.family for r in rows):
-        own = [r for r in rows if r.family == family]
+    for family, own in families(shown(rows)).items():
         best = min((r for r in own if r.error is not None), key=lambda r: r.error or 0.0, default=None)
         cells = [_cost(cheapest(own, error)) for error in TIERS.values()]
         last = ("-", own[-1].failure) if best is None else (power(best.error or 0.0), _cost(best))
         body.append((family, *cells, *last))
+    return table(heads, body)
+
+
+def shown(rows: Sequence[Measured]) -> list[Measured]:
+    """Return those drawn beside each other: of collocation one scheme."""
+    return [r for r in rows if r.family in SHOWN or r.family not in MESHES.values()]
+
+
+def meshes(rows: Sequence[Measured]) -> str:
+    """Return the table of what collocation needs for design and publication, by scheme and mesh."""
+    own = families(rows)
+    kinds = [mesh for mesh in Mesh if any(named(scheme, mesh) in own for scheme in SCHEMES)]
+    wanted = [(mesh, tier) for mesh in kinds for tier in ("design", "publication")]
+    heads = ("collocation", *(f"{mesh.value}, {tier}" for mesh, tier in wanted))
+    body = []
+    for scheme in SCHEMES:
+        found = [cheapest(own.get(named(scheme, mesh), []), TIERS[tier]) for mesh, tier in wanted]
+        body.append((named(scheme, Mesh.EVEN).partition(",")[0], *map(_cost, found)))
     return table(heads, body)
 
 
@@ -50,8 +78,14 @@ def power(value: float) -> str:
 
 
 def decade(rows: Sequence[Measured], family: str) -> float:
-    """Return by what factor the time of a family grows for each decade of error, by least squares."""
-    points = [(r.error, r.seconds) for r in rows if r.family == family and r.error and r.seconds]
+    """Return by what factor the time of a family grows for each decade of error, by least squares.
+
+    Settings that take longer than another and are no better do not count.
+    """
+    points: list[tuple[float, float]] = []
+    for row in sorted((r for r in rows if r.family == family and r.seconds), key=lambda r: r.seconds or 0.0):
+        if row.error and row.seconds and (not points or row.error < points[-1][0]):
+            points.append((row.error, row.seconds))
     if len(points) < 2:
         return float("nan")
     error, time = np.log10(np.array(points)).T
@@ -59,18 +93,39 @@ def decade(rows: Sequence[Measured], family: str) -> float:
 
 
 def advice(rows: Sequence[Measured]) -> str:
-    """Return the quickest ways to each tier, with and without error control, and what a decade costs."""
-    own = [r for r in rows if r.setting.startswith("tol ") or r.family == "--accuracy"]
-    told = [
-        f"{decade(rows, family):.2g} with {family}"
-        for family in dict.fromkeys(r.family for r in rows)
-        if not family.endswith("even") and np.isfinite(decade(rows, family))
-    ]
-    return (
-        f"Who knows the right setting beforehand takes {_quickest(rows)}; who gives a tolerance and lets "
-        f"the method meet it, {_quickest(own)}. A decade of accuracy multiplies the time by "
-        f"{', '.join(told)}."
+    """Return what to take for each tier: of the dial, of everything; what a decade costs."""
+    told = {family: decade(rows, family) for family in families(shown(rows)) if family != DIAL}
+    costs = [f"{factor:.2g} with {family}" for family, factor in told.items() if np.isfinite(factor)]
+    marched = [f"{family} {_costs(own)}" for family, own in families(rows).items() if family in INTEGRATIONS]
+    return " ".join(
+        [
+            _by_dial([r for r in rows if r.family == DIAL]),
+            f"The quickest at the setting that is right for it is {_quickest(direct(rows))}.",
+            *([f"Run to steady state, {'; '.join(marched)}."] if marched else []),
+            f"A decade of accuracy multiplies the time by {', '.join(costs)}.",
+        ]
     )
+
+
+def _by_dial(rows: Sequence[Measured]) -> str:
+    parts = []
+    for name, error in TIERS.items():
+        row = cheapest(rows, error)
+        if row is None:
+            parts.append(f"for {name} no step of the dial")
+        else:
+            parts.append(
+                f"for {name} `{row.setting}` ({seconds(row.seconds)}, error {power(row.error or 0.0)})"
+            )
+    return f"With `--accuracy`, take {'; '.join(parts)}."
+
+
+def _costs(rows: Sequence[Measured]) -> str:
+    parts = []
+    for name, error in TIERS.items():
+        row = cheapest(rows, error)
+        parts.append(f"never gets to {name}" if row is None else f"takes {seconds(row.seconds)} to {name}")
+    return ", ".join(parts)
 
 
 def _quickest(rows: Sequence[Measured]) -> str:
@@ -83,11 +138,22 @@ def _quickest(rows: Sequence[Measured]) -> str:
 
 
 def failures(rows: Sequence[Measured]) -> str:
-    """Return what failed, family by family; nothing where all went well."""
-    lines = []
-    for family in dict.fromkeys(r.family for r in rows):
-        failed = [r for r in rows if r.family == family and r.failure]
-        if failed:
-            reasons = "; ".join(dict.fromkeys(r.failure for r in failed))
-            lines.append(f"{family} at {', '.join(r.setting for r in failed)} ({reasons})")
-    return f"\n\nNot found: {'. '.join(lines)}." if lines else ""
+    """Return what failed, family by family, collocation by kind of mesh; nothing where all went well."""
+    lines = [_failed(family, own) for family, own in families(shown(rows)).items()]
+    for kind in ("Radau", "Gauss"):
+        for mesh in Mesh:
+            own = [r for r in rows if r.family.startswith(kind) and r.family.endswith(f", {mesh.value}")]
+            lines.append(_counted(f"{kind} on {mesh.value} meshes", own))
+    told = ". ".join(filter(None, lines))
+    return f"\n\nNot found: {told}." if told else ""
+
+
+def _failed(family: str, rows: Sequence[Measured]) -> str:
+    failed = [r for r in rows if r.failure]
+    reasons = "; ".join(dict.fromkeys(r.failure for r in failed))
+    return f"{family} at {', '.join(r.setting for r in failed)} ({reasons})" if failed else ""
+
+
+def _counted(kind: str, rows: Sequence[Measured]) -> str:
+    failed = [r for r in rows if r.failure]
+    return f"{kind} in {len(failed)} of {len(rows)} cases" if failed else ""
