@@ -40,7 +40,9 @@ class Study:
 
     def reference(self) -> tuple[list[float], float]:
         """Return the parameter at the folds, and the largest relative difference of the other method's."""
-        problem = replace(self.problem(), bounds=self.within or self.problem().bounds)
+        problem = self.problem()
+        if self.within:
+            problem = replace(problem, bounds=self.within, start=self.within[1])
         scheme = per.Scheme(per.Family.RADAU, 7)
         traced = Traced(
             family="", setting="", settings=settings_for(self.tight, scheme), method=per.Collocation()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from reports.pages.figures import panels
 from reports.trade.measure import Measured
@@ -38,7 +38,8 @@ COLOURS = {
 }
 MARKERS = "osv^D*P<>"
 SHADES = ("#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#d2b000")
-TIME, ERROR = "processor time (s)", "error of the orbit, part of its size"
+MS = 1e3
+TIME, ERROR = "processor time (ms)", "error of the orbit, part of its size"
 
 
 def diagram(rows: Sequence[Measured]) -> Figure:
@@ -58,7 +59,11 @@ def meshes(rows: Sequence[Measured]) -> Figure:
     for index, scheme in enumerate(SCHEMES):
         for column, mesh in enumerate(kinds):
             ax, count = axes[index // 6][column], index % 6
-            style = {"color": SHADES[count], "marker": MARKERS[count], "label": f"ncol {scheme.ncol}"}
+            style: dict[str, Any] = {
+                "color": SHADES[count],
+                "marker": MARKERS[count],
+                "label": f"ncol {scheme.ncol}",
+            }
             _curve(ax, own.get(named(scheme, mesh), []), **style)
             ax.set_title(f"{named(scheme, mesh).split()[0]}, {mesh.value} mesh", fontsize=9)
     for ax in axes[1]:
@@ -72,22 +77,24 @@ def meshes(rows: Sequence[Measured]) -> Figure:
 def branches(rows: Sequence[Measured]) -> Figure:
     """Return the error of the folds over the time of the whole branch."""
     figure, axes = panels(1, 1, width=7.0, height=4.0)
-    _curves(axes, rows, COLOURS)
+    _curves(axes, rows, COLOURS, unit=1.0)
     axes.set_xlabel("processor time of the branch (s)")
     axes.set_ylabel("relative error of the folds")
     return figure
 
 
-def _curves(axes: Any, rows: Sequence[Measured], colours: dict[str, str]) -> None:
+def _curves(axes: Any, rows: Sequence[Measured], colours: dict[str, str], unit: float = MS) -> None:
     for index, (family, own) in enumerate(families(rows).items()):
-        style = {"color": colours[family]} if family in colours else {}
-        _curve(axes, own, marker=MARKERS[index % len(MARKERS)], label=family.replace("`", ""), **style)
+        style: dict[str, Any] = {"color": colours[family]} if family in colours else {}
+        _curve(axes, own, unit, marker=MARKERS[index % len(MARKERS)], label=family.replace("`", ""), **style)
     # Beside the axes: no corner is free of curves.
     axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
-def _curve(axes: Any, rows: Sequence[Measured], **style: Any) -> None:
-    points = [(r.seconds, r.error) for r in rows if r.error is not None]
+def _curve(axes: Any, rows: Sequence[Measured], unit: float = MS, **style: Any) -> None:
+    points = [(unit * (r.seconds or 0.0), r.error) for r in rows if r.error is not None]
     time, error = zip(*points, strict=True) if points else ((), ())
     axes.loglog(time, error, markersize=4, linewidth=1, **style)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())

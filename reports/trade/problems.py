@@ -39,6 +39,7 @@ class Problem:
 
     explicit: the same system without algebraic unknowns, for explicit steps. begin: from where the first
     sheet of the branch leads to the neighbouring orbit; None: what the motion settles to from rest is one.
+    start: where the branch begins, folds: how many end it (None: the other bound does).
     """
 
     name: str
@@ -48,6 +49,8 @@ class Problem:
     value: float
     bounds: tuple[float, float]
     begin: float | None
+    start: float
+    folds: int | None = None
 
     @property
     def values(self) -> Array:
@@ -76,6 +79,7 @@ def disc(rpm: float) -> Problem:
         value=rpm * RPM,
         bounds=(100 * RPM, 500 * RPM),
         begin=500 * RPM,
+        start=500 * RPM,
     )
 
 
@@ -110,6 +114,7 @@ def duffing() -> Problem:
         value=1.8,
         bounds=(0.3, 3.0),
         begin=0.3,
+        start=0.3,
     )
 
 
@@ -123,8 +128,10 @@ def chain(count: int = 50) -> Problem:
         explicit=system,
         parameter="Omega",
         value=1.1,
-        bounds=(1.1, 1.2),
+        bounds=(1.1, 1.6),
         begin=None,
+        start=1.6,
+        folds=2,
     )
 
 
@@ -145,7 +152,7 @@ def nearby(problem: Problem) -> per.Orbit:
     """Return the orbit at NEARBY times the value. Raises ArithmeticError where it is not found."""
     value = NEARBY * problem.value
     if problem.begin is None:
-        return _settled(problem, value)
+        return settled(problem, value)
     bounds = (min(problem.begin, value), max(problem.begin, value))
     branch = per.trace(problem.system, problem.parameter, bounds, start=problem.begin)
     if branch.stop.reason is not per.Reason.BOUND:
@@ -153,8 +160,9 @@ def nearby(problem: Problem) -> per.Orbit:
     return branch[-1].orbit
 
 
-def _settled(problem: Problem, value: float) -> per.Orbit:
-    """Where the motion settles from rest, as an orbit by collocation."""
+@cache
+def settled(problem: Problem, value: float) -> per.Orbit:
+    """Return the orbit that the motion settles to from rest. Raises ArithmeticError if there is none."""
     system, parameter = problem.system, with_values(problem.system, {problem.parameter: value})
     state, unknown = system.rest(parameter)
     flow, phase = Flow(system, 1e-6), 2 * np.pi * np.arange(SETTLING + 1.0)

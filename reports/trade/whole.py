@@ -14,7 +14,7 @@ from reports.sweep import Settled, SweepSettings, sweep
 from reports.trade.direct import settings_for
 from reports.trade.measure import Measured, timed
 from reports.trade.names import DIAL
-from reports.trade.problems import Problem, nearby
+from reports.trade.problems import Problem, settled
 from reports.trade.words import power
 
 INTEGRATION = "sweep by CVODES"
@@ -31,16 +31,15 @@ class Traced:
 
     def branch(self, problem: Problem) -> per.Branch:
         """Return the branch."""
-        low, high = problem.bounds
-        start = high if problem.parameter == "speed" else low
         return per.trace(
             problem.system,
             problem.parameter,
-            (low, high),
-            start=start,
-            guess=nearby(problem) if problem.begin is None else None,
+            problem.bounds,
+            start=problem.start,
+            guess=settled(problem, problem.start) if problem.begin is None else None,
             settings=self.settings,
             method=self.method,
+            stop={"LP": problem.folds} if problem.folds else None,
         )
 
     def measured(self, problem: Problem, folds: Sequence[float]) -> Measured:

@@ -96,12 +96,16 @@ def advice(rows: Sequence[Measured]) -> str:
     """Return what to take for each tier: of the dial, of everything; what a decade costs."""
     told = {family: decade(rows, family) for family in families(shown(rows)) if family != DIAL}
     costs = [f"{factor:.2g} with {family}" for family, factor in told.items() if np.isfinite(factor)]
-    marched = [f"{family} {_costs(own)}" for family, own in families(rows).items() if family in INTEGRATIONS]
+    marched = [
+        f"{family.partition(' ')[0]} {_costs(own)}"
+        for family, own in families(rows).items()
+        if family in INTEGRATIONS
+    ]
     return " ".join(
         [
             _by_dial([r for r in rows if r.family == DIAL]),
             f"The quickest at the setting that is right for it is {_quickest(direct(rows))}.",
-            *([f"Run to steady state, {'; '.join(marched)}."] if marched else []),
+            *([f"Run to steady state, {'; '.join(marched)}, if one knew when to stop."] if marched else []),
             f"A decade of accuracy multiplies the time by {', '.join(costs)}.",
         ]
     )
@@ -124,7 +128,7 @@ def _costs(rows: Sequence[Measured]) -> str:
     parts = []
     for name, error in TIERS.items():
         row = cheapest(rows, error)
-        parts.append(f"never gets to {name}" if row is None else f"takes {seconds(row.seconds)} to {name}")
+        parts.append(f"none for {name}" if row is None else f"{seconds(row.seconds)} for {name}")
     return ", ".join(parts)
 
 
