@@ -84,18 +84,18 @@ def _branch(traced: Callable[[], per.Branch]) -> Numbers:
 def disc_iterations() -> Numbers:
     """Newton iterations on the disc at 360 rev/min, ncol 4: ms for each, by ntst."""
     system = build(load("vitrea79-810N"))
-    return {f"ntst {ntst} ms": _iteration(system, {"speed": 360 * RPM}, ntst) for ntst in NTST}
+    return {f"ntst {ntst} ms": iteration(system, {"speed": 360 * RPM}, ntst) for ntst in NTST}
 
 
 def chain_iterations() -> Numbers:
     """The same on chains of oscillators at ntst 20, by their number."""
     return {
-        f"{count} oscillators ms": _iteration(sym.compile(chain_model(count)), OFF_RESONANCE, 20)
+        f"{count} oscillators ms": iteration(sym.compile(chain_model(count)), OFF_RESONANCE, 20)
         for count in COUNTS
     }
 
 
-def _iteration(system: sym.CompiledSystem, values: Mapping[str, float], ntst: int) -> float:
+def iteration(system: sym.CompiledSystem, values: Mapping[str, float], ntst: int) -> float:
     """Return the ms of one Newton iteration: those of a converged orbit corrected again and again."""
     orbit, linearised = converged(system, values, ntst), 0
 
