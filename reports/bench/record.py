@@ -44,17 +44,23 @@ class Record:
 
 def begun(results: dict[str, Numbers], skipped: dict[str, str], load: float) -> Record:
     """Return the record of results got here and now."""
-    machine = {
+    versions = {name: _version(name) for name in PACKAGES} | {
+        name: others.version(name) for name in others.PACKAGES
+    }
+    date = datetime.now(UTC).isoformat(timespec="seconds").removesuffix("+00:00")
+    return Record(
+        date=date, machine=machine(), versions=versions, load=load, results=results, skipped=skipped
+    )
+
+
+def machine() -> dict[str, str]:
+    """Return what this machine is."""
+    return {
         "system": platform.platform(),
         "processor": _processor(),
         "cores": str(os.cpu_count()),
         "python": platform.python_version(),
     }
-    versions = {name: _version(name) for name in PACKAGES} | {
-        name: others.version(name) for name in others.PACKAGES
-    }
-    date = datetime.now(UTC).isoformat(timespec="seconds").removesuffix("+00:00")
-    return Record(date=date, machine=machine, versions=versions, load=load, results=results, skipped=skipped)
 
 
 def last(folder: Path) -> dict[str, Numbers]:

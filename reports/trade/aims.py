@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from reports.bench.others import PACKAGES, PEERS, MissingError, version
+from reports.bench.record import machine
 from reports.bench.suite import NTST, OWN, Numbers
 from reports.pages.report import table
 from reports.pages.section import Section, Tell
@@ -22,13 +24,15 @@ STANDARD, DUFFING = "disc branch, standard", "Duffing A branch"
 ALIKE = 1e-10
 """Error of the folds up to which Duffing A counts as accurate as AUTO has it."""
 
+MACHINE = "machine"
+
 STATED = {"per point ms": 1.0, "s": 0.24}
 """AUTO's times where it is not installed, from a run of its own Fortran driver."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """What a benchmark gave, or why it was left out."""
+    """What a benchmark gave, or in words why it was left out."""
 
     name: str
     numbers: Numbers = field(default_factory=dict)
@@ -58,7 +62,9 @@ class Aim:
 
 def section(tell: Tell) -> Section:
     """Run all benchmarks, one after the other."""
-    rows = []
+    here = machine()
+    place = f"{here['processor']}, {here['cores']} cores, load {os.getloadavg()[0]:.1f} when it began"
+    rows = [Result(name=MACHINE, skipped=place)]
     with threadpool_limits(limits=1, user_api="blas"):
         for benchmark in (*OWN, *PEERS):
             tell(benchmark.name)
@@ -136,11 +142,11 @@ def text(rows: Sequence[Result]) -> str:
     """Return the section in Markdown."""
     n = by_name(rows)
     wanted = table(("aim", "at most", "measured", "ratio", "met"), [aim.cells for aim in aims(n)])
-    memory = n["memory"]
+    memory, place = n["memory"], _said(rows, MACHINE)
     return f"""\
 All of this was measured in one run, one thread, each number the median of up to five: processor time, and
-wall time of fresh processes for the last three aims. `orbitrace report trade --only aims` repeats it (after
-`pip install 'orbitrace[peers]'`, or with ORBITRACE_PEERS the path of a Python that has these tools), `make
+wall time of fresh processes for the last three aims. The machine: {place}.
+`orbitrace report trade --only aims` repeats it (after `pip install 'orbitrace[peers]'`, or with ORBITRACE_PEERS the path of a Python that has these tools), `make
 bench` as well, with a record to compare the next run with. Where AUTO is missing its times are those once
 measured with its Fortran driver.
 
@@ -165,7 +171,7 @@ measured here.{_missing(rows)}
 
 
 def _beside(rows: Sequence[Result]) -> str:
-    versions = {r.name.removeprefix("version of "): r.skipped for r in rows if r.name.startswith("version")}
+    versions = {package: _said(rows, f"version of {package}") for package in PACKAGES}
     heads = ("tool", "points", "whole branch", "per point", "error of the folds", "multipliers")
     body = [_cells(name, numbers, versions) for name, numbers in compared(rows).items()]
     return table(heads, body)
@@ -183,8 +189,13 @@ def _cells(name: str, n: Numbers, versions: Mapping[str, str]) -> tuple[str, ...
 
 
 def _missing(rows: Sequence[Result]) -> str:
-    lines = [f"{r.name}: {r.skipped}" for r in rows if r.skipped and not r.name.startswith("version")]
+    peers = {b.name for b in PEERS}
+    lines = [f"{r.name}: {r.skipped}" for r in rows if r.skipped and r.name in peers]
     return f"\n\nNot measured: {'; '.join(lines)}." if lines else ""
+
+
+def _said(rows: Sequence[Result], name: str) -> str:
+    return next((r.skipped for r in rows if r.name == name), "not known")
 
 
 def _ms(value: float) -> str:

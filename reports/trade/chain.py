@@ -36,8 +36,8 @@ STUDY = Study(
     ),
     remark=(
         "With many states the linear algebra costs, which falls on the direct methods and not on the "
-        "integrations; the multipliers, which those do not give, are most of the price of harmonic balance. "
-        "Few intervals of high order are better than many of low order."
+        "integrations; but those give neither multipliers nor unstable motions. Few intervals of high order "
+        "are better than many of low order."
     ),
     solvers=BALANCED,
     by=("collocation (Gauss 6, 48 intervals)", "harmonic balance (16 harmonics)"),

@@ -11,8 +11,8 @@ STUDY = Study(
     cases=lambda: cases.everything(blocks=60),
     lead="x'' + 0.1 x' + x + x³ = 0.5 cos Ωt on the upper of two stable sheets.",
     remark=(
-        "A polynomial force and an analytic orbit: the series is the natural method, high-order Gauss points "
-        "come close, and time integration only confirms."
+        "A polynomial force and an analytic orbit: every direct method converges fast, and they differ by "
+        "small factors; time integration only confirms."
     ),
 )
 section = STUDY.section

@@ -12,8 +12,7 @@ STUDY = Study(
     lead="The load nearly vanishes once in a cycle and the film's stiffness peaks for a moment.",
     remark=(
         "Harmonics fall off slowly now; they are for screening. High order on an even mesh still does "
-        "best, for the peak is narrow but smooth, and error control costs little on top. Explicit steps fail "
-        "from here down to the lower fold."
+        "well, for the peak is narrow but smooth; error control says how well. Explicit steps blow up here."
     ),
 )
 section = STUDY.section

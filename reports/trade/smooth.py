@@ -13,7 +13,7 @@ STUDY = Study(
     remark=(
         "A lightly damped motion takes hundreds of periods to settle, so the integrations pay for the "
         "transient before any accuracy; to be sure of it they need more still. The series converges "
-        "geometrically. Anchors have nothing to hold and cost nothing."
+        "geometrically. Anchors have nothing to hold."
     ),
 )
 section = STUDY.section

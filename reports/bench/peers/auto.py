@@ -13,7 +13,7 @@ from typing import Any
 
 from bifpy import auto
 
-from reports.bench.clock import median
+from reports.bench.clock import REPEATS, median
 from reports.bench.peers.told import tell
 
 ALL = 1000
@@ -64,8 +64,9 @@ def run(ntst: int, points: int, *, transpile: bool) -> Any:
 def main(ntst: int, most: int, *, transpile: bool) -> None:
     """Measure the branch, or so many points of it."""
     points = run(ntst, most, transpile=transpile).branches[0].points
-    once = median(lambda: run(ntst, 2, transpile=transpile))
-    seconds = median(lambda: run(ntst, most, transpile=transpile)) - once
+    repeats = REPEATS if transpile else 1
+    once = median(lambda: run(ntst, 2, transpile=transpile), repeats)
+    seconds = median(lambda: run(ntst, most, transpile=transpile), repeats) - once
     tell(seconds, len(points), [p.parameters[0] for p in points if p.point_type.name == "FOLD"])
 
 
