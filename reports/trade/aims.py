@@ -146,9 +146,9 @@ def text(rows: Sequence[Result]) -> str:
     return f"""\
 All of this was measured in one run, one thread, each number the median of up to five: processor time, and
 wall time of fresh processes for the last three aims. The machine: {place}.
-`orbitrace report trade --only aims` repeats it (after `pip install 'orbitrace[peers]'`, or with ORBITRACE_PEERS the path of a Python that has these tools), `make
-bench` as well, with a record to compare the next run with. Where AUTO is missing its times are those once
-measured with its Fortran driver.
+`orbitrace report trade --only aims` repeats it (after `pip install 'orbitrace[peers]'`, or with the path of a
+Python that has these tools in ORBITRACE_PEERS); `make bench` measures the same and keeps a record that the
+next run is compared with. Where AUTO is missing its times are those once measured with its Fortran driver.
 
 {wanted}
 

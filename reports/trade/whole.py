@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +15,9 @@ from reports.trade.measure import Measured, timed
 from reports.trade.names import DIAL
 from reports.trade.problems import Problem, settled
 from reports.trade.words import power
+
+APART = 5e-4
+"""How far before a fold, as a part of its parameter, another method sets out for it."""
 
 INTEGRATION = "sweep by CVODES"
 
@@ -151,8 +153,10 @@ def folds_near(problem: Problem, branch: per.Branch, method: Method, settings: p
     Raises ArithmeticError where the other method does not find one.
     """
     found = []
-    for near, point in pairwise(branch):
+    for index, point in enumerate(branch):
         if point.label is per.Label.FOLD:
+            away = [p for p in branch.points[:index] if abs(p.parameter / point.parameter - 1) > APART]
+            near = away[-1]
             again = _about(problem, near, point.parameter, method, settings)
             found += [p.parameter for p in again.labelled(per.Label.FOLD)]
     return found
