@@ -18,6 +18,7 @@ from periodic.mesh import uniform
 from periodic.methods.protocol import Method
 from periodic.newton import Correction, Outcome
 from periodic.orbit import transfer
+from periodic.scheme import Array
 from periodic.solve import Solved, Task, at_parameter, remesh, settle
 from reports.trade.problems import Problem, nearby
 
@@ -29,6 +30,9 @@ NO_ANCHORS = AnchorSettings(appear=1e3, vanish=1e3)
 
 SLIMMING = 5
 """How many times the neighbouring orbit's mesh is made anew for a tolerance; each at most halves it."""
+
+HALVINGS = 3
+"""How often the way from the neighbouring orbit may be halved."""
 
 NONE = np.zeros(0)
 
@@ -73,8 +77,7 @@ class Adaptive:
     def solve(self, problem: Problem) -> Correction:
         """Return the orbit. Raises FailedError."""
         task, begin = self._task(problem), neighbour(self, problem)
-        guess = replace(begin, parameter=problem.values)
-        return self._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True)).correction
+        return self._accurate(task, _reached(task, begin, problem.values)).correction
 
     def _task(self, problem: Problem) -> Task:
         scale = abs(problem.bounds[1] - problem.bounds[0])
@@ -86,6 +89,15 @@ class Adaptive:
         if solved.error.orbit > self.settings.mesh.tolerance:
             raise FailedError(self.method.shortfall(task, solved))
         return solved
+
+
+def _reached(task: Task, begin: per.Orbit, values: Array, halvings: int = HALVINGS) -> Solved | Outcome:
+    """Solve at other parameters; where Newton fails, half way first, as continuation does."""
+    solved = settle(task, at_parameter(task, replace(begin, parameter=values), 1.0), fixed=True)
+    if isinstance(solved, Solved) or not halvings:
+        return solved
+    middle = _reached(task, begin, (begin.parameter + values) / 2, halvings - 1)
+    return middle if isinstance(middle, Outcome) else _reached(task, middle.orbit, values, halvings - 1)
 
 
 @cache
