@@ -84,7 +84,8 @@ def branches(rows: Sequence[Measured]) -> Figure:
 
 
 def _curves(axes: Any, rows: Sequence[Measured], colours: dict[str, str], unit: float = MS) -> None:
-    for index, (family, own) in enumerate(families(rows).items()):
+    found = [r for r in rows if r.error is not None]
+    for index, (family, own) in enumerate(families(found).items()):
         style: dict[str, Any] = {"color": colours[family]} if family in colours else {}
         _curve(axes, own, unit, marker=MARKERS[index % len(MARKERS)], label=family.replace("`", ""), **style)
     # Beside the axes: no corner is free of curves.

@@ -199,7 +199,7 @@ def picture(rows: Sequence[Model]) -> Figure:
     above.legend()
     _bars(axes[0, 1], [row.seconds for row in rows], "time of the branch (s)")
     _bars(axes[1, 1], [1e3 * _each(row) for row in rows], "time per iteration (ms)")
-    axes[1, 1].set_xticks(range(len(rows)), ["squeeze", "film", "dry"])
+    axes[1, 1].set_xticks(range(len(rows)), ["squeeze", "rigid", "dry"])
     return figure
 
 
