@@ -19,6 +19,7 @@ from reports.trade.names import (
     RK4,
     SCHEMES,
     SHOOTING,
+    SWEEP,
     UNTIED,
     Mesh,
     named,
@@ -28,6 +29,7 @@ from reports.trade.words import families, shown
 COLOURS = {
     RK4: "tab:red",
     CVODES: "tab:orange",
+    SWEEP: "tab:orange",
     SHOOTING: "tab:purple",
     BALANCE: "tab:green",
     DIAL: "tab:pink",
@@ -65,6 +67,7 @@ def meshes(rows: Sequence[Measured]) -> Figure:
                 "label": f"ncol {scheme.ncol}",
             }
             _curve(ax, own.get(named(scheme, mesh), []), **style)
+            ax.tick_params(labelsize=7)
             ax.set_title(f"{named(scheme, mesh).split()[0]}, {mesh.value} mesh", fontsize=9)
     for ax in axes[1]:
         ax.set_xlabel(TIME)

@@ -26,6 +26,7 @@ RK4, CVODES, SHOOTING = "RK4 to steady state", "CVODES to steady state", "shooti
 DIAL, BALANCE = "`--accuracy`", "harmonic balance"
 RADAU_5, GAUSS_5 = (per.Scheme(family, 5) for family in per.Family)
 EVEN, UNTIED, ANCHORED = (named(RADAU_5, mesh) for mesh in Mesh)
+SWEEP = "sweep by CVODES"
 INTEGRATIONS = (RK4, CVODES)
 SHOWN = (EVEN, UNTIED, ANCHORED, named(GAUSS_5, Mesh.EVEN))
 """Collocation as it is drawn beside the other methods."""

@@ -12,14 +12,12 @@ from periodic.methods.protocol import Method
 from reports.sweep import Settled, SweepSettings, sweep
 from reports.trade.direct import settings_for
 from reports.trade.measure import Measured, timed
-from reports.trade.names import DIAL
+from reports.trade.names import BALANCE, DIAL, SHOOTING, SWEEP
 from reports.trade.problems import Problem, settled
 from reports.trade.words import power
 
 APART = 5e-4
 """How far before a fold, as a part of its parameter, another method sets out for it."""
-
-INTEGRATION = "sweep by CVODES"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +75,7 @@ class Swept:
         )
         found = [jump(way) for way in ways]
         return Measured(
-            family=INTEGRATION,
+            family=SWEEP,
             setting=f"{self.count} values each way",
             seconds=seconds,
             error=worst(sorted(found), sorted(folds)),
@@ -119,14 +117,14 @@ def accuracies() -> Iterator[Traced]:
         )
 
 
-def balanced(counts: Sequence[int]) -> Iterator[Traced]:
-    """Yield harmonic balance with at most so many harmonics, its tolerance as loose as need be."""
-    for count in counts:
+def balanced(tolerances: Sequence[float]) -> Iterator[Traced]:
+    """Yield harmonic balance with as many harmonics as the tolerance asks for."""
+    for tolerance in tolerances:
         yield Traced(
-            family="harmonic balance",
-            setting=f"H {count}",
-            settings=settings_for(0.1, per.Scheme(), newton=1e-8),
-            method=per.HarmonicBalance(harmonics=count, most=count),
+            family=BALANCE,
+            setting=f"tol {power(tolerance)}",
+            settings=settings_for(tolerance, per.Scheme()),
+            method=per.HarmonicBalance(),
         )
 
 
@@ -140,7 +138,7 @@ def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
     """Yield single shooting."""
     for tolerance in tolerances:
         yield Traced(
-            family="shooting",
+            family=SHOOTING,
             setting=f"tol {power(tolerance)}",
             settings=settings_for(1e3 * tolerance, per.Scheme(per.Family.RADAU, 6)),
             method=per.Shooting(tolerance=tolerance),

@@ -80,13 +80,14 @@ def power(value: float) -> str:
 def decade(rows: Sequence[Measured], family: str) -> float:
     """Return by what factor the time of a family grows for each decade of error, by least squares.
 
-    Settings that take longer than another and are no better do not count.
+    Settings that take longer than another and are no better do not count; less than a decade in all is
+    not a number.
     """
     points: list[tuple[float, float]] = []
     for row in sorted((r for r in rows if r.family == family and r.seconds), key=lambda r: r.seconds or 0.0):
         if row.error and row.seconds and (not points or row.error < points[-1][0]):
             points.append((row.error, row.seconds))
-    if len(points) < 2:
+    if not points or points[-1][0] > 0.1 * points[0][0]:
         return float("nan")
     error, time = np.log10(np.array(points)).T
     return float(10 ** -np.polyfit(error, time, 1)[0])
@@ -114,7 +115,7 @@ def advice(rows: Sequence[Measured]) -> str:
 def _by_dial(rows: Sequence[Measured]) -> str:
     parts = []
     for name, error in TIERS.items():
-        row = cheapest(rows, error)
+        row = next((r for r in rows if r.error is not None and r.error <= error), None)
         if row is None:
             parts.append(f"for {name} no step of the dial")
         else:
@@ -125,10 +126,12 @@ def _by_dial(rows: Sequence[Measured]) -> str:
 
 
 def _costs(rows: Sequence[Measured]) -> str:
-    parts = []
+    parts: list[str] = []
     for name, error in TIERS.items():
         row = cheapest(rows, error)
-        parts.append(f"none for {name}" if row is None else f"{seconds(row.seconds)} for {name}")
+        if row is None:
+            return ", ".join([*parts, f"does not get to {name}"])
+        parts.append(f"takes {seconds(row.seconds)} for {name}")
     return ", ".join(parts)
 
 
