@@ -165,9 +165,9 @@ def _cells(row: Model, n: Mapping[str, float]) -> tuple[str, ...]:
 def _advice(rows: Sequence[Model]) -> str:
     full, film, dry = rows
     return (
-        f"The branch takes {seconds(film.seconds)} without the squeeze and {seconds(dry.seconds)} without the "
-        f"film, against {seconds(full.seconds)}; a Newton iteration {seconds(_each(film))} and "
-        f"{seconds(_each(dry))}, against {seconds(_each(full))}. Away from resonance, where "
+        f"The branch takes {seconds(film.seconds)} without the squeeze, {seconds(dry.seconds)} without film "
+        f"and {seconds(full.seconds)} in full; a Newton iteration {seconds(_each(film))} and "
+        f"{seconds(_each(dry))}, and {seconds(_each(full))}. Away from resonance, where "
         "the errors of the table are small, a smaller model is enough to screen with. The large "
         f"sheet ends {_shift(full, film):.1f} and {_shift(full, dry):.1f} rev/min too low, and below the "
         "true end its amplitude is one that the disc never has: the squeeze of the film is what ends the "

@@ -97,14 +97,15 @@ def advice(rows: Sequence[Measured]) -> str:
     """Return what to take for each tier: of the dial, of everything; what a decade costs."""
     told = {family: decade(rows, family) for family in families(shown(rows)) if family != DIAL}
     costs = [f"{factor:.2g} with {family}" for family, factor in told.items() if np.isfinite(factor)]
+    tuned = [r for r in rows if r.family == DIAL]
     marched = [
-        f"{family.partition(' ')[0]} {_costs(own)}"
+        f"{family.partition(' ')[0]} takes {_costs(own)}"
         for family, own in families(rows).items()
         if family in INTEGRATIONS
     ]
     return " ".join(
         [
-            _by_dial([r for r in rows if r.family == DIAL]),
+            *([_by_dial(tuned)] if tuned else []),
             f"The quickest at the setting that is right for it is {_quickest(direct(rows))}.",
             *([f"Run to steady state, {'; '.join(marched)}, if one knew when to stop."] if marched else []),
             f"A decade of accuracy multiplies the time by {', '.join(costs)}.",
@@ -130,8 +131,8 @@ def _costs(rows: Sequence[Measured]) -> str:
     for name, error in TIERS.items():
         row = cheapest(rows, error)
         if row is None:
-            return ", ".join([*parts, f"does not get to {name}"])
-        parts.append(f"takes {seconds(row.seconds)} for {name}")
+            return ", ".join([*parts, f"{name} out of reach"])
+        parts.append(f"{seconds(row.seconds)} for {name}")
     return ", ".join(parts)
 
 
