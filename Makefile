@@ -21,8 +21,8 @@ test: $(VENV)/.installed-dev ## Run the tests
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(BIN)/python -m pytest -m long
 
-bench: $(VENV)/.installed ## Time the equations and a branch, in NumPy and in C
-	$(BIN)/python -m reports.speed
+bench: $(VENV)/.installed ## Run the benchmarks, compare with the last record
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.bench
 
 lint: $(VENV)/.installed-dev ## Check style and formatting
 	$(BIN)/ruff check .

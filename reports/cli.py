@@ -132,7 +132,7 @@ Values = Annotated[
         help="Values to linearise at (oscillator: rad/s). [default: the resonance]",
     ),
 ]
-Page = Annotated[str, typer.Argument(metavar="NAME", help="The report to compute: paper.")]
+Page = Annotated[str, typer.Argument(metavar="NAME", help="The report to compute: paper or trade.")]
 Only = Annotated[
     str | None, typer.Option("--only", metavar="SECTION", help="Compute one section, keep the others.")
 ]
@@ -252,18 +252,19 @@ def report(name: Page, only: Only = None, out: PageOut = None) -> int:
     2: bad input; 130: interrupted.
     """
     from reports import console
+    from reports.errors import listed
     from reports.interrupts import Ended, heard_at_once
+    from reports.pages import NAMES, report_of
 
-    if name != "paper":
-        raise refused("NAME", name, '"paper"')
-    from reports.paper import page
-
-    if only is not None and only not in page.SECTIONS:
-        raise refused("--only", only, f"one of {', '.join(page.SECTIONS)}")
+    if name not in NAMES:
+        raise refused("NAME", name, listed([f'"{known}"' for known in NAMES]))
+    page = report_of(name)
+    if only is not None and only not in page.sections:
+        raise refused("--only", only, f"one of {', '.join(page.sections)}")
     folder = page.ready(out or Path("reports", name))
     with heard_at_once(), console.telling("computing") as tell:
         try:
-            written = page.make(folder, (only,) if only else page.SECTIONS, tell)
+            written = page.make(folder, (only,) if only else page.sections, tell)
         except (Ended, KeyboardInterrupt):
             _say(f"interrupted; the sections computed so far are in {folder}")
             return INTERRUPTED

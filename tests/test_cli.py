@@ -17,7 +17,8 @@ import pytest
 
 import periodic as per
 from reports.cli import main
-from reports.paper.section import Section
+from reports.pages.section import Section
+from reports.paper.page import REPORT
 from reports.picture import draw
 from reports.scene import load, scene_names
 
@@ -223,23 +224,23 @@ def test_picture_with_time_integration(disc: Outcome, tmp_path: Path) -> None:
 
 def test_report_keeps_what_is_done(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
     """Assert that an interrupted report keeps its finished sections, and a finished one says where it is."""
-    from reports.paper import page
+    from reports.pages import report
 
-    def computed(name: str, tell: Callable[[str], None]) -> Section:
+    def computed(_: str, name: str, tell: Callable[[str], None]) -> Section:
         tell("working")
         if name == "timedomain":
             raise KeyboardInterrupt
         return Section(title="Done", text="Text.", numbers={})
 
-    monkeypatch.setattr(page, "computed", computed)
+    monkeypatch.setattr(report, "computed", computed)
     assert main(["report", "paper", "--out", str(tmp_path)]) == 130
     told = capsys.readouterr().err
     assert "computing method: working" in told
     assert f"interrupted; the sections computed so far are in {tmp_path}" in told
-    assert list(page.kept(tmp_path)) == ["method"]
+    assert list(REPORT.kept(tmp_path)) == ["method"]
     assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 0
     assert capsys.readouterr().out == f"written: {tmp_path / 'README.md'}\n"
-    assert list(page.kept(tmp_path)) == ["method", "unseen"]
+    assert list(REPORT.kept(tmp_path)) == ["method", "unseen"]
 
 
 @pytest.mark.parametrize("spoilt", ["README.md", "figures", "sections"])
@@ -283,12 +284,12 @@ def test_interrupted_report_is_no_report(tmp_path: Path) -> None:
 
 def test_report_on_a_full_disk(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> None:
     """Assert that a report that cannot be written is said to be so, and not the standard output."""
-    from reports.paper import page
+    from reports.pages import report
 
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(page, "computed", lambda name, tell: Section(title="Done", text="", numbers={}))
+    monkeypatch.setattr(report, "computed", lambda *_: Section(title="Done", text="", numbers={}))
     monkeypatch.setattr(Path, "write_text", full)
     assert main(["report", "paper", "--only", "unseen", "--out", str(tmp_path)]) == 2
     told = capsys.readouterr().err

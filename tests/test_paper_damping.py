@@ -30,9 +30,9 @@ from reports.paper.equivalent import (
     ratio,
     stepped_ratio,
 )
+from reports.paper.rows import Verdict
 from reports.paper.rungekutta import factor
 from reports.paper.scenes import system
-from reports.paper.section import Verdict
 from reports.paper.transients import (
     PER_PERIOD,
     Record,

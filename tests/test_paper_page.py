@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
+from reports.pages.report import FIGURES, KEPT, PAGE, keep
+from reports.pages.section import Section
 from reports.paper import (
     damping,
     damping_text,
@@ -17,7 +19,6 @@ from reports.paper import (
     frequency,
     method,
     method_text,
-    page,
     regions,
     regions_text,
     supports,
@@ -25,9 +26,10 @@ from reports.paper import (
     timedomain,
     unseen,
 )
-from reports.paper.section import Row, Section, Verdict, compared
+from reports.paper.page import REPORT
+from reports.paper.rows import Row, Verdict, compared
 
-FOLDER = Path(page.__file__).parent
+FOLDER = Path(method.__file__).parent
 NUMBERS: dict[str, Callable[[], Mapping[str, float]]] = {
     "timedomain": lambda: timedomain.key_numbers(lambda _: None),
     "damping": damping.key_numbers,
@@ -70,7 +72,7 @@ ROWS: dict[str, Callable[[Mapping[str, float]], tuple[Row, ...]]] = {
 
 def assert_fresh(name: str, found: Mapping[str, float]) -> None:
     """Assert that numbers computed anew are those that the page was made from."""
-    told = page.kept(FOLDER)[name]["numbers"]
+    told = REPORT.kept(FOLDER)[name]["numbers"]
     assert set(found) <= set(told)
     for key, value in found.items():
         rough = ROUGH.fullmatch(key)
@@ -82,14 +84,14 @@ def assert_fresh(name: str, found: Mapping[str, float]) -> None:
 @pytest.mark.parametrize("name", TEXTS)
 def test_text_is_fresh(name: str) -> None:
     """Assert that the page's text is that of the code as it is, with the kept numbers."""
-    said = page.kept(FOLDER)[name]
+    said = REPORT.kept(FOLDER)[name]
     assert TEXTS[name](said["numbers"]) == said["text"]
 
 
 @pytest.mark.parametrize("name", ROWS)
 def test_rows_are_fresh(name: str) -> None:
     """Assert that the page's rows are those of the code as it is, verdicts included."""
-    said = page.kept(FOLDER)[name]
+    said = REPORT.kept(FOLDER)[name]
     for row, kept in zip(ROWS[name](said["numbers"]), said["rows"], strict=True):
         for key in ("key", "what", "paper", "ours", "verdict"):
             assert getattr(row, key) == kept[key]
@@ -103,7 +105,7 @@ def test_numbers_are_fresh(name: str) -> None:
     found = NUMBERS[name]()
     assert_fresh(name, found)
     if name in WHOLE:
-        assert set(found) == set(page.kept(FOLDER)[name]["numbers"])
+        assert set(found) == set(REPORT.kept(FOLDER)[name]["numbers"])
 
 
 @pytest.mark.long
@@ -120,23 +122,23 @@ def test_regions_are_fresh() -> None:
 
 def test_page_is_complete() -> None:
     """Assert that every section is there, and that the first table has a row for every row of the paper."""
-    said = page.kept(FOLDER)
-    assert tuple(said) == page.SECTIONS
+    said = REPORT.kept(FOLDER)
+    assert tuple(said) == REPORT.sections
     keys = {row["key"] for section in said.values() for row in section["rows"]}
     assert {f"P{k}" for k in range(1, 17)} <= keys
 
 
 def test_page_is_put_together_from_its_sections(tmp_path: Path) -> None:
     """Assert that nobody has edited the page by hand."""
-    (tmp_path / page.KEPT).symlink_to(FOLDER / page.KEPT)
-    page.assemble(tmp_path)
-    assert (tmp_path / page.PAGE).read_text("utf-8") == (FOLDER / page.PAGE).read_text("utf-8")
+    (tmp_path / KEPT).symlink_to(FOLDER / KEPT)
+    REPORT.assemble(tmp_path)
+    assert (tmp_path / PAGE).read_text("utf-8") == (FOLDER / PAGE).read_text("utf-8")
 
 
 def test_figures_are_those_of_the_page() -> None:
     """Assert that every figure that the page shows is there, and no other."""
-    shown = re.findall(rf"\]\({page.FIGURES}/([\w-]+\.png)\)", (FOLDER / page.PAGE).read_text("utf-8"))
-    assert sorted(shown) == sorted(file.name for file in (FOLDER / page.FIGURES).iterdir())
+    shown = re.findall(rf"\]\({FIGURES}/([\w-]+\.png)\)", (FOLDER / PAGE).read_text("utf-8"))
+    assert sorted(shown) == sorted(file.name for file in (FOLDER / FIGURES).iterdir())
 
 
 def test_section_is_kept(tmp_path: Path) -> None:
@@ -151,15 +153,15 @@ def test_section_is_kept(tmp_path: Path) -> None:
         rows=(replace(row, key="P10"), row),
         figures={"curve": figure},
     )
-    page.keep(tmp_path, "frequency", section)
-    page.assemble(tmp_path)
-    text = (tmp_path / page.PAGE).read_text("utf-8")
+    keep(tmp_path, "frequency", section)
+    REPORT.assemble(tmp_path)
+    text = (tmp_path / PAGE).read_text("utf-8")
     assert "![What it shows.](figures/curve.png)\n\n*What it shows.*" in text
     assert "| P9 | speed | 325 rev/min | 330.5 rev/min | +1.7 % | reproduced within 2 % | two ways |" in text
     assert text.index("| P9 |") < text.index("| P10 |")
     missing = "method, timedomain, damping, supports, filmlaws, unseen, regions"
     assert f"Sections not computed yet: {missing}." in text
-    assert (tmp_path / page.FIGURES / "curve.png").stat().st_size > 1000
+    assert (tmp_path / FIGURES / "curve.png").stat().st_size > 1000
 
 
 @pytest.mark.parametrize(

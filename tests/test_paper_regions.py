@@ -9,6 +9,7 @@ import pytest
 
 import periodic as per
 from reports.paper import page, regions
+from reports.paper.page import REPORT
 from reports.paper.regions_curves import (
     AMPLITUDE,
     PRELOAD,
@@ -26,7 +27,7 @@ from reports.view import MICRO, RPM
 
 def kept() -> dict[str, float]:
     """The numbers that the page was made from."""
-    found = page.kept(Path(page.__file__).parent)["regions"]["numbers"]
+    found = REPORT.kept(Path(page.__file__).parent)["regions"]["numbers"]
     return {key: float(value) for key, value in found.items()}
 
 
@@ -128,5 +129,5 @@ def test_checks_of_the_page() -> None:
 
 def test_rows() -> None:
     """Assert the verdicts of this section's rows."""
-    said = page.kept(Path(page.__file__).parent)["regions"]["rows"]
+    said = REPORT.kept(Path(page.__file__).parent)["regions"]["rows"]
     assert {row["key"]: row["verdict"] for row in said} == {"P17": "reproduced", "P18": "reproduced"}

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from reports.pages.section import Section
 from reports.paper import timedomain
 from reports.paper.histories import (
     A,
@@ -20,7 +21,7 @@ from reports.paper.histories import (
     stepped,
     trusted,
 )
-from reports.paper.section import Section, Verdict
+from reports.paper.rows import Verdict
 
 
 @cache

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 from scipy.optimize import brentq
 
+from reports.pages.section import Section, Tell
 from reports.paper import causes
 from reports.paper.causes import OIL_A, OIL_B, PAPER_A, PAPER_B
 from reports.paper.equivalent import (
@@ -25,8 +26,8 @@ from reports.paper.equivalent import (
     stepped_ratio,
 )
 from reports.paper.resonance import natural_speed
+from reports.paper.rows import Row, compared
 from reports.paper.scenes import system
-from reports.paper.section import Row, Section, Tell, compared
 from reports.paper.transients import Decay, Window, decay, level, read_off, record, stepped_decay
 from reports.view import MICRO, RPM
 from symbolic.response import response

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import periodic
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.causes import OIL_A, OIL_B, PAPER_A, PAPER_B
 from reports.paper.damping import OILS, PARTS, READ, ratios
 from reports.paper.equivalent import at_paper_speed, orbit_exponents, ratio
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.scenes import branch, system
 from reports.paper.transients import crests, decay, free_decay, record, within
 from reports.view import MICRO, RPM

@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 
 import periodic
 from reports.curve import draw_curve, solid
+from reports.pages.figures import panels
+from reports.pages.section import Section, Tell
 from reports.paper import films
 from reports.paper.causes import PAPER_B
-from reports.paper.figures import panels
 from reports.paper.scenes import branch
-from reports.paper.section import Section, Tell
 from reports.view import MICRO, RPM
 
 NAMES = {

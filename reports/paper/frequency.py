@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 
 import periodic
 from reports.curve import draw_curve, solid
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
+from reports.pages.section import Section, Tell
 from reports.paper import preload, resonance
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
+from reports.paper.rows import Row, Verdict, compared
 from reports.paper.scenes import branch
-from reports.paper.section import Row, Section, Tell, Verdict, compared
 from reports.view import MICRO, RPM
 
 OIL_A, OIL_B, HEAVY = "vitrea79-810N", "turbo33-810N", "vitrea79-2100N"

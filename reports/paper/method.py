@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from periodic import Branch, Label, Point
+from reports.pages.section import Section, Tell
 from reports.paper.beginnings import Beginning, beginnings
 from reports.paper.breakdown import (
     Band,
@@ -35,8 +36,8 @@ from reports.paper.equivalence import (
 from reports.paper.histories import PAPER_STEP, RPM_SHOWN, ripple, trusted
 from reports.paper.method_figures import breakdown_at, limits, maps, responses
 from reports.paper.method_text import text
+from reports.paper.rows import Row, Verdict
 from reports.paper.scenes import LUBRICATED, branch, system
-from reports.paper.section import Row, Section, Tell, Verdict
 from reports.paper.started import Form, runs
 from reports.view import MICRO, RPM
 

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from periodic import Branch
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.breakdown import Band, Outcome, film_rate, real_limit, step_limit
 from reports.paper.contact import LOST
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.histories import PAPER_STEP, History, stepped, trusted
 from reports.paper.scenes import LUBRICATED, system
 from reports.view import MICRO, RPM

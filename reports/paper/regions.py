@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 
 import periodic
 from periodic import Branch, DoublingCondition, Label, Level, PeakToPeak
+from reports.pages.section import Section, Tell
 from reports.paper import regions_figures, regions_text
 from reports.paper.doubled import small, speeds
 from reports.paper.regions_curves import (
@@ -33,8 +34,8 @@ from reports.paper.regions_curves import (
     peaks,
 )
 from reports.paper.resonance import natural_speed
+from reports.paper.rows import Row, Verdict
 from reports.paper.scenes import LUBRICATED, branch, system
-from reports.paper.section import Row, Section, Tell, Verdict
 from reports.paper.stiffness import nominal
 from reports.view import MICRO, RPM
 from symbolic.linear import modes

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from periodic import Branch, Label, Value
 from reports.curve import smooth
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.regions_curves import (
     AMPLITUDE,
     OTHER_OIL,

@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 
 import periodic
 from reports.curve import draw_curve, solid
-from reports.paper.figures import panels
+from reports.pages.figures import panels
+from reports.pages.section import Section, Tell
+from reports.paper.rows import Row
 from reports.paper.scenes import branch, system
-from reports.paper.section import Row, Section, Tell
 from reports.paper.stiffness import (
     RIGID,
     SCENE,

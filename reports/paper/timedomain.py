@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from reports.pages.section import Section, Tell
 from reports.paper.breakdown import step_limit
 from reports.paper.histories import (
     BEATS,
@@ -23,8 +24,8 @@ from reports.paper.histories import (
     stepped,
     trusted,
 )
+from reports.paper.rows import Row, Verdict, compared
 from reports.paper.scenes import system
-from reports.paper.section import Row, Section, Tell, Verdict, compared
 from reports.paper.timedomain_figures import beats, ripples, settling, spectra, window
 from reports.view import MICRO
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.histories import (
     BEATS,
     DURATION,

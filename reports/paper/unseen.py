@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 import periodic
 from periodic import Label, Point
+from reports.pages.section import Section, Tell
 from reports.paper import unseen_figures, unseen_text
 from reports.paper.contact import LOST, lost_from, preload_of
 from reports.paper.doubled import KNOCKED, SCENE, doubled, knocked, small, speeds
 from reports.paper.equivalent import exponents, ratio
 from reports.paper.scenes import LUBRICATED, branch, system
-from reports.paper.section import Section, Tell
 from reports.paper.stiffness import WAVES
 from reports.view import MICRO, RPM
 from symbolic.linear import modes

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from periodic import Branch, Label, Point
 from reports.curve import draw_curve, solid
+from reports.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.paper.contact import LOST
-from reports.paper.figures import PAPER, SECOND, TRUSTED, panels
 from reports.view import MICRO, RPM
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""How long the equations take in NumPy and in C: `python -m reports.speed` prints the table.
+"""How long the equations take in NumPy and in C: `python -m reports.bench.kernels` prints the table.
 
 Times are the shortest of many, on one thread; each model is compiled with a cache of its own.
 """

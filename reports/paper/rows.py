@@ -1,16 +1,11 @@
-"""What a section of the report is: Markdown, figures, key numbers, and its rows of the first table."""
+"""The rows of the first table: what the paper says beside ours, and the verdict."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
-
-from matplotlib.figure import Figure
-
-Tell = Callable[[str], None]
-"""Told in a few words what is being worked on."""
+from typing import Any
 
 CLOSE, NEAR = 0.01, 0.05
 """Differences up to which a number counts as reproduced, and as reproduced within so many per cent."""
@@ -55,6 +50,10 @@ class Row:
             return f"{Verdict.WITHIN.value} {math.ceil(100 * size)} %"
         return Verdict.NOT_REPRODUCED.value
 
+    def kept(self) -> dict[str, Any]:
+        """Return what is kept of the row."""
+        return asdict(replace(self, given=None)) | {"verdict": self.verdict}
+
 
 def compared(
     key: str, what: str, paper: float, ours: float, unit: str, check: str, *, form: str = ".4g"
@@ -69,17 +68,3 @@ def compared(
         check=check,
         difference=ours / paper - 1,
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Section:
-    """A section of the page. `text` refers to a figure of the name NAME as ![caption](NAME.png).
-
-    `numbers` are the key numbers, in the unit that each name ends with; a test recomputes them.
-    """
-
-    title: str
-    text: str
-    numbers: Mapping[str, float]
-    rows: tuple[Row, ...] = ()
-    figures: Mapping[str, Figure] = field(default_factory=dict)
