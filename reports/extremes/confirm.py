@@ -29,7 +29,16 @@ TOLERANCE = 1e-12
 ORBITS = 4
 """Orbits spread over a branch that are confirmed, beside the one with the largest multiplier."""
 
+CRITICAL = 0.05
+"""Distance of a multiplier from 1 below which the nearest orbit of the branch counts, at any parameter."""
+
+RANK = 1e-9
+"""Relative size of singular values that count as zero then: at a branch point there are two ways to go."""
+
 PHASES = np.linspace(0, 2 * np.pi, 512, endpoint=False)
+
+MARGINAL = 1e-9
+"""Distance of the largest multiplier from the unit circle up to which either stability is right."""
 
 CVODES, FINE, EXACT = "CVODES", "fine", "exact"
 """How an orbit was confirmed."""
@@ -85,8 +94,10 @@ def confirmed(
 
 def check(system: sym.CompiledSystem, point: per.Point, parameter: str, free: tuple[str, ...]) -> Checked:
     """Confirm one orbit by CVODES, else by collocation with accuracy `fine`."""
+    critical = not free and bool((np.abs(point.multipliers - 1) < CRITICAL).any())
+    moving = (parameter,) if critical else free
     try:
-        error, monodromy = shot(system, point.orbit, tuple(index_of(system, name) for name in free))
+        error, monodromy = shot(system, point.orbit, tuple(index_of(system, name) for name in moving))
         multipliers, by = np.linalg.eigvals(monodromy), CVODES
     except (ArithmeticError, np.linalg.LinAlgError):
         error, multipliers, by = finer(system, point, parameter, free)
@@ -100,7 +111,7 @@ def compared(point: per.Point, error: float, multipliers: Array, by: str) -> Che
     scale = max(1.0, true)
     first, second = (abs(np.sum(point.multipliers**k) - np.sum(multipliers**k)) / scale**k for k in (1, 2))
     off = float(max(first, second / 2))
-    sure = abs(true - 1) > 10 * off + 1e-9
+    sure = abs(true - 1) > 10 * off + MARGINAL
     stable = not sure or point.label.critical or point.trivial is not None or (ours < 1) == (true < 1)
     return Checked(error=error, multiplier_error=off, stable=stable, count=1, by=by)
 
@@ -108,7 +119,8 @@ def compared(point: per.Point, error: float, multipliers: Array, by: str) -> Che
 def shot(system: sym.CompiledSystem, orbit: per.Orbit, free: tuple[int, ...]) -> tuple[float, Array]:
     """Return the error of an orbit over its span, and its monodromy matrix, by multiple shooting.
 
-    With `free` parameters (of autonomous orbits) the error is the least that some shift in phase leaves.
+    With `free` parameters the error is the least that a shift in phase (of autonomous orbits) or along the
+    branch leaves.
     Raises ArithmeticError where CVODES fails.
     """
     n, q = orbit.nodes.shape[1], len(free)
@@ -119,13 +131,14 @@ def shot(system: sym.CompiledSystem, orbit: per.Orbit, free: tuple[int, ...]) ->
     for k in range(count):
         flow = system.flow(state[k], guess[k], orbit.parameter, marks[k : k + 2], free, TOLERANCE)
         rows, after = slice(k * n, (k + 1) * n), (k + 1) % count * n
-        by_state, by_free = flow.state_gradient[-1, :, :n], flow.state_gradient[-1, :, n:]
+        by_state = flow.state_gradient[-1, :, :n]
+        by_free = flow.state_gradient[-1, :, n:] * orbit.parameter[list(free)]
         matrix[rows, after : after + n] += np.eye(n)
         matrix[rows, k * n : (k + 1) * n] -= by_state
         matrix[rows, count * n :] -= by_free
         gap[rows] = flow.state[-1] - state[(k + 1) % count]
         monodromy = by_state @ monodromy
-    solution = np.linalg.lstsq(matrix, gap, rcond=1e-14)[0] if q else np.linalg.solve(matrix, gap)
+    solution = np.linalg.lstsq(matrix, gap, rcond=RANK)[0] if q else np.linalg.solve(matrix, gap)
     return float(np.abs(solution[: count * n]).max()) / orbit.span(), monodromy
 
 
