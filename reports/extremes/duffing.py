@@ -12,7 +12,7 @@ from reports.extremes.survey import Case
 from reports.scene import load
 
 FORCES = (1e-6, 1e-3, 0.5, 10.0, 1e2, 1e3, 1e4)
-ENDS = (0.5, 4.0)
+ENDS = (0.5, 20.0)
 """Range of Omega, in units of the larger of 1 and cbrt(F), about the frequency of so large a motion."""
 
 
@@ -36,11 +36,17 @@ def raised(force: float, compiled: sym.CompiledSystem, settings: per.Settings) -
 def cases() -> list[Case]:
     """Return sweeps in frequency, then sweeps in force."""
     over = [
-        Case(value=f, system=partial(system, f), trace=partial(swept, f), name=f"{f:g}, over Ω")
+        Case(value=f, system=partial(system, f), trace=partial(swept, f), name=f"{f:g}, over Ω", points=400)
         for f in FORCES
     ]
     up = [
-        Case(value=f, system=partial(system, 0.5), trace=partial(raised, f), name=f"0.5 to {f:g}, at Ω = 1")
+        Case(
+            value=f,
+            system=partial(system, 0.5),
+            trace=partial(raised, f),
+            name=f"0.5 to {f:g}, at Ω = 1",
+            points=800,
+        )
         for f in FORCES
         if f > 0.5
     ]
@@ -54,8 +60,9 @@ STUDY = Study(
     unit="",
     cases=cases,
     lead="""\
-x'' + 0.1 x' + x + x³ = F cos Ωt. With x = F^1/3 y and time in F^-1/3 the damping is 0.1 F^-1/3: a large force is a
-small damping, the resonance peak grows with it, and below it lies a superharmonic resonance for every integer.""",
+x'' + 0.1 x' + x + x³ = F cos Ωt. With x = F^1/3 y and time in F^-1/3 the damping is 0.1 F^-1/3: a large
+force is a small damping, the resonance peak grows with it, and below it lies a superharmonic resonance for
+every integer.""",
     quick=(1e-3,),
 )
 section = STUDY.section

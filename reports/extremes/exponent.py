@@ -11,7 +11,7 @@ STUDY = Study(
     quantity="n",
     unit="",
     cases=lambda: [
-        case(n, {"exponent": n, "stiffness": 810 / (810 / 28e9) ** (n / 1.5)})
+        case(n, {"exponent": n, "contact.stiffness": 810 / (810 / 28e9) ** (n / 1.5)})
         for n in (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
     ],
     lead="""\

@@ -82,9 +82,9 @@ STUDY = Study(
     unit="",
     cases=cases,
     lead="""\
-Linear oscillators under cos Ωt, x'' + x' + x (both multipliers of the size exp(-π/Ω)) and x'' - x (exp(±2π/Ω)), Ω
-chosen for the multiplier. Orbits and multipliers are held against the exact ones; the error of the multipliers is
-relative to the largest where that exceeds 1.""",
+Linear oscillators under cos Ωt, x'' + x' + x (both multipliers of the size exp(-π/Ω)) and x'' - x
+(exp(±2π/Ω)), Ω chosen for the multiplier. Orbits and multipliers are held against the exact ones; the error
+of the multipliers is relative to the largest where that exceeds 1.""",
     quick=(1e-3, 1e4),
 )
 section = STUDY.section

@@ -58,8 +58,8 @@ STUDY = Study(
     unit="",
     cases=cases,
     lead="""\
-x'' + x = cos Ωt without any damping: x = cos Ωt/(1 - Ω²), and both multipliers lie within 2π (1 - Ω) of 1. A
-branch is approached from Ω = 0.7 or begun at 1 - Ω, with x in metres or in units of its own amplitude.""",
+x'' + x = cos Ωt without any damping: x = cos Ωt/(1 - Ω²), and both multipliers lie within 2π (1 - Ω) of 1.
+A branch is approached from Ω = 0.7 or begun at 1 - Ω, with x in metres or in units of its own amplitude.""",
     quick=(1e-2,),
 )
 section = STUDY.section

@@ -9,7 +9,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -75,6 +75,7 @@ class Row:
     multiplier_error: float | None = None
     largest: float | None = None
     smallest: float | None = None
+    floor: float | None = None
     checked: int = 0
     check: str = ""
 
@@ -102,31 +103,35 @@ def survey(case: Case) -> Row:
 
 def _row(case: Case, system: sym.CompiledSystem, branch: per.Branch, seconds: float) -> Row:
     outcome, detail = judged(branch)
-    row = {
-        "value": case.value,
-        "name": case.name,
-        "points": len(branch),
-        "iterations": branch.newton_iterations,
-        "seconds": seconds,
-    }
+    row = Row(
+        value=case.value,
+        name=case.name,
+        outcome=outcome.value,
+        detail=detail,
+        points=len(branch),
+        iterations=branch.newton_iterations,
+        seconds=seconds,
+    )
     if not len(branch):
-        return Row(**row, outcome=outcome.value, detail=detail)
+        return row
     found = case.confirm(system, branch)
     if not math.isfinite(found.error):
         outcome, detail = Outcome.UNCONFIRMED, f"neither CVODES nor accuracy fine gets there ({branch.stop})"
     elif found.wrong(RIGHT):
         outcome, detail = Outcome.WRONG, f"{found.verdict(RIGHT)} ({branch.stop})"
-    sizes = [abs(mu) for point in branch for mu in point.multipliers]
-    return Row(
-        **row,
+    strongest = max(branch, key=lambda point: float(abs(point.multipliers[0])))
+    weakest = min(branch, key=lambda point: float(abs(point.multipliers[-1])))
+    return replace(
+        row,
         outcome=outcome.value,
         detail=detail,
         specials=specials(branch),
         estimate=max(p.error.orbit for p in branch),
         error=found.error,
         multiplier_error=found.multiplier_error,
-        largest=float(max(sizes)),
-        smallest=float(min(sizes)),
+        largest=float(abs(strongest.multipliers[0])),
+        smallest=float(abs(weakest.multipliers[-1])),
+        floor=weakest.floor,
         checked=found.count,
         check=found.by,
     )
@@ -149,7 +154,7 @@ def judged(branch: per.Branch) -> tuple[Outcome, str]:
 
 
 def _place(branch: per.Branch) -> str:
-    """Say how far a branch got, as a part of the way from its first point to the end of its range."""
+    """Say how far a branch got."""
     return f"{branch.parameter} = {branch[-1].parameter:.6g}"
 
 

@@ -44,12 +44,18 @@ def _cells(row: Row) -> tuple[str, ...]:
         error(row.estimate),
         error(row.error),
         error(row.multiplier_error),
-        f"{row.smallest:.1e} to {row.largest:.6g}",
+        f"{_small(row)} to {row.largest:.6g}",
         f"{row.check}, {row.checked} orbits",
         str(row.points),
         str(row.iterations),
         _time(row),
     )
+
+
+def _small(row: Row) -> str:
+    """The smallest multiplier, or that it lies below the noise floor."""
+    assert row.smallest is not None and row.floor is not None
+    return number(float(f"{row.smallest:.2g}")) if row.smallest > row.floor else f"below {error(row.floor)}"
 
 
 def _time(row: Row) -> str:
@@ -66,5 +72,5 @@ def domain(rows: Sequence[Row]) -> str:
         best = max(best, run, key=len)
     if not best:
         return "none"
-    values = [r.name or number(r.value) for r in best]
+    values = [number(v) for v in sorted({r.value for r in best})]
     return values[0] if len(values) == 1 else f"{values[0]} to {values[-1]}"
