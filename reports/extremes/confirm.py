@@ -115,8 +115,8 @@ def compared(point: per.Point, error: float, multipliers: Spectrum, by: str) -> 
     scale = max(1.0, true)
     first, second = (abs(np.sum(point.multipliers**k) - np.sum(multipliers**k)) / scale**k for k in (1, 2))
     off = float(max(first, second / 2)) if point.trivial is None else point.trivial
-    sure = abs(true - 1) > 10 * off + MARGINAL
-    stable = not sure or point.label.critical or point.trivial is not None or (ours < 1) == (true < 1)
+    unsure = abs(ours - 1) <= max(point.floor, MARGINAL) or point.label.critical or point.trivial is not None
+    stable = unsure or (ours < 1) == (true < 1)
     return Checked(error=error, multiplier_error=off, stable=stable, count=1, by=by)
 
 

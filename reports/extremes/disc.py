@@ -42,7 +42,7 @@ def dry_resonance(scene: DiscScene) -> float:
     return omega / scene.waviness.waves
 
 
-def speeds(value: float, rpm: tuple[float, float], base: str = "vitrea79-810N") -> Case:
+def speeds(rpm: tuple[float, float], base: str = "vitrea79-810N") -> Case:
     """Return the disc as it is, traced over a range of speeds from its upper end."""
 
     def trace(system: sym.CompiledSystem, settings: per.Settings) -> per.Branch:
@@ -50,7 +50,7 @@ def speeds(value: float, rpm: tuple[float, float], base: str = "vitrea79-810N") 
         return per.trace(system, "speed", ends, start=ends[1], settings=settings)
 
     return Case(
-        value=value, system=partial(_built, base), trace=trace, name=f"{rpm[1]:g} to {rpm[0]:g} rev/min"
+        value=rpm[1], system=partial(_built, base), trace=trace, name=f"{rpm[1]:g} to {rpm[0]:g} rev/min"
     )
 
 

@@ -36,7 +36,7 @@ def raised(force: float, compiled: sym.CompiledSystem, settings: per.Settings) -
 def cases() -> list[Case]:
     """Return sweeps in frequency, then sweeps in force."""
     over = [
-        Case(value=f, system=partial(system, f), trace=partial(swept, f), name=f"{f:g}, over Ω", points=400)
+        Case(value=f, system=partial(system, f), trace=partial(swept, f), way="over Ω", points=400)
         for f in FORCES
     ]
     up = [
@@ -44,7 +44,7 @@ def cases() -> list[Case]:
             value=f,
             system=partial(system, 0.5),
             trace=partial(raised, f),
-            name=f"0.5 to {f:g}, at Ω = 1",
+            way="up from 0.5, at Ω = 1",
             points=800,
         )
         for f in FORCES

@@ -71,9 +71,9 @@ STUDY = Study(
     cases=cases,
     lead="""\
 A body on a spring that only pushes, preloaded, on a wavy track at 1.3 times its natural frequency: linear
-until the track's amplitude reaches the value at which the spring is just unloaded once in a cycle. Branches
-in that amplitude end so near to it that the least deflection is the margin, or would be if it could be
-negative. A margin of -1e-9 means that contact is lost for 1e-5 of a period.""",
+until the track's amplitude reaches the value at which the spring is just unloaded once in a cycle.
+Branches in that amplitude end so near to it that the least deflection is the margin, or would be if it
+could be negative. A margin of -1e-9 means that contact is lost for 1e-5 of a period.""",
     quick=(1e-5, -1e-5),
 )
 section = STUDY.section

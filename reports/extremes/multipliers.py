@@ -62,16 +62,17 @@ def _exact(point: per.Point, damping: float, stiffness: float, roots: np.ndarray
 
 def cases() -> list[Case]:
     """Return damped oscillators (c = k = 1), then inverted pendula (c = 0, k = -1)."""
-    chosen = [(1.0, 1.0, -math.pi / math.log(mu), mu) for mu in DAMPED]
-    chosen += [(0.0, -1.0, 2 * math.pi / math.log(mu), mu) for mu in GROWING]
+    chosen = [("damped", 1.0, 1.0, -math.pi / math.log(mu), mu) for mu in DAMPED]
+    chosen += [("growing", 0.0, -1.0, 2 * math.pi / math.log(mu), mu) for mu in GROWING]
     return [
         Case(
             value=mu,
+            way=way,
             system=partial(system, c, k),
             trace=partial(traced, omega),
             confirm=partial(exact, c, k),
         )
-        for c, k, omega, mu in chosen
+        for way, c, k, omega, mu in chosen
     ]
 
 
@@ -83,8 +84,8 @@ STUDY = Study(
     cases=cases,
     lead="""\
 Linear oscillators under cos Ωt, x'' + x' + x (both multipliers of the size exp(-π/Ω)) and x'' - x
-(exp(±2π/Ω)), Ω chosen for the multiplier. Orbits and multipliers are held against the exact ones; the error
-of the multipliers is relative to the largest where that exceeds 1.""",
+(exp(±2π/Ω)), Ω chosen for the multiplier. Orbits and multipliers are held against the exact ones; the
+error of the multipliers is relative to the largest where that exceeds 1.""",
     quick=(1e-3, 1e4),
 )
 section = STUDY.section

@@ -10,6 +10,7 @@ from reports.extremes.multipliers import exact
 from reports.extremes.study import Study
 from reports.extremes.survey import Case
 
+APPROACHED = (0.1, 1e-2, 1e-3)
 DISTANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 FAR = 0.7
 
@@ -34,20 +35,20 @@ def started(distance: float, compiled: sym.CompiledSystem, settings: per.Setting
 def cases() -> list[Case]:
     """Return branches that begin near resonance, with x scaled or not, and one that runs towards it."""
     ways = (
-        ("approached from 0.7", approached, lambda d: None),
-        ("begun there", started, lambda d: None),
-        ("begun there, x scaled", started, lambda d: 0.5 / d),
+        ("approached from 0.7", approached, APPROACHED, lambda d: None),
+        ("begun there", started, DISTANCES, lambda d: None),
+        ("begun there, x scaled", started, DISTANCES, lambda d: 0.5 / d),
     )
     return [
         Case(
             value=distance,
-            name=f"{distance:g}, {name}",
+            way=way,
             system=partial(system, scale(distance)),
             trace=partial(trace, distance),
             confirm=partial(exact, 0.0, 1.0),
         )
-        for name, trace, scale in ways
-        for distance in DISTANCES
+        for way, trace, distances, scale in ways
+        for distance in distances
     ]
 
 

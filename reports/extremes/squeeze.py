@@ -13,7 +13,7 @@ STUDY = Study(
     quantity="γu",
     unit="",
     cases=lambda: [
-        replace(case(0.0, {}, "quasistatic-film-810N"), name="0, quasistatic-film-810N"),
+        replace(case(0.0, {}, "quasistatic-film-810N"), name="0 (quasistatic film)"),
         *(case(g, {"squeeze": g}) for g in (0.001, 27.343, 273.43, 2734.3, 27343.0, 273430.0)),
     ],
     lead="""\

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from reports.extremes.figures import diagram
 from reports.extremes.survey import Case, Outcome, Row, survey
-from reports.extremes.words import error, number, table_of
+from reports.extremes.words import error, label, table_of
 from reports.pages.section import Section, Tell
 
 
@@ -31,7 +31,7 @@ class Study:
         """Survey every cell."""
         rows = []
         for case in self.cases():
-            tell(f"{self.quantity} {number(case.value)} {case.name}".strip())
+            tell(f"{self.quantity} {label(case)}")
             rows.append(survey(case))
         numbers = key_numbers(rows)
         return Section(

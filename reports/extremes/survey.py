@@ -20,7 +20,7 @@ import symbolic as sym
 from reports.errors import InputError
 from reports.extremes.confirm import Checked, confirmed
 
-POINTS = 130
+POINTS = 250
 """Most points of a branch; one that goes on is cut there."""
 
 SECONDS = 15.0
@@ -47,11 +47,15 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A cell: its value on the axis, the model, the branch, and how the branch is confirmed."""
+    """A cell: its value on the axis, the model, the branch, and how the branch is confirmed.
+
+    way: by which model or path, where an axis has several. name: what stands for both on the page.
+    """
 
     value: float
     system: Callable[[], sym.CompiledSystem]
     trace: Trace
+    way: str = ""
     name: str = ""
     confirm: Callable[[sym.CompiledSystem, per.Branch], Checked] = confirmed
     points: int = POINTS
@@ -63,6 +67,7 @@ class Row:
     """What was found: see `reports/extremes/introduction.md` for each column."""
 
     value: float
+    way: str
     name: str
     outcome: str
     detail: str
@@ -94,10 +99,12 @@ def survey(case: Case) -> Row:
             system = case.system()
             branch = case.trace(system, settings)
     except (InputError, ValueError) as error:
-        return Row(value=case.value, name=case.name, outcome=Outcome.REFUSED.value, detail=str(error))
+        return Row(
+            value=case.value, way=case.way, name=case.name, outcome=Outcome.REFUSED.value, detail=str(error)
+        )
     except (Warning, ArithmeticError) as error:
         told = f"{type(error).__name__}: {error}"
-        return Row(value=case.value, name=case.name, outcome=Outcome.WRONG.value, detail=told)
+        return Row(value=case.value, way=case.way, name=case.name, outcome=Outcome.WRONG.value, detail=told)
     return _row(case, system, branch, time.process_time() - clock)
 
 
@@ -105,6 +112,7 @@ def _row(case: Case, system: sym.CompiledSystem, branch: per.Branch, seconds: fl
     outcome, detail = judged(branch)
     row = Row(
         value=case.value,
+        way=case.way,
         name=case.name,
         outcome=outcome.value,
         detail=detail,

@@ -14,6 +14,6 @@ STUDY = Study(
     lead="""\
 Viscosity sets the thickness of the film, from 0.013 to 73 µm at 360 rev/min. A thin one damps next to
 nothing.""",
-    quick=(1.0,),
+    quick=(10.0,),
 )
 section = STUDY.section

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from reports.extremes.survey import Outcome, Row
+from reports.extremes.survey import Case, Outcome, Row
 from reports.pages.report import table
 
 HEADS = (
@@ -32,7 +32,7 @@ def table_of(rows: Sequence[Row], head: str) -> str:
 
 
 def _cells(row: Row) -> tuple[str, ...]:
-    value = row.name or number(row.value)
+    value = label(row)
     if row.largest is None or row.smallest is None:
         return value, row.outcome, row.detail, *["-"] * 6, str(row.points), str(row.iterations), _time(row)
     why = "" if row.outcome == Outcome.TRACED.value else row.detail
@@ -62,15 +62,23 @@ def _time(row: Row) -> str:
     return f"{row.seconds:.1f}"
 
 
+def label(row: Row | Case) -> str:
+    """Return what stands for a cell on the page."""
+    return row.name or ", ".join(filter(None, [number(row.value), row.way]))
+
+
 def domain(rows: Sequence[Row]) -> str:
-    """Return the widest run of neighbouring values whose branches were traced, or healthy when cut."""
-    good = [r.outcome in (Outcome.TRACED.value, Outcome.CUT.value) for r in rows]
+    """Return, of each way, the widest run of neighbouring values whose branches went well."""
+    ways = list(dict.fromkeys(r.way for r in rows))
+    found = {way: _run([r for r in rows if r.way == way]) for way in ways}
+    return "; ".join(f"{way}: {run}" if way else run for way, run in found.items())
+
+
+def _run(rows: Sequence[Row]) -> str:
     best: list[Row] = []
     run: list[Row] = []
-    for row, fine in zip(rows, good, strict=True):
-        run = [*run, row] if fine else []
+    for row in rows:
+        run = [*run, row] if row.outcome in (Outcome.TRACED.value, Outcome.CUT.value) else []
         best = max(best, run, key=len)
-    if not best:
-        return "none"
-    values = [number(v) for v in sorted({r.value for r in best})]
-    return values[0] if len(values) == 1 else f"{values[0]} to {values[-1]}"
+    values = [number(r.value) for r in best]
+    return " to ".join(dict.fromkeys([*values[:1], *values[-1:]])) or "none"
