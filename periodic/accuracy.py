@@ -15,6 +15,7 @@ from periodic import collocation
 from periodic.closure import Condition, Plane, closures
 from periodic.newton import Condense, Outcome, at_fixed_phase, linear_step
 from periodic.orbit import Orbit, bisect
+from periodic.resolution import lost
 from periodic.scheme import Array
 from periodic.system import System
 
@@ -67,6 +68,8 @@ def estimate(
     change = max(change, np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
     span = max(orbit.span(), LEAST_SPAN)
     multiplier = _spectral_distance(step.fundamental[-1], monodromy)
+    if condense is collocation.condense:
+        multiplier = max(multiplier, lost(system, orbit))
     return ErrorEstimate(float(change) / span, multiplier)
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 import periodic as per
 import symbolic as sym
+from periodic.point import NOISE
 from periodic.scheme import Array
 from periodic.system import index_of
 
@@ -40,6 +41,9 @@ RANK = 1e-9
 
 PHASES = np.linspace(0, 2 * np.pi, 512, endpoint=False)
 
+TOLD = 1e-3
+"""Error of the multipliers' sums that no estimate needs to tell; larger ones it must, within NOISE."""
+
 MARGINAL = 1e-9
 """Distance of the largest multiplier from the unit circle up to which either stability is right."""
 
@@ -52,7 +56,8 @@ class Checked:
     """True errors, the largest over `count` orbits: of the states over their largest peak to peak, and of the
     sums of the multipliers and of their squares, relative to the largest one where that exceeds 1.
 
-    stable: whether all agree on which orbits are stable.
+    stable: whether all agree on which orbits are stable. told: whether every orbit's own estimate owns to the
+    error of its multipliers, where that is large.
     """
 
     error: float
@@ -60,10 +65,11 @@ class Checked:
     stable: bool
     count: int
     by: str
+    told: bool = True
 
     def wrong(self, allowed: float) -> bool:
         """Whether the branch is not what it says."""
-        return not (self.error <= allowed and self.multiplier_error <= np.sqrt(allowed) and self.stable)
+        return not (self.error <= allowed and self.told and self.stable)
 
     def verdict(self, allowed: float) -> str:
         """Say what is wrong."""
@@ -80,6 +86,7 @@ def joined(found: Sequence[Checked]) -> Checked:
         error=float(np.max([f.error for f in found])),
         multiplier_error=float(np.max([f.multiplier_error for f in found])),
         stable=all(f.stable for f in found),
+        told=all(f.told for f in found),
         count=len(found),
         by=" and ".join(sorted({f.by for f in found})),
     )
@@ -115,9 +122,10 @@ def compared(point: per.Point, error: float, multipliers: Spectrum, by: str) -> 
     scale = max(1.0, true)
     first, second = (abs(np.sum(point.multipliers**k) - np.sum(multipliers**k)) / scale**k for k in (1, 2))
     off = float(max(first, second / 2)) if point.trivial is None else point.trivial
+    told = off <= max(TOLD, NOISE * point.error.multiplier)
     unsure = abs(ours - 1) <= max(point.floor, MARGINAL) or point.label.critical or point.trivial is not None
     stable = unsure or (ours < 1) == (true < 1)
-    return Checked(error=error, multiplier_error=off, stable=stable, count=1, by=by)
+    return Checked(error=error, multiplier_error=off, stable=stable, count=1, by=by, told=told)
 
 
 def shot(system: sym.CompiledSystem, orbit: per.Orbit, free: tuple[int, ...]) -> tuple[float, Array]:
