@@ -15,6 +15,7 @@ from periodic import collocation
 from periodic.closure import Condition, Plane, closures
 from periodic.newton import Condense, Outcome, at_fixed_phase, linear_step
 from periodic.orbit import Orbit, bisect
+from periodic.resolution import lost
 from periodic.scheme import Array
 from periodic.system import System
 
@@ -91,9 +92,12 @@ def estimate(
         ],
         axis=1,
     )
+    multiplier = _spectral_distance(step.fundamental[-1], monodromy)
+    if condense is collocation.condense:
+        multiplier = max(multiplier, lost(system, orbit))
     return ErrorEstimate(
         orbit=float(np.abs(errors).max()) / max(orbit.span(), LEAST_SPAN),
-        multiplier=_spectral_distance(step.fundamental[-1], monodromy),
+        multiplier=multiplier,
         extent=_extent(fine, np.abs(errors).max(axis=1)),
         parameter=0.0 if plane is None else _relative(step.outer[len(fine.phases)], orbit, free[0], plane),
     )

@@ -14,6 +14,9 @@ from periodic.orbit import Orbit
 from periodic.solve import Solved, Task
 from periodic.spectrum import CONSERVED, ROUNDING, without_unit
 
+NOISE = 30.0
+"""How much larger than its estimate the error of a small multiplier may be."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point:
@@ -68,6 +71,15 @@ class Point:
     def nontrivial(self) -> NDArray[np.complex128]:
         """The multipliers without those that are 1 whatever the parameters, largest first."""
         return without_unit(self.multipliers, 0 if self.trivial is None else 1 + self.conservative)
+
+    @property
+    def floor(self) -> float:
+        """The noise floor: multipliers of this size or less are only known to be so small.
+
+        NOISE times their error, rounding included, relative to the largest where that exceeds 1.
+        """
+        largest = float(np.abs(self.multipliers).max(initial=1.0))
+        return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output."""

@@ -132,7 +132,7 @@ Values = Annotated[
         help="Values to linearise at (oscillator: rad/s). [default: the resonance]",
     ),
 ]
-Page = Annotated[str, typer.Argument(metavar="NAME", help="The report to compute: paper or trade.")]
+Page = Annotated[str, typer.Argument(metavar="NAME", help="The report to compute: paper, trade or extremes.")]
 Only = Annotated[
     str | None, typer.Option("--only", metavar="SECTION", help="Compute one section, keep the others.")
 ]

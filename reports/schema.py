@@ -141,7 +141,7 @@ class Support(Table):
 
     stiffness: float = number(1e2, 1e15, "N/m, of each disc's bearing")
     damping: float = number(0, 1e12, "N s/m, of each disc's bearing")
-    disc_share: float = number(0.001, 0.999, "part of discs.mass before the bearing")
+    disc_share: float = number(1e-7, 0.9999999, "part of discs.mass before the bearing")
     leaf: float | None = Field(
         None, ge=0, le=1e15, description="a number from 0 to 1e+15 (N/m, from each housing to ground)"
     )

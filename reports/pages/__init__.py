@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from reports.pages.report import Report
 
-NAMES = ("paper", "trade")
+NAMES = ("paper", "trade", "extremes")
 """The reports, each a package `reports.NAME` whose module `page` has the `REPORT`."""
 
 

@@ -1,0 +1,68 @@
+"""Section of the report: the Duffing oscillator under forces up to 1e4."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import periodic as per
+import symbolic as sym
+from reports.build import build
+from reports.extremes.study import Study
+from reports.extremes.survey import Case
+from reports.scene import load
+
+FORCES = (1e-6, 1e-3, 0.5, 10.0, 1e2, 1e3, 1e4)
+ENDS = (0.5, 20.0)
+"""Range of Omega, in units of the larger of 1 and cbrt(F), about the frequency of so large a motion."""
+
+
+def system(force: float) -> sym.CompiledSystem:
+    """Return x'' + 0.1 x' + x + x^3 = F cos(Omega t), the scene `duffing`."""
+    return build(load("duffing", [("force", repr(force))]))
+
+
+def swept(force: float, compiled: sym.CompiledSystem, settings: per.Settings) -> per.Branch:
+    """Return the branch over frequency, from high ones down."""
+    unit = max(1.0, force ** (1 / 3))
+    low, high = (unit * end for end in ENDS)
+    return per.trace(compiled, "Omega", (low, high), start=high, settings=settings)
+
+
+def raised(force: float, compiled: sym.CompiledSystem, settings: per.Settings) -> per.Branch:
+    """Return the branch over the force from 0.5 on, at Omega = 1."""
+    return per.trace(compiled, "F", (0.5, force), start=0.5, values={"Omega": 1.0}, settings=settings)
+
+
+def cases() -> list[Case]:
+    """Return sweeps in frequency, then sweeps in force."""
+    over = [
+        Case(value=f, system=partial(system, f), trace=partial(swept, f), way="over Ω", points=400)
+        for f in FORCES
+    ]
+    up = [
+        Case(
+            value=f,
+            system=partial(system, 0.5),
+            trace=partial(raised, f),
+            way="up from 0.5, at Ω = 1",
+            points=800,
+        )
+        for f in FORCES
+        if f > 0.5
+    ]
+    return [*over, *up]
+
+
+STUDY = Study(
+    key="duffing",
+    title="Duffing: large forces",
+    quantity="F",
+    unit="",
+    cases=cases,
+    lead="""\
+x'' + 0.1 x' + x + x³ = F cos Ωt. With x = F^1/3 y and time in F^-1/3 the damping is 0.1 F^-1/3: a large
+force is a small damping, the resonance peak grows with it, and below it lies a superharmonic resonance for
+every integer.""",
+    quick=(1e-3,),
+)
+section = STUDY.section

@@ -1,0 +1,79 @@
+"""Section of the report: contact lost by ever less, down to 1e-9 of the deflection."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+
+import periodic as per
+import symbolic as sym
+from reports.extremes.study import Study
+from reports.extremes.survey import Case
+
+PRELOAD, STIFFNESS, MASS, RATIO = 810.0, 1e8, 10.2, 0.02
+FREQUENCY = 1.3
+"""Of the waviness, in units of the contact's natural frequency."""
+
+MARGINS = (1e-1, 1e-3, 1e-5, 1e-7, 1e-9, -1e-9, -1e-7, -1e-5, -1e-3, -1e-1)
+"""Least deflection at the end of the branch, as a part of the static one; below 0 contact is lost."""
+
+
+def grazing() -> float:
+    """Return the waviness (m) at which the linear motion just loses contact."""
+    inertia, damping = FREQUENCY**2, 2j * RATIO * FREQUENCY
+    moved = 1 / (1 - inertia + damping)
+    return PRELOAD / STIFFNESS / abs(1 - moved)
+
+
+def system(exponent: float) -> sym.CompiledSystem:
+    """Return a wavy body of mass m on a contact, W = Q (delta/delta0)^n while delta > 0, else 0.
+
+    delta0 = Q/K whatever n; n = 1 is a stiffness that is lost with contact.
+    """
+    x = sym.coordinate("x")
+    pair = sym.ContactPair(x)
+    deflection = PRELOAD / STIFFNESS
+    omega = FREQUENCY * math.sqrt(STIFFNESS / MASS)
+    return sym.compile(
+        sym.Mass(x, MASS)
+        + sym.Preload(pair, PRELOAD)
+        + sym.Hertz(pair, PRELOAD / deflection**exponent, exponent)
+        + sym.Waviness(pair, 0.5 * grazing(), 1.0, omega)
+        + sym.ContactDamping(pair, RATIO)
+    )
+
+
+def traced(margin: float, compiled: sym.CompiledSystem, settings: per.Settings) -> per.Branch:
+    """Return the branch over the waviness, from half of that which grazes."""
+    edge = grazing()
+    return per.trace(compiled, "amplitude", (0.5 * edge, (1 - margin) * edge), settings=settings)
+
+
+def cases() -> list[Case]:
+    """Return branches that end at each margin."""
+    return [
+        Case(value=margin, system=partial(system, 1.0), trace=partial(traced, margin)) for margin in MARGINS
+    ]
+
+
+def least(point: per.Point) -> float:
+    """Return the least deflection of an orbit as a part of the static one."""
+    return float(np.float64(point.minimum["deflection"]) * STIFFNESS / PRELOAD)
+
+
+STUDY = Study(
+    key="grazing",
+    title="Grazing",
+    quantity="margin",
+    unit="of the static deflection",
+    cases=cases,
+    lead="""\
+A body on a spring that only pushes, preloaded, on a wavy track at 1.3 times its natural frequency: linear
+until the track's amplitude reaches the value at which the spring is just unloaded once in a cycle.
+Branches in that amplitude end so near to it that the least deflection is the margin, or would be if it
+could be negative. A margin of -1e-9 means that contact is lost for 1e-5 of a period.""",
+    quick=(1e-5, -1e-5),
+)
+section = STUDY.section
