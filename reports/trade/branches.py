@@ -62,7 +62,7 @@ STUDIES = (
         cases=lambda: [
             *accuracies(),
             *dialled(TOLERANCES),
-            *balanced((1e-2, 1e-4)),
+            *balanced((1e-2,), most=20),
             *swept((17, 33)),
         ],
         tight=1e-9,
