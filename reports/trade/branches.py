@@ -71,8 +71,7 @@ STUDIES = (
         by="shooting (CVODES, 1e-12)",
         within=(235 * RPM, 255 * RPM),
         remark=(
-            "A sweep in time finds the jumps to about the distance of its speeds, the unstable sheet never. "
-            "The series does not get past the loss of contact."
+            "A sweep in time finds the jumps to about the distance of its speeds, the unstable sheet never."
         ),
     ),
     Study(
