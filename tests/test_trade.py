@@ -113,7 +113,6 @@ def test_page_is_put_together_from_its_sections(tmp_path: Path) -> None:
     assert (tmp_path / PAGE).read_text("utf-8") == (FOLDER / PAGE).read_text("utf-8")
 
 
-@pytest.mark.xfail(reason="branches and chainbranch are still to be computed")
 def test_page_is_complete() -> None:
     """Assert that every section is there."""
     assert tuple(REPORT.kept(FOLDER)) == REPORT.sections

@@ -117,14 +117,14 @@ def accuracies() -> Iterator[Traced]:
         )
 
 
-def balanced(tolerances: Sequence[float]) -> Iterator[Traced]:
-    """Yield harmonic balance with as many harmonics as the tolerance asks for."""
+def balanced(tolerances: Sequence[float], most: int = 64) -> Iterator[Traced]:
+    """Yield harmonic balance with as many harmonics as the tolerance asks for, up to `most`."""
     for tolerance in tolerances:
         yield Traced(
             family=BALANCE,
             setting=f"tol {power(tolerance)}",
             settings=settings_for(tolerance, per.Scheme()),
-            method=per.HarmonicBalance(),
+            method=per.HarmonicBalance(most=most),
         )
 
 
