@@ -151,7 +151,7 @@ def branches_twice(base: Solved, new: Solved) -> bool:
     return rotation.passes(base.correction, new.correction, 1)
 
 
-TURN = Test(Label.FOLD, slope, 1e-9)
+TURN = Test(Label.FOLD, slope, 1e-10)
 """Its parameter is second order in its place; those of the others are first order."""
 
 PASSAGES = (

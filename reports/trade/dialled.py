@@ -13,6 +13,7 @@ import numpy as np
 
 import periodic as per
 import symbolic as sym
+from periodic.orbit import bisect
 from reports.build import build
 from reports.scene import load
 from reports.trade import problems
@@ -21,9 +22,6 @@ from symbolic.parts.equations import Names
 
 TIGHTEST = 1e-11
 """Tolerance of the references, and ten times as much where that is not reached."""
-
-PHASES = np.linspace(0, 2 * np.pi, 1500, endpoint=False)
-"""Where orbits are compared."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -217,8 +215,9 @@ def _apart(found: per.Point, true: per.Point) -> float:
 
 
 def _distance(found: per.Point, true: per.Point) -> float:
-    """Largest distance of two orbits in their states over their largest peak to peak."""
-    states = [point.orbit.state(PHASES) for point in (found, true)]
+    """Largest distance of two orbits in their states, on the first's mesh, over their largest peak to peak."""
+    phases = bisect(found.orbit).stage_phases.ravel()
+    states = [point.orbit.state(phases) for point in (found, true)]
     return float(np.abs(states[0] - states[1]).max() / np.ptp(states[1], axis=0).max())
 
 
