@@ -80,6 +80,9 @@ LEAST, MOST = 1e-11, 1e-2
 DEEPEST = 0.1
 """Shallowest switch level worth an anchor, in tolerances."""
 
+CLOSE = 1e-2
+"""How much closer to an orbit than a tolerance its multipliers are computed."""
+
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
 
@@ -91,6 +94,7 @@ def settings(tol: float, step: StepSettings | None = None) -> Settings:
     """
     if not LEAST <= tol <= MOST:
         raise ValueError(f"tol is {tol}; it must lie between {LEAST:g} and {MOST:g}")
+    increment = max(1e-2 * tol, 1e-10) ** 0.75
     ncol = next((points for least, points in DEGREES.items() if tol >= least), max(DEGREES.values()))
     return Settings(
         mesh=MeshSettings(
@@ -98,7 +102,7 @@ def settings(tol: float, step: StepSettings | None = None) -> Settings:
             scheme=Scheme(Family.RADAU, ncol),
             anchors=AnchorSettings(deepest=DEEPEST * tol),
         ),
-        newton=NewtonSettings(tolerance=max(1e-2 * tol, 1e-10) ** 0.75, max_iterations=16),
+        newton=NewtonSettings(tolerance=increment, close=CLOSE * tol / increment, max_iterations=16),
         step=step or StepSettings(),
     )
 

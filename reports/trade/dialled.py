@@ -26,23 +26,23 @@ TIGHTEST = 1e-11
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """A branch between two values of a parameter, with points at some; autonomous ones from a Hopf point."""
+    """A branch between two values of a parameter, with points at some; born: from a Hopf point."""
 
     name: str
     system: Callable[[], sym.CompiledSystem]
     parameter: str
     ends: tuple[float, float]
     at: tuple[float, ...]
-    born: str = ""
+    born: bool = False
 
     def traced(self, tol: float) -> per.Branch:
         """Return the branch at a tolerance."""
         system = self.system()
         options: dict[str, Any] = {"start": self.ends[0], "at": self.at, "tol": tol}
         if self.born:
-            rest = per.equilibria(system, self.born, (-1.0, 1.0)).labelled(per.Label.HOPF)[0]
+            rest = per.equilibria(system, self.parameter, self.ends).labelled(per.Label.HOPF)[0]
             options = {
-                "guess": per.hopf(system, rest.orbit, self.born),
+                "guess": per.hopf(system, rest.orbit, self.parameter),
                 "determined": {"omega": per.PhaseCondition()},
                 "at": self.at,
                 "tol": tol,
@@ -64,11 +64,13 @@ def _oscillator(damping: float, cubic: float, force: float) -> sym.CompiledSyste
 
 
 @cache
-def _van_der_pol() -> sym.CompiledSystem:
-    def rates(x: Names, p: Names) -> dict[str, Any]:
-        return {"x": x.v, "v": p.mu * (1 - x.x**2) * x.v - x.x}
+def _feedback() -> sym.CompiledSystem:
+    # x_ttt + alpha x_tt + x_t + x = x^2
 
-    return sym.compile(sym.Equations(rates, states={"x": 0.0, "v": 0.0}, parameters={"mu": -1.0}))
+    def rates(x: Names, p: Names) -> dict[str, Any]:
+        return {"x": x.v, "v": x.w, "w": -p.alpha * x.w - x.v - x.x + x.x**2}
+
+    return sym.compile(sym.Equations(rates, states=dict.fromkeys("xvw", 0.0), parameters={"alpha": 1.2}))
 
 
 @cache
@@ -103,12 +105,12 @@ PROBLEMS = (
         name="forced van der Pol", system=_entrained, parameter="Omega", ends=(1.0, 1.3), at=(1.01, 1.03)
     ),
     Problem(
-        name="van der Pol",
-        system=_van_der_pol,
-        parameter="mu",
-        ends=(0.0, 5.0),
-        at=(1.0, 2.0, 4.0),
-        born="mu",
+        name="feedback control",
+        system=_feedback,
+        parameter="alpha",
+        ends=(1.2, 0.6),
+        at=(0.9, 0.8, 0.7),
+        born=True,
     ),
     Problem(
         name="chain of 3",
@@ -215,7 +217,7 @@ def _apart(found: per.Point, true: per.Point) -> float:
 
 
 def _distance(found: per.Point, true: per.Point) -> float:
-    """Largest distance of two orbits in their states, on the first's mesh, over their largest peak to peak."""
+    """Largest distance of two orbits in their states over their largest peak to peak."""
     phases = bisect(found.orbit).stage_phases.ravel()
     states = [point.orbit.state(phases) for point in (found, true)]
     return float(np.abs(states[0] - states[1]).max() / np.ptp(states[1], axis=0).max())
