@@ -22,38 +22,31 @@ from periodic.system import System
 LEAST_SPAN = 1e-6
 """Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
 
-SLACK = 30.0
-"""How much less accurate than its peak to peak an orbit may be elsewhere: beside a kink, in a fast state."""
-
 APART = 2.0
 """How much less accurate a single multiplier may be than the sums that its error is estimated from."""
 
 SMALL = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
-FLAT = 1e-3
-"""Peak to peak of a state, in parts of the largest, that its error is compared with at the least."""
-
 
 @dataclass(frozen=True)
 class ErrorEstimate:
     """orbit: largest error of the states over their largest peak to peak.
 
-    extent: error of each state about its extremes over its peak to peak, the largest. parameter: error of the
-    continuation parameter across the branch, so that of an LP its place, relative. multiplier: error of the
+    parameter: error of the continuation parameter across the branch, so that of an LP its place, relative.
+    multiplier: error of the
     sums of the Floquet multipliers and of their squares, relative to the largest one where that exceeds 1; it
     is the multipliers' own error unless two of them all but coincide.
     """
 
     orbit: float
     multiplier: float
-    extent: float
     parameter: float = 0.0
 
     @property
     def motion(self) -> float:
         """What is held against the tolerance but for the multipliers."""
-        return max(self.extent, self.parameter, self.orbit / SLACK)
+        return max(self.orbit, self.parameter)
 
     @property
     def worst(self) -> float:
@@ -61,7 +54,7 @@ class ErrorEstimate:
         return max(self.motion, APART * self.multiplier)
 
 
-UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf, np.inf)
+UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 
 
 def estimate(
@@ -85,34 +78,16 @@ def estimate(
     moved = step.outer[: len(fine.phases)]
     nodes = step.orbit.nodes - fine.nodes + step.nodes
     stages = step.orbit.stages - fine.stages + step.stages
-    errors = np.concatenate(
-        [
-            at_fixed_phase(fine, nodes, moved)[:-1, None],
-            stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved),
-        ],
-        axis=1,
-    )
+    change = np.abs(at_fixed_phase(fine, nodes, moved)).max()
+    change = max(change, np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, moved)).max())
     multiplier = _spectral_distance(step.fundamental[-1], monodromy)
     if condense is collocation.condense:
         multiplier = max(multiplier, lost(system, orbit))
     return ErrorEstimate(
-        orbit=float(np.abs(errors).max()) / max(orbit.span(), LEAST_SPAN),
+        orbit=float(change) / max(orbit.span(), LEAST_SPAN),
         multiplier=multiplier,
-        extent=_extent(fine, np.abs(errors).max(axis=1)),
         parameter=0.0 if plane is None else _relative(step.outer[len(fine.phases)], orbit, free[0], plane),
     )
-
-
-def _extent(fine: Orbit, errors: Array) -> float:
-    """Largest error of a state about its extremes over its peak to peak; errors (N, n), one an interval."""
-    values = fine.knots
-    span = np.ptp(values, axis=(0, 1))
-    largest = np.zeros_like(span)
-    for extreme in (values.max(axis=1).argmax(axis=0), values.min(axis=1).argmin(axis=0)):
-        for beside in (-1, 0, 1):
-            near = errors[(extreme + beside) % len(errors), np.arange(len(span))]
-            largest = np.maximum(largest, near)
-    return float((largest / np.maximum(span, max(FLAT * span.max(), LEAST_SPAN))).max())
 
 
 def _relative(change: float, orbit: Orbit, index: int, plane: Plane) -> float:

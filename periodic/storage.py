@@ -118,7 +118,6 @@ def tables(branch: Branch) -> Tables:
         "stable": [p.stable for p in points],
         "error_estimate": [p.error.orbit for p in points],
         "multiplier_error": [p.error.multiplier for p in points],
-        "extent_error": [p.error.extent for p in points],
         "parameter_error": [p.error.parameter for p in points],
         "residual": [p.residual for p in points],
         "newton_iterations": [p.iterations for p in points],
@@ -254,9 +253,7 @@ def _point(data: xr.Dataset, layout: Layout, i: int, orbit: Orbit) -> Point:
         multipliers=data["multiplier_real"].values[i] + 1j * data["multiplier_imag"].values[i],
         minimum=dict(zip(names, map(float, data["minimum"].values[i]), strict=True)),
         maximum=dict(zip(names, map(float, data["maximum"].values[i]), strict=True)),
-        error=ErrorEstimate(
-            *map(number, ("error_estimate", "multiplier_error", "extent_error", "parameter_error"))
-        ),
+        error=ErrorEstimate(*map(number, ("error_estimate", "multiplier_error", "parameter_error"))),
         residual=number("residual"),
         iterations=int(number("newton_iterations")),
         slope=number("slope"),

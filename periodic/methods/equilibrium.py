@@ -73,7 +73,7 @@ class Equilibrium:
 
     def estimate(self, task: Task, correction: Correction, plane: Plane) -> ErrorEstimate:
         """Return zeros: nothing is discretised."""
-        return ErrorEstimate(0.0, 0.0, 0.0)
+        return ErrorEstimate(0.0, 0.0)
 
     def wanted(self, task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
         """Return nothing: an equilibrium crosses no switch."""

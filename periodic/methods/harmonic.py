@@ -148,7 +148,7 @@ class HarmonicBalance:
             multiplier = correction.floquet.error(task.system, better)
         except (FloatingPointError, np.linalg.LinAlgError):
             multiplier = np.inf
-        return ErrorEstimate(error, multiplier, error)
+        return ErrorEstimate(error, multiplier)
 
     def wanted(self, task: Task, orbit: Orbit, error: ErrorEstimate) -> list[Crossing]:
         """Return no crossings: a series cannot be tied to them."""
