@@ -40,9 +40,10 @@ class MeshSettings:
 class StepSettings:
     """Arclength steps, as parts of the parameter's range; `turn` is the least cosine between tangents.
 
-    max_points bounds the steps in each direction; max_newton the Newton iterations of the whole trace, those
-    for rejected steps and for the first orbit included, and with them all that it costs: one is a linear
-    solve on at most MeshSettings.ntst_max intervals.
+    A step is tried at log2(ds_max / ds_min) + 1 lengths at most, each on a few meshes, each with at most
+    NewtonSettings.max_iterations. max_points bounds the steps in each direction; max_newton, up to one
+    correction, the Newton iterations of the whole trace, those for rejected steps and for the first orbit
+    included. One costs a linear solve on about MeshSettings.ntst_max intervals at most.
     """
 
     ds: float = 0.02

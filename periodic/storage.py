@@ -31,6 +31,9 @@ from periodic.stop import Reason, Stop
 
 FORMAT = "orbitrace branch 4"
 
+SEAL = b"orbitrace sha256"
+"""Stands before the digest at the end of a file: what does not agree with it is not read any further."""
+
 FOURIER = "Fourier series"
 """Stands for the scheme of orbits that are such series."""
 
@@ -59,7 +62,7 @@ def save(branch: Branch, path: Path) -> None:
     data.to_netcdf(memory, engine="h5netcdf")
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        part.write_bytes(memory.getvalue())
+        part.write_bytes(sealed(memory.getvalue()))
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
@@ -70,6 +73,8 @@ def load(path: Path) -> Branch:
     if not path.is_file():
         raise BranchFileError(f"branch file is {str(path)!r}; there is no such file")
     try:
+        if not sound(path.read_bytes()):
+            raise BranchFileError(f"branch file {str(path)!r} is damaged (its seal is wrong)")
         with h5py.File(path, "r"):
             pass  # on a file that is none h5netcdf complains from its destructor, where nobody can catch it
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False, phony_dims="access") as data:
@@ -88,6 +93,17 @@ def load(path: Path) -> Branch:
         raise
     except (OSError, *DAMAGE) as error:
         raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch") from error
+
+
+def sealed(content: bytes) -> bytes:
+    """Return the bytes of a file followed by their digest, which readers of HDF5 pass over."""
+    return content + SEAL + hashlib.sha256(content).digest()
+
+
+def sound(content: bytes) -> bool:
+    """Whether the bytes of a file are those that were sealed, or never were: other tools leave no seal."""
+    body, seal = content[: -len(SEAL) - 32], content[-len(SEAL) - 32 :]
+    return not seal.startswith(SEAL) or seal == SEAL + hashlib.sha256(body).digest()
 
 
 def checksum(data: xr.Dataset) -> str:

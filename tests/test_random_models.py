@@ -110,7 +110,7 @@ def test_a_dozen(kind: str, seed: int) -> None:
 @pytest.mark.parametrize("block", range(20))
 @pytest.mark.parametrize(("kind", "share"), [("disc", 12), ("chain", 8), ("cycle", 5)])
 def test_five_hundred(kind: str, share: int, block: int) -> None:
-    """Assert it of 500, and that few of them stop early for a numerical reason."""
+    """Assert it of 500, and that with hardly any of them the method fails before its work is spent."""
     failed: list[str] = []
     reasons: Counter[Reason] = Counter()
     for seed in range(100 + block * share, 100 + (block + 1) * share):
@@ -118,8 +118,8 @@ def test_five_hundred(kind: str, share: int, block: int) -> None:
             reasons[check(kind, seed)] += 1
         except Exception as error:
             failed.append(f"{kind} {seed}: {type(error).__name__} {str(error)[:300]}")
-    print(kind, block, dict(reasons))
     assert not failed, "\n".join(failed)
+    assert sum(reasons[r] for r in (Reason.NO_START, Reason.SMALL_STEP, Reason.INACCURATE)) <= 1, reasons
 
 
 @pytest.mark.parametrize("values", [{"preload": 0.0}, {"preload": -5.0}, {"mass": 0.0}, {"stiffness": -1.0}])
