@@ -34,9 +34,8 @@ class ErrorEstimate:
     """orbit: largest error of the states over their largest peak to peak.
 
     parameter: error of the continuation parameter across the branch, so that of an LP its place, relative.
-    multiplier: error of the
-    sums of the Floquet multipliers and of their squares, relative to the largest one where that exceeds 1; it
-    is the multipliers' own error unless two of them all but coincide.
+    multiplier: error of the sums of the Floquet multipliers and of their squares, relative to the largest one
+    where that exceeds 1; it is the multipliers' own error unless two of them all but coincide.
     """
 
     orbit: float

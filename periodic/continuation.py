@@ -23,7 +23,6 @@ from periodic.mesh import Mesh
 from periodic.newton import Outcome, at_fixed_phase
 from periodic.orbit import Orbit
 from periodic.point import Point, describe
-from periodic.scheme import Family, Scheme
 from periodic.solve import (
     Solved,
     Task,
@@ -54,7 +53,7 @@ SMALLER = 0.8
 ADAPT_EVERY = 10
 """... and every so many steps."""
 
-MESHES = 3
+MESHES = 5
 """How many new meshes are tried for one step."""
 
 BENT = 0.1
@@ -71,9 +70,6 @@ AIM = 0.8
 
 COLLAPSED = 0.1
 """An orbit that is so much smaller than its guess is not what was guessed."""
-
-OTHERS = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
-"""Schemes with which a first orbit is looked for if Newton does not find it with the wanted one."""
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
@@ -283,7 +279,7 @@ class Run:
         """Find the first orbit by that of another scheme: Newton's way from a rest is a matter of luck."""
         task, mesh = self.task, self.task.settings.mesh
         found: Solved | Outcome = Outcome.TOO_MANY
-        for scheme in OTHERS:
+        for scheme in task.method.schemes:
             loosely = replace(mesh, scheme=scheme, tolerance=max(LOOSE, mesh.tolerance))
             other = replace(task, settings=replace(task.settings, mesh=loosely))
             guess = task.method.adopted(task.system, loosely, start, start.parameter)

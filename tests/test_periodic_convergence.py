@@ -121,7 +121,7 @@ def test_extremes_are_those_of_the_continuous_orbit() -> None:
 def test_hand_written_system_is_traced() -> None:
     """Assert that a branch of a NumPy system has the exact amplitude and multipliers at its user points."""
     values = (0.5, 0.9, 1.0, 1.3)
-    branch = per.trace(LinearOscillator(), "Omega", (0.4, 1.6), at=values)
+    branch = per.trace(LinearOscillator(), "Omega", (0.4, 1.6), at=values, tol=1e-8)
     assert branch.stop.reason is per.Reason.BOUND
     for point, value in zip(branch.labelled(per.Label.USER), values, strict=True):
         exact = LinearOscillator(Omega=value)

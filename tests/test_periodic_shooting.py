@@ -284,4 +284,4 @@ def test_bad_input() -> None:
     with pytest.raises(ValueError, match="^tolerance is 1.0; it must lie between 1e-12 and 0.01$"):
         per.Shooting(tolerance=1.0)
     with pytest.raises(ValueError, match="^tolerance of Shooting is 1e-09; for orbits to 1e-07 it"):
-        per.trace(linear_system(), "Omega", (0.7, 0.8), method=per.Shooting(tolerance=1e-9))
+        per.trace(linear_system(), "Omega", (0.7, 0.8), tol=1e-7, method=per.Shooting(tolerance=1e-9))

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from periodic.accuracy import SLACK
 from reports.bench.suite import COUNTS, NTST
 from reports.pages.report import FIGURES, KEPT, PAGE
 from reports.trade import aims, cases, duffing, grazing, lost, names, page, parts, smooth
@@ -57,7 +56,7 @@ def test_tolerances_are_kept() -> None:
         assert len(rows) >= 7
         for row in rows:
             assert row.error is not None
-            assert row.error <= max(SLACK * float(row.setting.removeprefix("tol ")), 1e-9)
+            assert row.error <= max(float(row.setting.removeprefix("tol ")), 1e-9)
 
 
 @pytest.mark.parametrize("name", REPORT.kept(FOLDER))

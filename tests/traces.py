@@ -9,6 +9,7 @@ import numpy as np
 
 import periodic as per
 import symbolic as sym
+from periodic.settings import settings
 from reports.build import build
 from reports.scene import load
 
@@ -49,7 +50,7 @@ def disc_system(scene: str, ratio: float | None = None) -> sym.CompiledSystem:
 @cache
 def disc(
     scene: str = "vitrea79-810N",
-    accuracy: per.Accuracy = STANDARD,
+    accuracy: per.Accuracy | float = STANDARD,
     rpm: tuple[float, float] = (500.0, 100.0),
     at: tuple[float, ...] = NO_VALUES,
     ds: float = per.StepSettings().ds,
@@ -61,7 +62,7 @@ def disc(
         "speed",
         (rpm[0] * RPM, rpm[1] * RPM),
         at=[value * RPM for value in at],
-        settings=accuracy.settings(per.StepSettings(ds=ds)),
+        settings=settings(getattr(accuracy, "value", accuracy), per.StepSettings(ds=ds)),
     )
 
 

@@ -18,7 +18,7 @@ from periodic.newton import Correction, NewtonSettings, correct
 from periodic.orbit import Orbit, at_rest, transfer
 from periodic.relax import relax
 from periodic.rotation import Turn
-from periodic.scheme import Array
+from periodic.scheme import Array, Family, Scheme
 from periodic.settings import DEEPEST, MeshSettings
 from periodic.system import System
 
@@ -41,6 +41,7 @@ class Collocation:
 
     passages = events.PASSAGES
     branching = (events.BRANCHING,)
+    schemes = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
 
     def rest(self, system: System, settings: MeshSettings, parameter: Array) -> Orbit:
         """Return the constant orbit at the system's rest values."""

@@ -40,6 +40,7 @@ class Equilibrium:
 
     passages = stationary.PASSAGES
     branching = ()
+    schemes = ()
 
     def rest(self, system: System, settings: MeshSettings, parameter: Array) -> Orbit:
         """Return the system's rest values as an equilibrium."""

@@ -85,6 +85,7 @@ class HarmonicBalance:
     most: int = 64
     passages = tuple(_where_known(test) for test in events.PASSAGES)
     branching = (_where_known(events.BRANCHING),)
+    schemes = ()
 
     def __post_init__(self) -> None:
         for name in ("harmonics", "most"):

@@ -16,7 +16,7 @@ from periodic.mesh import Mesh
 from periodic.newton import Correction, NewtonSettings
 from periodic.orbit import Orbit
 from periodic.rotation import Turn
-from periodic.scheme import Array
+from periodic.scheme import Array, Scheme
 from periodic.settings import MeshSettings
 from periodic.system import System
 
@@ -35,6 +35,10 @@ class Method(Protocol):
     @property
     def branching(self) -> tuple[Test, ...]:
         """Those that are looked for only where the branch does not turn."""
+
+    @property
+    def schemes(self) -> tuple[Scheme, ...]:
+        """Schemes with which a first orbit is looked for if Newton does not find it with the wanted one."""
 
     def rest(self, system: System, settings: MeshSettings, parameter: Array) -> Orbit:
         """Return the constant orbit at the system's rest values: the usual first guess."""

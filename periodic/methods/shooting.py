@@ -55,6 +55,7 @@ class Shooting:
     tolerance: float = 1e-12
     passages = events.PASSAGES
     branching = (events.BRANCHING,)
+    schemes = ()
 
     def __post_init__(self) -> None:
         if not (self.segments >= 1 and float(self.segments).is_integer()):

@@ -12,7 +12,6 @@ from functools import cache
 import numpy as np
 
 import periodic as per
-from periodic.accuracy import SLACK
 from periodic.anchors import AnchorSettings
 from periodic.closure import Metric
 from periodic.mesh import uniform
@@ -87,7 +86,7 @@ class Adaptive:
     def _accurate(self, task: Task, solved: Solved | Outcome) -> Solved:
         if isinstance(solved, Outcome):
             raise FailedError(solved.value)
-        if solved.error.orbit > SLACK * self.settings.mesh.tolerance:
+        if solved.error.orbit > self.settings.mesh.tolerance:
             raise FailedError(self.method.shortfall(task, solved))
         return solved
 
@@ -107,7 +106,7 @@ def neighbour(way: Adaptive, problem: Problem) -> per.Orbit:
     task, orbit = way._task(problem), nearby(problem)
     guess = way.method.adopted(problem.system, task.settings.mesh, orbit, orbit.parameter)
     solved = way._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True))
-    limit = SLACK * way.settings.mesh.tolerance
+    limit = way.settings.mesh.tolerance
     for _ in range(SLIMMING):
         slimmer = remesh(task, solved, fixed=True)
         if isinstance(slimmer, Outcome) or slimmer.error.orbit > limit or not slimmer.anchored:
