@@ -81,6 +81,7 @@ def cases() -> list[Case]:
         Case(
             value=mu,
             way=form,
+            at_end=True,
             system=partial(system, form, mu),
             trace=partial(traced, form, mu),
             confirm=confirm,

@@ -78,7 +78,7 @@ def _run(rows: Sequence[Row]) -> str:
     best: list[Row] = []
     run: list[Row] = []
     for row in rows:
-        run = [*run, row] if row.outcome in (Outcome.TRACED.value, Outcome.CUT.value) else []
+        run = [*run, row] if row.well else []
         best = max(best, run, key=len)
     values = [number(r.value) for r in best]
     return " to ".join(dict.fromkeys([*values[:1], *values[-1:]])) or "none"
