@@ -26,9 +26,6 @@ POINTS = 250
 SECONDS = 15.0
 """Processor time (s) that a branch may take."""
 
-RIGHT = 1e-6
-"""Largest true error of an orbit, and of its multipliers, that counts as confirmed: ten tolerances."""
-
 ENDED = (per.Reason.BOUND, per.Reason.CLOSED, per.Reason.EQUILIBRIUM, per.Reason.ASKED)
 
 Trace = Callable[[sym.CompiledSystem, per.Settings], per.Branch]
@@ -134,8 +131,8 @@ def _row(case: Case, system: sym.CompiledSystem, branch: per.Branch, seconds: fl
     found = case.confirm(system, branch)
     if not math.isfinite(found.error):
         outcome, detail = Outcome.UNCONFIRMED, f"neither CVODES nor accuracy fine gets there ({branch.stop})"
-    elif found.wrong(RIGHT):
-        outcome, detail = Outcome.WRONG, f"{found.verdict(RIGHT)} ({branch.stop})"
+    elif not found.right:
+        outcome, detail = Outcome.WRONG, f"{found.verdict} ({branch.stop})"
     strongest = max(branch, key=lambda point: float(abs(point.multipliers[0])))
     weakest = min(branch, key=lambda point: float(abs(point.multipliers[-1])))
     return replace(
