@@ -119,7 +119,7 @@ def test_floor_is_not_large() -> None:
 
 
 def test_wrong_orbits_are_found() -> None:
-    """Assert that an orbit moved by 1e-4 or 1e-3, and multipliers that are another orbit's, are not confirmed."""
+    """Assert that an orbit moved by 1e-4 or more, and multipliers of another orbit, are not confirmed."""
     case = speed.STUDY.cases()[-1]
     system = case.system()
     branch = case.trace(system, replace(SETTINGS, step=per.StepSettings(max_points=3)))
