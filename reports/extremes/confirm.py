@@ -44,6 +44,10 @@ PHASES = np.linspace(0, 2 * np.pi, 512, endpoint=False)
 TOLD = 1e-3
 """Error of the multipliers' sums that no estimate needs to tell; larger ones it must, within NOISE."""
 
+STANDARD = per.Accuracy.STANDARD.settings()
+SLACK = 10.0
+"""How many tolerances, or estimates, a true error may have to count as confirmed."""
+
 MARGINAL = 1e-9
 """Distance of the largest multiplier from the unit circle up to which either stability is right."""
 
@@ -56,24 +60,28 @@ class Checked:
     """True errors, the largest over `count` orbits: of the states over their largest peak to peak, and of the
     sums of the multipliers and of their squares, relative to the largest one where that exceeds 1.
 
-    stable: whether all agree on which orbits are stable. told: whether every orbit's own estimate owns to the
-    error of its multipliers, where that is large.
+    near: whether each error is at most SLACK times the tolerance or the orbit's own estimate. stable: whether
+    all agree on which orbits are stable. told: whether every orbit's own estimate owns to the error of its
+    multipliers, where that is large.
     """
 
     error: float
     multiplier_error: float
+    near: bool
     stable: bool
     count: int
     by: str
     told: bool = True
 
-    def wrong(self, allowed: float) -> bool:
-        """Whether the branch is not what it says."""
-        return not (self.error <= allowed and self.told and self.stable)
+    @property
+    def right(self) -> bool:
+        """Whether the branch is what it says."""
+        return self.near and self.told and self.stable
 
-    def verdict(self, allowed: float) -> str:
+    @property
+    def verdict(self) -> str:
         """Say what is wrong."""
-        if not self.error <= allowed:
+        if not self.near:
             return f"true error {self.error:.1e}"
         if not self.stable:
             return "stability is not confirmed"
@@ -85,6 +93,7 @@ def joined(found: Sequence[Checked]) -> Checked:
     return Checked(
         error=float(np.max([f.error for f in found])),
         multiplier_error=float(np.max([f.multiplier_error for f in found])),
+        near=all(f.near for f in found),
         stable=all(f.stable for f in found),
         told=all(f.told for f in found),
         count=len(found),
@@ -125,7 +134,20 @@ def compared(point: per.Point, error: float, multipliers: Spectrum, by: str) -> 
     told = off <= max(TOLD, NOISE * point.error.multiplier)
     unsure = abs(ours - 1) <= max(point.floor, MARGINAL) or point.label.critical or point.trivial is not None
     stable = unsure or (ours < 1) == (true < 1)
-    return Checked(error=error, multiplier_error=off, stable=stable, count=1, by=by, told=told)
+    return Checked(
+        error=error,
+        multiplier_error=off,
+        near=near(error, point.error.orbit),
+        stable=stable,
+        count=1,
+        by=by,
+        told=told,
+    )
+
+
+def near(error: float, estimate: float = 0.0) -> bool:
+    """Whether a true error is near enough to what was asked for, or to its estimate."""
+    return bool(error <= SLACK * max(STANDARD.mesh.tolerance, estimate))
 
 
 def shot(system: sym.CompiledSystem, orbit: per.Orbit, free: tuple[int, ...]) -> tuple[float, Array]:

@@ -45,10 +45,11 @@ def cases() -> list[Case]:
             system=partial(system, 0.5),
             trace=partial(raised, f),
             way="up from 0.5, at Ω = 1",
+            at_end=True,
             points=800,
         )
         for f in FORCES
-        if f > 0.5
+        if 0.5 < f <= 1e3
     ]
     return [*over, *up]
 

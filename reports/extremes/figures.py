@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from reports.extremes.survey import Outcome, Row
@@ -27,39 +27,41 @@ FLOOR = 1e-16
 """Errors below it are drawn there."""
 
 
+MARKERS = "os^D"
+"""One for each way."""
+
+
 def diagram(study: Study, rows: Sequence[Row]) -> Figure:
-    """Return true errors, estimates and times over the axis, coloured by outcome."""
-    figure, (above, below) = panels(2, 1, width=7.0, height=2.2, sharex=True)
-    for outcome, colour in COLOURS.items():
-        own = [r for r in rows if r.outcome == outcome]
-        if not own:
-            continue
-        values = np.array([r.value for r in own])
-        true = [np.nan if r.error is None else max(r.error, FLOOR) for r in own]
-        told = [np.nan if r.estimate is None else max(r.estimate, FLOOR) for r in own]
-        above.plot(values, true, "o", color=colour)
-        above.plot(values, told, "_", color=colour)
-        below.plot(values, [max(r.seconds, 1e-3) for r in own], "o", color=colour, label=outcome)
-        for row in own:
-            below.axvspan(*_cell(rows, row), color=colour, alpha=0.12, lw=0)
-    positive = all(r.value > 0 for r in rows)
-    above.set(xscale="log" if positive else "symlog", yscale="log", ylabel="true error (o), estimate (-)")
-    if not positive:
-        above.set_xscale("symlog", linthresh=min(abs(r.value) for r in rows if r.value))
-    below.set(yscale="log", ylabel="time (s)")
-    below.set_xlabel(f"{study.quantity} ({study.unit})" if study.unit else study.quantity)
-    below.legend(ncols=6)
+    """Return the map, the true errors (and estimates) and the times over the axis, coloured by outcome."""
+    ways = list(dict.fromkeys(r.way for r in rows))
+    figure, axes = panels(3, 1, width=7.0, height=1.8, sharex=True)
+    places, errors, times = axes
+    for way, marker in zip(ways, MARKERS, strict=False):
+        for row in (r for r in rows if r.way == way):
+            look: dict[str, Any] = {"color": COLOURS[row.outcome], "marker": marker, "linestyle": "none"}
+            places.plot(row.value, ways.index(way), **look | {"marker": "s", "markersize": 10})
+            if row.error is not None and row.estimate is not None:
+                errors.plot(row.value, max(row.error, FLOOR), **look)
+                errors.plot(row.value, max(row.estimate, FLOOR), **look | {"marker": "_"})
+            times.plot(row.value, max(row.seconds, 1e-3), **look)
+    for outcome in (o for o in COLOURS if any(r.outcome == o for r in rows)):
+        times.plot([], [], "s", color=COLOURS[outcome], label=outcome)
+    for way, marker in zip(ways if len(ways) > 1 else (), MARKERS, strict=False):
+        times.plot([], [], marker, color="black", label=way)
+    places.set(yticks=range(len(ways)), yticklabels=ways, ylim=(len(ways) - 0.5, -0.5))
+    errors.set(yscale="log", ylabel="true error (estimate: -)")
+    times.set(yscale="log", ylabel="time (s)")
+    times.set_xlabel(f"{study.quantity} ({study.unit})" if study.unit else study.quantity)
+    _axis(times, [r.value for r in rows])
+    figure.legend(*times.get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
     return figure
 
 
-def _cell(rows: Sequence[Row], row: Row) -> tuple[float, float]:
-    """The part of the axis that is nearest to a row's value."""
-    values = sorted({r.value for r in rows})
-    k = values.index(row.value)
-    low = row.value if k == 0 else _between(values[k - 1], row.value)
-    high = row.value if k == len(values) - 1 else _between(row.value, values[k + 1])
-    return low, high
-
-
-def _between(a: float, b: float) -> float:
-    return float(np.sqrt(a * b)) if a * b > 0 else (a + b) / 2
+def _axis(axes: Axes, values: Sequence[float]) -> None:
+    """Make the axis logarithmic, about 0 where values are not positive."""
+    if min(values) > 0:
+        axes.set_xscale("log")
+        return
+    axes.set_xscale("symlog", linthresh=min(abs(v) for v in values if v), linscale=0.5)
+    if min(values) < 0:
+        axes.set_xticks(values[:: max(1, len(values) // 8)])

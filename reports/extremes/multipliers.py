@@ -9,7 +9,7 @@ import numpy as np
 
 import periodic as per
 import symbolic as sym
-from reports.extremes.confirm import EXACT, MARGINAL, PHASES, Checked, joined
+from reports.extremes.confirm import EXACT, MARGINAL, PHASES, Checked, joined, near
 from reports.extremes.study import Study
 from reports.extremes.survey import Case
 
@@ -55,8 +55,15 @@ def _exact(point: per.Point, damping: float, stiffness: float, roots: np.ndarray
     off = np.abs(np.sort_complex(ours) - np.sort_complex(true)).max() / scale
     largest = float(np.abs(true).max())
     right = abs(largest - 1) < MARGINAL or point.stable == (largest < 1)
+    error = away / point.orbit.span()
     return Checked(
-        error=away / point.orbit.span(), multiplier_error=float(off), stable=bool(right), count=1, by=EXACT
+        error=error,
+        multiplier_error=float(off),
+        near=near(error, point.error.orbit),
+        stable=bool(right),
+        count=1,
+        by=EXACT,
+        told=bool((np.abs(np.sort_complex(ours) - np.sort_complex(true)) <= point.floor).all()),
     )
 
 

@@ -43,6 +43,7 @@ def cases() -> list[Case]:
         Case(
             value=distance,
             way=way,
+            at_end=trace is approached,
             system=partial(system, scale(distance)),
             trace=partial(trace, distance),
             confirm=partial(exact, 0.0, 1.0),

@@ -26,9 +26,6 @@ POINTS = 250
 SECONDS = 15.0
 """Processor time (s) that a branch may take."""
 
-RIGHT = 1e-6
-"""Largest true error of an orbit, and of its multipliers, that counts as confirmed: ten tolerances."""
-
 ENDED = (per.Reason.BOUND, per.Reason.CLOSED, per.Reason.EQUILIBRIUM, per.Reason.ASKED)
 
 Trace = Callable[[sym.CompiledSystem, per.Settings], per.Branch]
@@ -49,7 +46,8 @@ class Outcome(Enum):
 class Case:
     """A cell: its value on the axis, the model, the branch, and how the branch is confirmed.
 
-    way: by which model or path, where an axis has several. name: what stands for both on the page.
+    way: by which model or path, where an axis has several. name: what stands for both on the page. at_end:
+    whether the branch reaches the value only at its end.
     """
 
     value: float
@@ -57,6 +55,7 @@ class Case:
     trace: Trace
     way: str = ""
     name: str = ""
+    at_end: bool = False
     confirm: Callable[[sym.CompiledSystem, per.Branch], Checked] = confirmed
     points: int = POINTS
     seconds: float = SECONDS
@@ -83,6 +82,12 @@ class Row:
     floor: float | None = None
     checked: int = 0
     check: str = ""
+    at_end: bool = False
+
+    @property
+    def well(self) -> bool:
+        """Whether the branch was traced, or was at the value and going on when it was cut short."""
+        return self.outcome == Outcome.TRACED.value or (self.outcome == Outcome.CUT.value and not self.at_end)
 
     def kept(self) -> dict[str, Any]:
         """Return what is kept of it."""
@@ -114,6 +119,7 @@ def _row(case: Case, system: sym.CompiledSystem, branch: per.Branch, seconds: fl
         value=case.value,
         way=case.way,
         name=case.name,
+        at_end=case.at_end,
         outcome=outcome.value,
         detail=detail,
         points=len(branch),
@@ -125,8 +131,8 @@ def _row(case: Case, system: sym.CompiledSystem, branch: per.Branch, seconds: fl
     found = case.confirm(system, branch)
     if not math.isfinite(found.error):
         outcome, detail = Outcome.UNCONFIRMED, f"neither CVODES nor accuracy fine gets there ({branch.stop})"
-    elif found.wrong(RIGHT):
-        outcome, detail = Outcome.WRONG, f"{found.verdict(RIGHT)} ({branch.stop})"
+    elif not found.right:
+        outcome, detail = Outcome.WRONG, f"{found.verdict} ({branch.stop})"
     strongest = max(branch, key=lambda point: float(abs(point.multipliers[0])))
     weakest = min(branch, key=lambda point: float(abs(point.multipliers[-1])))
     return replace(

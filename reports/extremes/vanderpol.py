@@ -11,7 +11,7 @@ import numpy as np
 
 import periodic as per
 import symbolic as sym
-from reports.extremes.confirm import Checked, confirmed
+from reports.extremes.confirm import Checked, confirmed, near
 from reports.extremes.study import Study
 from reports.extremes.survey import Case
 from symbolic.parts.equations import Names
@@ -72,7 +72,8 @@ def confirm(compiled: sym.CompiledSystem, branch: per.Branch) -> Checked:
     if branch[-1].parameter < LARGE:
         return found
     off = abs(2 * np.pi / float(branch.column("omega")[-1]) / period(branch[-1].parameter) - 1)
-    return replace(found, error=max(found.error, off), by=f"{found.by}, asymptotic period")
+    together = found.near and near(off)
+    return replace(found, error=max(found.error, off), near=together, by=f"{found.by}, asymptotic period")
 
 
 def cases() -> list[Case]:
@@ -81,6 +82,7 @@ def cases() -> list[Case]:
         Case(
             value=mu,
             way=form,
+            at_end=True,
             system=partial(system, form, mu),
             trace=partial(traced, form, mu),
             confirm=confirm,

@@ -16,7 +16,9 @@ HEADS = (
 
 def number(value: float) -> str:
     """Return a value as briefly as it can be said: 810, 1e6, 1e-9."""
-    return re.sub(r"e([+-])0?(\d)", lambda m: f"e{'-' if m[1] == '-' else ''}{m[2]}", f"{value:.6g}")
+    short = f"{value:.0e}" if f"{value:.5e}" == f"{value:.0e}".replace("e", ".00000e") else f"{value:.6g}"
+    text = short if abs(value) >= 1e4 or 0 < abs(value) < 1e-3 else f"{value:.6g}"
+    return re.sub(r"e([+-])0?(\d)", lambda m: f"e{'-' if m[1] == '-' else ''}{m[2]}", text)
 
 
 def error(value: float | None) -> str:
@@ -78,7 +80,7 @@ def _run(rows: Sequence[Row]) -> str:
     best: list[Row] = []
     run: list[Row] = []
     for row in rows:
-        run = [*run, row] if row.outcome in (Outcome.TRACED.value, Outcome.CUT.value) else []
+        run = [*run, row] if row.well else []
         best = max(best, run, key=len)
     values = [number(r.value) for r in best]
     return " to ".join(dict.fromkeys([*values[:1], *values[-1:]])) or "none"
