@@ -22,4 +22,6 @@ def summary(said: Said) -> str:
     return table(heads, rows) if rows else ""
 
 
-REPORT = Report(name="trade", sections=(*ORBITS, "branches", "chainbranch", "parts", "aims"), summary=summary)
+SECTIONS = (*ORBITS, "branches", "chainbranch", "dial", "parts", "aims")
+
+REPORT = Report(name="trade", sections=SECTIONS, summary=summary)
