@@ -22,8 +22,8 @@ from periodic.system import System
 LEAST_SPAN = 1e-6
 """Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
 
-APART = 2.0
-"""How much less accurate a single multiplier may be than the sums that its error is estimated from."""
+SAFETY = 3.0
+"""How much smaller than a tolerance error estimates are to be, which beside kinks are not just right."""
 
 SMALL = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
@@ -45,12 +45,12 @@ class ErrorEstimate:
     @property
     def motion(self) -> float:
         """What is held against the tolerance but for the multipliers."""
-        return max(self.orbit, self.parameter)
+        return SAFETY * max(self.orbit, self.parameter)
 
     @property
     def worst(self) -> float:
         """What is held against the tolerance."""
-        return max(self.motion, APART * self.multiplier)
+        return max(self.motion, SAFETY * self.multiplier)
 
 
 UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)

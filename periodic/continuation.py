@@ -32,7 +32,6 @@ from periodic.solve import (
     difference,
     is_settled,
     on_plane,
-    parameter_direction,
     predict,
     remesh,
     repeats,
@@ -151,16 +150,15 @@ class Run:
         task, c = self.task, checkpoint
         self.stop, last = None, points[-1].orbit
         begun = self._first(start, float(c.sign))
-        direction = replace(parameter_direction(last, task.metric), profile=c.profile, parameter=c.slope)
-        again = on_plane(task, last, Plane(last, direction, 0.0, task.metric, task.index))
+        again = on_plane(task, last, Plane(last, c.tangent, 0.0, task.metric, task.index))
         for found in (begun, again):
             if isinstance(found, Outcome):
                 self.stop = Stop.no_start(found.value)
                 return
         assert isinstance(begun, Solved) and isinstance(again, Solved)
         # Newton has moved it by rounding; what follows shall be just what would have followed.
-        tangent = replace(again.tangent, profile=c.profile, parameter=c.slope)
-        again = replace(again, correction=replace(again.correction, orbit=last), tangent=tangent)
+        correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
+        again = replace(again, correction=correction, tangent=c.tangent)
         self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
         self._since_remesh, self._count = c.since_remesh, dict(c.met)
         yield from self._onward(self._prepared(again) if c.steps else again)
@@ -171,10 +169,9 @@ class Run:
         s = self.state
         if s is None:
             return self.ended
-        tangent = s.last.tangent
         done = self.stop is not None and not self.stop.reason.resumable
         numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)
-        return Checkpoint(s.sign, tangent.profile, tangent.parameter, *numbers)
+        return Checkpoint(s.sign, s.last.tangent, s.last.correction.fundamental, *numbers)
 
     def _onward(self, base: Solved) -> Iterator[Point]:
         """Take steps from a base, which is the last solution on a mesh for the next one."""

@@ -81,7 +81,7 @@ LEAST, MOST = 1e-11, 1e-2
 DEEPEST = 0.1
 """Shallowest switch level worth an anchor, in tolerances."""
 
-CLOSE = 1e-2
+CLOSE = 1e-4
 """How much closer to an orbit than a tolerance its multipliers are computed."""
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}

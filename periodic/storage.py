@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import math
 import os
 from dataclasses import fields
 from pathlib import Path
@@ -21,6 +22,7 @@ import xarray as xr
 from periodic.accuracy import ErrorEstimate
 from periodic.branch import Branch, BranchFileError, Layout, Quantity
 from periodic.checkpoint import Checkpoint
+from periodic.closure import Direction
 from periodic.fourier import SAMPLES, FourierOrbit
 from periodic.label import Label
 from periodic.mesh import Anchor, Mesh
@@ -160,9 +162,8 @@ def tables(branch: Branch) -> Tables:
         ("point", "parameter"),
         _table([p.orbit.parameter for p in points], len(branch.layout.parameters)),
     )
-    profiles = [c.profile for c in branch.checkpoints]
-    data["checkpoint_nodes"] = (("checkpoint",), np.array([len(p) for p in profiles], dtype=int))
-    data["checkpoint_profile"] = (("checkpoint_node", "state"), _joined(profiles, (states,)))
+    values = [part.ravel() for c in branch.checkpoints for part in _parts(c)]
+    data["checkpoint_values"] = (("checkpoint_value",), _joined(values, ()))
     _add_orbits(data, branch)
     return data
 
@@ -221,9 +222,20 @@ def attributes(branch: Branch) -> dict[str, Any]:
     }
 
 
+ARRAYS = ("nodes", "stages", "algebraic", "phases", "profile", "others")
+"""Those of a tangent."""
+
+
+def _parts(checkpoint: Checkpoint) -> list[np.ndarray]:
+    """The arrays of a checkpoint."""
+    return [*(getattr(checkpoint.tangent, name) for name in ARRAYS), checkpoint.fundamental]
+
+
 def _progress(checkpoint: Checkpoint) -> dict[str, Any]:
-    """A checkpoint without its profile."""
-    return {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint) if f.name != "profile"}
+    """A checkpoint without its arrays, but with their shapes."""
+    plain = {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint)}
+    del plain["tangent"], plain["fundamental"]
+    return {**plain, "slope": checkpoint.tangent.parameter, "shapes": [a.shape for a in _parts(checkpoint)]}
 
 
 def branch_of(data: xr.Dataset) -> Branch:
@@ -247,9 +259,15 @@ def branch_of(data: xr.Dataset) -> Branch:
 
 
 def _checkpoints(data: xr.Dataset) -> tuple[Checkpoint, ...]:
-    profiles = np.split(data["checkpoint_profile"].values, np.cumsum(data["checkpoint_nodes"].values)[:-1])
-    numbers = json.loads(data.attrs["checkpoints"])
-    return tuple(Checkpoint(profile=p, **n) for n, p in zip(numbers, profiles, strict=False))
+    values, found = data["checkpoint_values"].values, []
+    for numbers in json.loads(data.attrs["checkpoints"]):
+        shapes, arrays = numbers.pop("shapes"), []
+        for shape in shapes:
+            arrays.append(values[: math.prod(shape)].reshape(shape))
+            values = values[math.prod(shape) :]
+        tangent = Direction(**dict(zip(ARRAYS, arrays[:-1], strict=True)), parameter=numbers.pop("slope"))
+        found.append(Checkpoint(tangent=tangent, fundamental=arrays[-1], **numbers))
+    return tuple(found)
 
 
 def _stop(pair: list[str]) -> Stop:

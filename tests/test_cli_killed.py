@@ -16,7 +16,7 @@ from traces import DUFFING_A, duffing_system
 import periodic as per
 from reports.cli import main
 
-ARGUMENTS = ("trace", "vitrea79-810N", "--to", "200")
+ARGUMENTS = ("trace", "vitrea79-810N", "--to", "200", "--accuracy", "fine")
 
 
 @pytest.fixture(scope="module")

@@ -161,7 +161,7 @@ class Kept:
 
 def references(problem: Problem) -> tuple[float, per.Branch]:
     """Return the tolerance of the tightest branch that reaches its end, and the branch."""
-    for tol in (TIGHTEST, 10 * TIGHTEST):
+    for tol in (TIGHTEST, 10 * TIGHTEST, 100 * TIGHTEST):
         found = problem.traced(tol)
         if found.stop.reason is per.Reason.BOUND:
             break
