@@ -217,7 +217,8 @@ def _value(task: Task, solved: Solved) -> float:
 def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]:
     """Locate where a test function changes sign within a step, if it does.
 
-    Raises RejectedError where it vanishes at the step's end, though not just before.
+    Raises RejectedError where it vanishes at the step's end, having fallen to it; it is also 0 where it is
+    not known.
     """
     base = stretch.base
 
@@ -227,7 +228,7 @@ def _where(stretch: _Stretch, new: Solved, ds: float, test: Test) -> list[Found]
     ends = [value(solved) for solved in (base, new)]
     if ends[0] * ends[1] < 0:
         return _located(stretch, (0.0, ds), ds, test)
-    if ends[0] != 0 and ends[1] == 0 and value(stretch.at(SHORTER * ds)) != 0:
+    if ends[0] != 0 and ends[1] == 0 and 0 < value(stretch.at(SHORTER * ds)) / ends[0] < LEFT:
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not test.twice(base, new):
         return []

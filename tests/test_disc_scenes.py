@@ -46,8 +46,8 @@ each_speed = pytest.mark.parametrize(
 
 
 def branch_of(scene: str) -> per.Branch:
-    """The branch from 500 to 100 rev/min at standard accuracy."""
-    return disc(scene, at=SPEEDS[scene])
+    """The branch from 500 to 100 rev/min to 1e-8."""
+    return disc(scene, 1e-8, at=SPEEDS[scene])
 
 
 @each_scene

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from traces import duffing, fold_speeds
+from traces import FINE, duffing, fold_speeds
 
 import periodic as per
 import symbolic as sym
@@ -57,8 +57,8 @@ def test_forced_equations_are_the_mechanical_model() -> None:
             frequency="Omega",
         )
     )
-    branch = per.trace(system, "Omega", (0.3, 3.0))
-    assert fold_speeds(branch) == pytest.approx(fold_speeds(duffing()), rel=1e-9)
+    branch = per.trace(system, "Omega", (0.3, 3.0), accuracy=FINE)
+    assert fold_speeds(branch) == pytest.approx(fold_speeds(duffing(accuracy=FINE)), rel=1e-9)
 
 
 def test_sine_of_the_excitation() -> None:

@@ -31,10 +31,10 @@ def test_no_more_is_spent(iterations: int) -> None:
 def test_goes_on_with_more() -> None:
     """Assert that a branch that spent all it was allowed, again and again, ends as one that was not cut."""
     options, expected = duffing_options(), whole("duffing")
-    branch = per.trace(**options, settings=allowed(300))
+    branch = per.trace(**options, settings=allowed(100))
     parts = [len(branch)]
     while branch.stop.reason is per.Reason.MAX_NEWTON and len(parts) < 40:
-        branch = per.trace(**options, settings=allowed(301), resume=branch)
+        branch = per.trace(**options, settings=allowed(101), resume=branch)
         parts.append(len(branch))
     assert len(parts) > 2 and parts == sorted(parts)
     assert branch.values == pytest.approx(expected.values, rel=1e-11)

@@ -52,9 +52,9 @@ def test_motion() -> None:
 
 def test_orbits() -> None:
     """Assert that the periodic orbits and their multipliers are the same, down to where contact is lost."""
-    at = SPEEDS[1:3]
+    at, ends = SPEEDS[1:3], (290 * RPM, 500 * RPM)
     branches = [
-        per.trace(disc_system(s), "speed", (290 * RPM, 500 * RPM), start=500 * RPM, at=[v * RPM for v in at])
+        per.trace(disc_system(s), "speed", ends, start=500 * RPM, at=[v * RPM for v in at], tol=1e-8)
         for s in (THIRD, THREE)
     ]
     assert [branch.stop.reason for branch in branches] == [per.Reason.BOUND] * 2
