@@ -41,8 +41,6 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
 def _told(view: View, point: Point) -> dict[str, Any]:
     told: dict[str, Any] = {column.name: column.value(point) for column in view.told}
     told["multipliers"] = [[float(m.real), float(m.imag)] for m in point.multipliers]
-    if not point.equilibrium:
-        told["multiplier_floor"] = point.floor
     return told
 
 

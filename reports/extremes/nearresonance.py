@@ -62,6 +62,10 @@ STUDY = Study(
     lead="""\
 x'' + x = cos Ωt without any damping: x = cos Ωt/(1 - Ω²), and both multipliers lie within 2π (1 - Ω) of 1.
 A branch is approached from Ω = 0.7 or begun at 1 - Ω, with x in metres or in units of its own amplitude.""",
+    remark="""\
+An orbit of 1 - Ω moves by the rounding of Ω over 1 - Ω: at 1e-10 no method can hold it to 1e-7. From rest
+in metres Newton's method, which never changes a state by more than 2 of its units at a time, does not get
+to an amplitude of 50: give such a coordinate a scale (`symbolic.coordinate("x", scale=...)`).""",
     quick=(1e-2,),
 )
 section = STUDY.section
