@@ -24,7 +24,7 @@ class MeshSettings:
     @property
     def shortest(self) -> float:
         """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
-        return 0.05 * self.tolerance
+        return 0.005 * self.tolerance
 
     def __post_init__(self) -> None:
         if not 1e-13 <= self.tolerance <= 1e-1:
