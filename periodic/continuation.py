@@ -128,7 +128,8 @@ class Run:
         task = self.task
         base = self._first(start, float(sign))
         if isinstance(base, Outcome):
-            self.stop = Stop.no_start(self._shortfall or base.value)
+            beyond = self._shortfall
+            self.stop = Stop.inaccurate(beyond) if beyond else Stop.no_start(base.value)
             return
         if base.error.motion > task.settings.mesh.tolerance:
             self.stop = Stop.inaccurate(task.method.shortfall(task, base))
@@ -206,7 +207,7 @@ class Run:
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond, step = isinstance(rejected, BeyondError), self.task.settings.step
-                if ds < (max(step.ds_min, NEARLY * step.ds) if beyond else step.ds_min):
+                if not ds >= (max(step.ds_min, NEARLY * step.ds) if beyond else step.ds_min):
                     return Stop.inaccurate(str(rejected)) if beyond else Stop.small_step(str(rejected))
 
     def _met(self, special: Found) -> Iterator[Point]:

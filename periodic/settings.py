@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+import numpy as np
+
 from periodic.anchors import AnchorSettings
 from periodic.newton import NewtonSettings
 from periodic.scheme import Family, Scheme
@@ -40,9 +42,9 @@ class MeshSettings:
 class StepSettings:
     """Arclength steps, as parts of the parameter's range; `turn` is the least cosine between tangents.
 
-    A step is tried at log2(ds_max / ds_min) + 1 lengths at most, each on a few meshes, each with at most
+    A step is tried at 10 ln(ds_max / ds_min) lengths at most, each on a few meshes, each with at most
     NewtonSettings.max_iterations. max_points bounds the steps in each direction; max_newton, up to one
-    correction, the Newton iterations of the whole trace, those for rejected steps and for the first orbit
+    correction, the Newton iterations of one call, those for rejected steps and for the first orbit
     included. One costs a linear solve on about MeshSettings.ntst_max intervals at most.
     """
 
@@ -60,10 +62,13 @@ class StepSettings:
             )
         if not 0 < self.turn < 1:
             raise ValueError(f"turn is {self.turn}; it must lie between 0 and 1")
-        if self.max_points < 1:
-            raise ValueError(f"max_points is {self.max_points}; it must be at least 1")
-        if not self.max_newton >= 1:
-            raise ValueError(f"max_newton is {self.max_newton}; it must be at least 1")
+        for name in ("max_points", "max_newton"):
+            count = getattr(self, name)
+            if isinstance(count, bool) or not isinstance(count, int | np.integer):
+                raise ValueError(f"{name} is {count!r}; it must be a whole number")
+            if count < 1:
+                raise ValueError(f"{name} is {count}; it must be at least 1")
+            object.__setattr__(self, name, int(count))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,6 +98,9 @@ def settings(tol: float, step: StepSettings | None = None) -> Settings:
 
     Raises ValueError unless 1e-11 <= tol <= 1e-2.
     """
+    if isinstance(tol, bool) or not isinstance(tol, int | float | np.number):
+        raise ValueError(f"tol is {tol!r}; it must be a number between {LEAST:g} and {MOST:g}")
+    tol = float(tol)
     if not LEAST <= tol <= MOST:
         raise ValueError(f"tol is {tol}; it must lie between {LEAST:g} and {MOST:g}")
     increment = max(1e-2 * tol, 1e-10) ** 0.75

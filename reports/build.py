@@ -27,10 +27,9 @@ def _kernels() -> sym.Kernels:
     given = os.environ.get(VARIABLE)
     try:
         return chosen(given)
-    except CompilerError:
-        raise InputError(
-            VARIABLE, f"is {shown(given)}", "it needs a C compiler, and none was found"
-        ) from None
+    except CompilerError as error:
+        why = " ".join(str(error).split())[:150]
+        raise InputError(VARIABLE, f"is {shown(given)}", f"it needs a working C compiler ({why})") from None
     except ValueError:
         raise refused(VARIABLE, given, listed([shown(k.value) for k in sym.Kernels])) from None
 

@@ -37,6 +37,10 @@ _Address = ctypes.c_char * 0
 _FLOAT = np.dtype(float)
 
 
+PROBE = "int probe;\n"
+"""A source that every working compiler takes."""
+
+
 class Kernels(Enum):
     """The back end of a system's kernels."""
 
@@ -48,15 +52,17 @@ class Kernels(Enum):
 def chosen(kernels: Kernels | str | None) -> Kernels:
     """Return the choice made, by default the environment's ORBITRACE_KERNELS, by default AUTO.
 
-    Raises ValueError for another word, symbolic.native.CompilerError for C without a compiler.
+    Raises ValueError for another word, symbolic.native.CompilerError for C without a
+    working compiler.
     """
-    where, value = ("kernels", kernels) if kernels is not None else (VARIABLE, os.environ.get(VARIABLE))
+    given = (os.environ.get(VARIABLE) or "auto").strip()
+    where, value = ("kernels", kernels) if kernels is not None else (VARIABLE, given)
     try:
-        found = Kernels(value or "auto")
+        found = Kernels(value)
     except ValueError:
         raise ValueError(f"{where} is {value!r}; it must be auto, numpy or c") from None
-    if found is Kernels.C and native.compiler() is None:
-        raise native.CompilerError(native.NONE)
+    if found is Kernels.C:
+        native.library(PROBE)
     return found
 
 

@@ -82,10 +82,15 @@ def forget() -> None:
 def compiler() -> tuple[tuple[str, ...], str] | None:
     """Return the C compiler's command and version, or None without a compiler.
 
-    The environment's CC, then cc, gcc, clang, then the one that Python was built with.
+    The environment's CC if it names one, else cc, gcc, clang or the one that Python was built with.
     """
-    names = (os.environ.get("CC"), "cc", "gcc", "clang", sysconfig.get_config_var("CC"))
-    for command in (shlex.split(name) for name in names if name):
+    asked_for = os.environ.get("CC")
+    names = (asked_for,) if asked_for else ("cc", "gcc", "clang", sysconfig.get_config_var("CC"))
+    for name in filter(None, names):
+        try:
+            command = shlex.split(name)
+        except ValueError:  # a quotation that does not end
+            continue
         if not command or shutil.which(command[0]) is None:
             continue
         asked = [*command, "--version"]

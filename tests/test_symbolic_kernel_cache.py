@@ -208,7 +208,8 @@ def test_command_line_names_the_variable(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setenv("ORBITRACE_KERNELS", "c")
     no_compiler(monkeypatch, tmp_path)
     with pytest.raises(
-        InputError, match='^ORBITRACE_KERNELS is "c"; it needs a C compiler, and none was found$'
+        InputError,
+        match='^ORBITRACE_KERNELS is "c"; it needs a working C compiler .no C compiler was found',
     ):
         build(load("duffing"))
 
@@ -282,7 +283,9 @@ def test_processes_at_once(cache: Path) -> None:
     assert len(set(answers)) == 1 and answers[0]
     files = list(cache.iterdir())
     assert {file.suffix for file in files} == {".so"}
-    assert len({file.name.partition("-")[0] for file in files}) == 1
+    assert (
+        len({file.name.partition("-")[0] for file in files}) == 2
+    )  # the kernel, and what tries the compiler
 
 
 def test_choice_is_the_programs_then_the_environments(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from reports.bench.suite import COUNTS, NTST
 from reports.pages.report import FIGURES, KEPT, PAGE
-from reports.trade import aims, cases, duffing, grazing, lost, names, page, parts, smooth
+from reports.trade import aims, cases, dial, dialled, duffing, grazing, lost, names, page, parts, smooth
 from reports.trade.measure import Measured
 from reports.trade.page import ORBITS, REPORT
 from reports.trade.whole import accuracies
@@ -74,6 +74,11 @@ def test_text_is_fresh(name: str) -> None:
         return
     if name == "aims":
         assert aims.text([aims.Result(**row) for row in said["rows"]]) == said["text"]
+        return
+    if name == "dial":
+        rows = [dialled.Kept(**row) for row in said["rows"]]
+        assert dial.told(rows, said["numbers"]) == said["text"]
+        assert dial.summed(rows) == pytest.approx(said["numbers"])
         return
     text = module.STUDY.text if name in ORBITS else module.text
     assert text(kept(name), said["numbers"]) == said["text"]

@@ -32,6 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
     except RecordError as error:
         print(error, file=sys.stderr)
         return 2
+    asked.out.mkdir(parents=True, exist_ok=True)
     load, results, skipped = os.getloadavg()[0], dict[str, Numbers](), dict[str, str]()
     with threadpool_limits(limits=1, user_api="blas"):
         for benchmark in chosen:

@@ -53,15 +53,31 @@ def traced(module: str, package: str, *arguments: str) -> Numbers:
 @cache
 def version(package: str) -> str:
     """Return the version of a package under the peers' Python."""
-    done = _run(f"from importlib.metadata import version; print(version({package!r}))")
+    try:
+        done = _run(f"from importlib.metadata import version; print(version({package!r}))")
+    except MissingError:
+        return "not installed"
     return "not installed" if done.returncode else done.stdout.strip()
+
+
+PATIENCE = 600
+"""Seconds that another tool may take."""
 
 
 def _run(code: str) -> subprocess.CompletedProcess[str]:
     python = os.environ.get(PYTHON) or sys.executable
-    return subprocess.run(
-        [python, "-c", code], capture_output=True, text=True, env=os.environ | ONE_THREAD, check=False
-    )
+    environment = os.environ | ONE_THREAD
+    try:
+        return subprocess.run(
+            [python, "-c", code],
+            capture_output=True,
+            text=True,
+            env=environment,
+            check=False,
+            timeout=PATIENCE,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise MissingError(f"{python} does not run it ({type(error).__name__})") from error
 
 
 def _auto(ntst: int, most: int = 1000, how: str = "transpiled") -> partial[Numbers]:

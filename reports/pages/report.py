@@ -46,11 +46,11 @@ class Report:
             writable(place)
         allowed = "it must be a directory for this report alone"
         page, begin = folder / PAGE, self.introduction()[:40]
-        if page.exists() and not (page.is_file() and page.read_text("utf-8").startswith(begin)):
+        if page.exists() and not (page.is_file() and page.read_bytes().startswith(begin.encode())):
             raise InputError("--out", f'is "{folder}", whose {PAGE} is not a page of this report', allowed)
         try:
             self.assembled(folder)
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
             raise InputError("--out", f'is "{folder}", whose {KEPT} are damaged', allowed) from error
         return folder
 

@@ -22,6 +22,9 @@ from periodic.scheme import Array
 from periodic.solve import Solved, Task, at_parameter, remesh, settle
 from reports.trade.problems import Problem, nearby
 
+INTERPOLATED = 30.0
+"""By how much an orbit may miss a tolerance between mesh points: of shooting those are only interpolated."""
+
 NEWTON = per.NewtonSettings(tolerance=1e-8, max_iterations=16)
 """The last step is smaller; what it leaves is of the order of its square."""
 
@@ -86,7 +89,7 @@ class Adaptive:
     def _accurate(self, task: Task, solved: Solved | Outcome) -> Solved:
         if isinstance(solved, Outcome):
             raise FailedError(solved.value)
-        if solved.error.orbit > self.settings.mesh.tolerance:
+        if solved.error.orbit > INTERPOLATED * self.settings.mesh.tolerance:
             raise FailedError(self.method.shortfall(task, solved))
         return solved
 
@@ -106,7 +109,7 @@ def neighbour(way: Adaptive, problem: Problem) -> per.Orbit:
     task, orbit = way._task(problem), nearby(problem)
     guess = way.method.adopted(problem.system, task.settings.mesh, orbit, orbit.parameter)
     solved = way._accurate(task, settle(task, at_parameter(task, guess, 1.0), fixed=True))
-    limit = way.settings.mesh.tolerance
+    limit = INTERPOLATED * way.settings.mesh.tolerance
     for _ in range(SLIMMING):
         slimmer = remesh(task, solved, fixed=True)
         if isinstance(slimmer, Outcome) or slimmer.error.orbit > limit or not slimmer.anchored:
