@@ -285,7 +285,7 @@ def test_processes_at_once(cache: Path) -> None:
     assert {file.suffix for file in files} == {".so"}
     assert (
         len({file.name.partition("-")[0] for file in files}) == 2
-    )  # the kernel, and what tries the compiler
+    )  # with the probe
 
 
 def test_choice_is_the_programs_then_the_environments(monkeypatch: pytest.MonkeyPatch) -> None:

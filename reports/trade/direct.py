@@ -22,7 +22,7 @@ from periodic.scheme import Array
 from periodic.solve import Solved, Task, at_parameter, remesh, settle
 from reports.trade.problems import Problem, nearby
 
-INTERPOLATED = 30.0
+INTERPOLATED = 100.0
 """By how much an orbit may miss a tolerance between mesh points: of shooting those are only interpolated."""
 
 NEWTON = per.NewtonSettings(tolerance=1e-8, max_iterations=16)
