@@ -283,9 +283,7 @@ def test_processes_at_once(cache: Path) -> None:
     assert len(set(answers)) == 1 and answers[0]
     files = list(cache.iterdir())
     assert {file.suffix for file in files} == {".so"}
-    assert (
-        len({file.name.partition("-")[0] for file in files}) == 2
-    )  # with the probe
+    assert len({file.name.partition("-")[0] for file in files}) == 2  # with the probe
 
 
 def test_choice_is_the_programs_then_the_environments(monkeypatch: pytest.MonkeyPatch) -> None:
