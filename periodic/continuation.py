@@ -339,6 +339,8 @@ class Run:
             new, strain = self._attempt(base, ds)
             if new.error.worst <= tolerance:
                 return base, new, strain
+            if self._collapsed(base.orbit, new):
+                raise RejectedError("the orbit shrinks to nothing in one step")
             mesh = task.method.mesh_for(task, new)
             if left == 0 or mesh.matches(base.orbit.mesh):
                 break

@@ -215,15 +215,15 @@ def sizes(
 ) -> tuple[float, float]:
     """Largest relative increment, for the convergence test and for damping.
 
-    States count relative to the largest where that exceeds 1. For convergence the unknowns count with their
-    square: that is what the last step leaves of them, and rounding in the rates of very short intervals keeps
-    their own increments from falling further. For damping they count the less in short intervals, over whose
-    width they hardly act on the states. Free parameters count relative to their values, or where these are
-    about zero to what changes the states by
+    States count relative to the largest peak to peak where that exceeds 1. For convergence the unknowns
+    count with their square: that is what the last step leaves of them, and rounding in the rates of very
+    short intervals keeps their own increments from falling further. For damping they count the less in short
+    intervals, over whose width they hardly act on the states. Free parameters count relative to their values,
+    or where these are about zero to what changes the states by
     NEGLIGIBLE, at most the `nominal` value; effect (q,) is the states' change with each of y.
     """
     k = len(orbit.phases)
-    large = max(1.0, np.abs(orbit.nodes).max())
+    large = max(1.0, orbit.span())
     sizes = [np.abs(nodes).max() / large, np.abs(stages).max() / large, np.abs(outer[:k]).max(initial=0.0)]
     chosen = list(free)
     least = np.minimum(NEGLIGIBLE / np.maximum(effect[k:], 1e-300), np.maximum(np.abs(nominal[chosen]), TINY))
