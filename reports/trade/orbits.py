@@ -19,7 +19,7 @@ Solver = Callable[[Problem], Correction]
 TIGHT = Adaptive(per.Collocation(), settings_for(1e-11, per.Scheme(per.Family.RADAU, 7))).solve
 """Collocation of the 13th order, anchored."""
 
-SHOT = Adaptive(per.Shooting(tolerance=1e-12), settings_for(1e-8, per.Scheme(per.Family.RADAU, 6))).solve
+SHOT = Adaptive(per.Shooting(tolerance=1e-12), settings_for(1e-6, per.Scheme(per.Family.RADAU, 6))).solve
 """Shooting with CVODES at its tightest; its mesh points are the integrator's own."""
 
 
