@@ -23,7 +23,6 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
-import xarray as xr
 
 from periodic import storage
 from periodic.branch import Branch, BranchFileError
@@ -183,4 +182,6 @@ def _unpacked(payload: bytes) -> Branch:
     with np.load(io.BytesIO(payload), allow_pickle=False) as arrays:
         said: dict[str, Any] = json.loads(arrays["said"].tobytes())
         tables = {name: (tuple(dims), arrays[name]) for name, dims in said["dimensions"].items()}
+    import xarray as xr  # takes longer to import than all else
+
     return storage.branch_of(xr.Dataset(tables, attrs=said["attributes"]))
