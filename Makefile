@@ -4,25 +4,38 @@ PYTHONS ?= python3 python3.13 python3.12 python3.11
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
 
+ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+# A worker for each core, with one thread; the tests of a file share branches, so they stay together.
+PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+# Processor times, medians; the record goes to .benchmarks/.
+BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
+  --benchmark-sort=name --benchmark-columns=median,iqr,rounds
+
 .DEFAULT_GOAL := help
-.PHONY: help run test long bench lint types wheel clean
+.PHONY: help run test kernels long bench report-paper report-trade report-extremes lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
 help: ## Show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-6s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z -]+:.*## / { gsub(" ", ", ", $$1); printf "make %-7s %s\n", $$1, $$2 }' Makefile
 
 run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
 test: $(VENV)/.installed-dev ## Run the tests
-	$(BIN)/python -m pytest
+	$(PYTEST)
+
+kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
+	ORBITRACE_KERNELS=c $(PYTEST) tests/periodic tests/problems
 
 long: $(VENV)/.installed-dev ## Run the long studies
-	$(BIN)/python -m pytest -m long
+	$(PYTEST) -m long
 
-bench: $(VENV)/.installed ## Run the benchmarks, compare with the last record
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m reports.bench
+bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
+	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
+
+report-paper report-trade report-extremes: $(VENV)/.installed-dev ## Compute the page of a study anew
+	$(BIN)/python -m reports.studies.$(@:report-%=%)
 
 lint: $(VENV)/.installed-dev ## Check style and formatting
 	$(BIN)/ruff check .
@@ -31,12 +44,16 @@ lint: $(VENV)/.installed-dev ## Check style and formatting
 types: $(VENV)/.installed-dev ## Check the type hints
 	$(BIN)/mypy
 
+layers: $(VENV)/.installed-dev ## Check which packages and rooms import which
+	$(BIN)/lint-imports --no-logo
+
 wheel: $(VENV)/.installed ## Build the wheel into dist/
 	$(BIN)/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
+	@du -h --apparent-size dist/*.whl
 
 # Only the default environment: a VENV from outside may hold more than this project.
 clean: ## Remove the environment, caches and builds
-	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 	find symbolic periodic reports tests -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.installed: pyproject.toml | $(BIN)/pip

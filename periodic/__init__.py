@@ -1,94 +1,124 @@
-"""What a periodic orbit is: collocation, continuation, stability. Knows only the `System` protocol."""
+"""Periodic orbits: collocation, continuation, stability, special points. Knows only the `System` protocol."""
 
-from periodic.branch import Branch, BranchFileError
-from periodic.closure import Conservative, PhaseCondition
-from periodic.conditions import Level, Peak
-from periodic.continuation import Run
-from periodic.curves import DoublingCondition, FoldCondition, TorusCondition
-from periodic.equilibria import equilibria
-from periodic.functionals import (
-    Amplitude,
-    Component,
-    Maximum,
-    Minimum,
-    Multiplier,
-    PeakToPeak,
-    PhaseLag,
-    Value,
-    mean,
-)
-from periodic.journal import JournalError, recovered
-from periodic.label import Label
-from periodic.measure import extrema, outputs
-from periodic.methods.collocation import Collocation
-from periodic.methods.harmonic import HarmonicBalance
-from periodic.methods.shooting import Shooting
-from periodic.newton import NewtonSettings
-from periodic.normalform import first_lyapunov
-from periodic.onset import eigenvalues, hopf, mode
-from periodic.orbit import Orbit
-from periodic.plotting import plot
-from periodic.point import Point
-from periodic.sampling import sampled
-from periodic.scheme import Family, Scheme
-from periodic.sensitivity import sensitivities
-from periodic.settings import Accuracy, MeshSettings, Settings, StepSettings
-from periodic.stop import Reason, Stop
-from periodic.switching import SwitchError, branched, doubled
+from importlib.metadata import version
+
+from periodic.bifurcations.hopf import eigenvalues, hopf, mode
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.normalform import first_lyapunov
+from periodic.bifurcations.switching import SwitchError, branched, doubled
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.collocation.kinks import KinkSettings
+from periodic.collocation.method import Collocation
+from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
+from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
+from periodic.conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
+from periodic.conditions.levels import Level, Peak
+from periodic.conditions.phase import Conservative, PhaseCondition
+from periodic.conditions.sensitivity import sensitivities
+from periodic.correction.condition import Condition, Given, SideCondition
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.newton import NewtonSettings
+from periodic.correction.problem import Problem
+from periodic.correction.solution import Solution
+from periodic.correction.tolerance import Accuracy, Tolerance
+from periodic.equilibrium.method import Equilibrium
+from periodic.harmonic.method import HarmonicBalance
+from periodic.linear.operator import Operator
+from periodic.linear.unknowns import Increment, Unknowns
+from periodic.orbit.extrema import extrema, outputs
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.sampling import sampled
+from periodic.orbit.scheme import Family, Scheme
+from periodic.results.branch import Branch
+from periodic.results.journal import JournalError, recovered
+from periodic.results.netcdf import BranchFileError
+from periodic.results.plots import plot
+from periodic.results.point import Point
+from periodic.results.stop import Reason, Stop
+from periodic.shooting.method import Shooting
 from periodic.system import System
-from periodic.tracing import ResumeError, trace
+from periodic.tracing.continuation import Continuation
+from periodic.tracing.equilibria import equilibria
+from periodic.tracing.resumption import Interrupted, ResumeError
+from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.trace import continuation, trace
+from periodic.tracing.watch import Watch
 
 __all__ = [
+    "__version__",
     "Accuracy",
     "Amplitude",
+    "ArclengthControl",
+    "Branch",
+    "BranchFileError",
+    "Collocation",
     "Component",
+    "Condition",
+    "Conservative",
+    "Continuation",
+    "Discretisation",
     "DoublingCondition",
+    "Equilibrium",
+    "Family",
     "FoldCondition",
+    "Given",
+    "HarmonicBalance",
+    "Increment",
+    "Interrupted",
+    "JournalError",
+    "KinkSettings",
+    "Label",
     "Level",
     "Maximum",
     "Minimum",
     "Multiplier",
+    "NewtonSettings",
+    "Operator",
+    "Orbit",
     "Peak",
     "PeakToPeak",
-    "PhaseLag",
-    "TorusCondition",
-    "Value",
-    "mean",
-    "sensitivities",
-    "Branch",
-    "BranchFileError",
-    "Collocation",
-    "Conservative",
-    "Family",
-    "HarmonicBalance",
-    "JournalError",
-    "Label",
-    "MeshSettings",
-    "NewtonSettings",
-    "Orbit",
     "PhaseCondition",
+    "PhaseLag",
     "Point",
+    "Problem",
     "Reason",
     "ResumeError",
-    "Run",
+    "Row",
     "Scheme",
-    "Settings",
     "Shooting",
-    "StepSettings",
+    "SideCondition",
+    "Solution",
     "Stop",
     "SwitchError",
     "System",
+    "TestFunction",
+    "Tolerance",
+    "TorusCondition",
+    "Unknowns",
+    "Value",
+    "Watch",
     "branched",
+    "continuation",
     "doubled",
     "eigenvalues",
     "equilibria",
     "extrema",
     "first_lyapunov",
     "hopf",
+    "mean",
     "mode",
     "outputs",
     "plot",
     "recovered",
     "sampled",
+    "sensitivities",
     "trace",
 ]
+
+
+__version__ = version("orbitrace")
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -65,18 +65,30 @@ class LinearisationLike(Protocol):
 
 
 class System(Protocol):
-    """Shapes: rate, state (N, n); algebraic (N, m); phase (N,); parameter (p,)."""
+    """The equations R(x', x, z, tau, p) = 0 of a model, its outputs and its switches.
+
+    Shapes: rate, state (N, n); algebraic (N, m); phase (N,); parameter (p,).
+    """
 
     @property
-    def states(self) -> Sequence[VariableLike]: ...
+    def states(self) -> Sequence[VariableLike]:
+        """The n states x."""
+
     @property
-    def algebraics(self) -> Sequence[VariableLike]: ...
+    def algebraics(self) -> Sequence[VariableLike]:
+        """The m algebraic unknowns z."""
+
     @property
-    def parameters(self) -> Sequence[VariableLike]: ...
+    def parameters(self) -> Sequence[VariableLike]:
+        """The parameters p."""
+
     @property
-    def outputs(self) -> Sequence[VariableLike]: ...
+    def outputs(self) -> Sequence[VariableLike]:
+        """The outputs, as `output` gives them."""
+
     @property
-    def switches(self) -> Sequence[SwitchLike]: ...
+    def switches(self) -> Sequence[SwitchLike]:
+        """The switches, as `switch` gives them."""
 
     @property
     def nominal(self) -> Array:
@@ -91,22 +103,102 @@ class System(Protocol):
         parameter: Array,
         free: tuple[int, ...] = (),
     ) -> LinearisationLike:
-        """Residual and derivatives; d_parameter has one column for each index in `free`."""
+        """Return the residual R(x', x, z, tau, p) and its derivatives.
+
+        Parameters
+        ----------
+        rate, state : ndarray, shape (N, n)
+            dx/dtau and x, scaled.
+        algebraic : ndarray, shape (N, m)
+            Unknowns z, scaled.
+        phase : ndarray, shape (N,)
+            tau in rad.
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+        free : tuple of int
+            Indices of the parameters to differentiate in: d_parameter has one column for each.
+
+        Returns
+        -------
+        LinearisationLike
+            Residual (N, n+m) and its derivatives: d_phase (N, n+m), the others (N, n+m, columns).
+        """
 
     def move(self, algebraic: Array, increment: Array) -> Array:
-        """Where Newton increments take the unknowns, (N, m): their sum, or a better-behaved way to it."""
+        """Return where Newton increments take the unknowns: their sum, or a better-behaved way to it.
+
+        Parameters
+        ----------
+        algebraic, increment : ndarray, shape (N, m)
+            Unknowns and their increments, scaled.
+
+        Returns
+        -------
+        ndarray, shape (N, m)
+            The new unknowns.
+        """
 
     def output(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
-        """Outputs in SI units, shape (N, outputs)."""
+        """Return the outputs.
+
+        Parameters
+        ----------
+        rate, state, algebraic, phase, parameter : ndarray
+            As in `linearise`.
+
+        Returns
+        -------
+        ndarray, shape (N, outputs)
+            Outputs in SI units.
+        """
 
     def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
-        """Switch functions, shape (N, switches)."""
+        """Return the switch functions s(x, tau, p).
+
+        Parameters
+        ----------
+        state, phase, parameter : ndarray
+            As in `linearise`.
+
+        Returns
+        -------
+        ndarray, shape (N, switches)
+            Their values, in the units of their levels.
+        """
 
     def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
-        """Their derivatives in state (N, switches, n), phase (N, switches), parameter (N, switches, p)."""
+        """Return the derivatives of the switch functions.
+
+        Parameters
+        ----------
+        state, phase, parameter : ndarray
+            As in `linearise`.
+
+        Returns
+        -------
+        d_state : ndarray, shape (N, switches, n)
+            In the states.
+        d_phase : ndarray, shape (N, switches)
+            In tau.
+        d_parameter : ndarray, shape (N, switches, p)
+            In all parameters.
+        """
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
-        """States (n,) and unknowns (m,) from which the search for a first orbit starts."""
+        """Return the rest from which the search for a first orbit starts.
+
+        Parameters
+        ----------
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+
+        Returns
+        -------
+        state : ndarray, shape (n,)
+            States, scaled.
+        algebraic : ndarray, shape (m,)
+            Unknowns, scaled.
+        """
 
 
 class GradientLike(Protocol):
@@ -199,9 +291,32 @@ class Compiling(System, Protocol):
         """The loaded library of a C source, the same one each time; None where NumPy is to do."""
 
 
+class Timed(System, Protocol):
+    """A system that tells how its phase runs in time, d/dt = Omega d/dtau."""
+
+    @property
+    def frequency(self) -> Sequence[str]:
+        """Names of the parameters whose product is the angular frequency Omega (rad/s)."""
+
+
+def frequency_of(system: System) -> tuple[str, ...]:
+    """Return the names of the parameters whose product is Omega; none where the system does not tell."""
+    return tuple(cast(Timed, system).frequency) if hasattr(system, "frequency") else ()
+
+
 def compiling(system: System) -> Compiling | None:
     """Return the system as one with a compiler, if it has one."""
     return cast(Compiling, system) if hasattr(system, "library") else None
+
+
+def check_system(system: object) -> None:
+    """Raise ValueError for what is no system, such as a model that is not compiled."""
+    missing = [name for name in ("states", "parameters", "linearise", "rest") if not hasattr(system, name)]
+    if missing or isinstance(system, type):
+        raise ValueError(
+            f"system is a {type(system).__name__} without {', '.join(missing)}; it must be a System "
+            f"(symbolic.compile makes one of a model)"
+        )
 
 
 def index_of(system: System, parameter: str) -> int:

@@ -1,4 +1,8 @@
-"""The layers: `periodic` knows neither CasADi nor `symbolic`, `symbolic` does not know `periodic`."""
+"""The layers: `periodic` knows neither CasADi nor `symbolic`, `symbolic` does not know `periodic`.
+
+Here as they are loaded, and for imports by a name in a string; `make layers` holds all other imports, those
+between rooms too, against the order in `pyproject.toml`.
+"""
 
 import ast
 import subprocess
@@ -83,9 +87,9 @@ for name in ("casadi", "symbolic", "reports"):
     sys.modules[name] = None  # makes any import of it fail
 import numpy as np
 import periodic as per
-from numpy_systems import LinearOscillator
+from support.numpy_systems import LinearOscillator
 system = LinearOscillator(Omega=0.8)
-branch = per.trace(system, "Omega", (0.8, 1.2), accuracy=per.Accuracy.STANDARD)
+branch = per.trace(system, "Omega", (0.8, 1.2), tol=per.Accuracy.STANDARD)
 tau = np.linspace(0, 2 * np.pi, 9)
 error = np.abs(branch[0].orbit.state(tau) - system.exact_state(tau)).max()
 print(branch.stop.reason.name, error < 1e-6, abs(branch[-1].parameter - 1.2) < 1e-12)

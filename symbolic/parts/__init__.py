@@ -1,1 +1,1 @@
-"""The parts a model is built from, one idea per file."""
+"""The parts a model is built from, a folder for each family."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any
 
 import casadi as ca
 
-from symbolic.assembly import Assembly
-from symbolic.model import Part
-from symbolic.variables import Coordinate, Value
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.variables import Coordinate, Value
 
 
 class Names:
@@ -37,36 +37,49 @@ Function = Callable[..., Mapping[str, Any]]
 """(x, p), or (x, p, wave) of a forced system, to expressions by name."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Options:
-    """What most equations do without; see `Equations`."""
-
-    unknowns: Mapping[str, float] = field(default_factory=dict)
-    coordinates: Sequence[Coordinate] = ()
-    frequency: str | None = None
-    scales: Mapping[str, float] = field(default_factory=dict)
-    outputs: Function | None = None
-
-
 @dataclass(frozen=True)
-class Equations(_Options, Part):
+class Equations(Part):
     """dx/dt = f(x, p), and 0 = g(x, z, p) with unknowns z.
 
-    `function` is called once, with symbols as attributes: x.NAME of states and unknowns, p.NAME of the
-    parameters. It returns the rate (SI, per s) of each state by its name, and under the name of each unknown
-    what shall vanish. `states` and `unknowns` give the values from which the search for a rest starts,
-    `parameters` the nominal values, as numbers or `symbolic.parameter`s.
+    Functions are called once, with symbols as attributes: x.NAME of states and unknowns, p.NAME of the
+    parameters, and in an excited system wave.sin and wave.cos of tau = Omega t as a third argument. Of
+    coordinates of other parts they see the position x.NAME (SI) and the speed x.NAME_dot.
 
-    `frequency` names the parameter that is the angular frequency Omega (rad/s) of an excitation; the
-    functions then get a third argument with wave.sin and wave.cos of tau = Omega t. Of `coordinates` of other
-    parts they see the position x.NAME (SI) and the speed x.NAME_dot, and may return a force under NAME.
-    `scales` are the sizes (SI) of states taken as one inside. `outputs` returns further outputs by name; each
-    state is one. Raises ValueError on compilation, in one sentence, for names or values that do not fit.
+    Parameters
+    ----------
+    function : callable
+        Returns the rate (SI, per s) of each state by its name, under the name of each unknown what shall
+        vanish, and perhaps a force under the name of a coordinate.
+    states : mapping of str to float
+        Values from which the search for a rest starts.
+    parameters : mapping of str to float or Parameter
+        Nominal values.
+    unknowns : mapping of str to float
+        Algebraic unknowns, as `states`.
+    coordinates : sequence of Coordinate
+        Coordinates of other parts.
+    frequency : str, optional
+        The parameter that is the angular frequency Omega (rad/s) of an excitation.
+    scales : mapping of str to float
+        Sizes (SI) of states taken as one inside.
+    outputs : callable, optional
+        Returns further outputs by name; each state is one.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, for names or values that do not fit; some on compilation.
     """
 
     function: Function
     states: Mapping[str, float]
     parameters: Mapping[str, Value] = field(default_factory=dict)
+    _: KW_ONLY
+    unknowns: Mapping[str, float] = field(default_factory=dict)
+    coordinates: Sequence[Coordinate] = ()
+    frequency: str | None = None
+    scales: Mapping[str, float] = field(default_factory=dict)
+    outputs: Function | None = None
 
     def __post_init__(self) -> None:
         groups = (self.states, self.unknowns, [c.name for c in self.coordinates])

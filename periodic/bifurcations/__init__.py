@@ -1,0 +1,1 @@
+"""Special points: test functions, location, names, switching of branches, normal forms."""

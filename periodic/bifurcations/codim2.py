@@ -1,0 +1,153 @@
+"""What is looked for along a branch, and along curves of its special points in a second parameter.
+
+On a curve of folds, doublings or tori one multiplier (or a pair's product) stays where it is; test functions
+leave it out. With d_i = mu_i - 1 (or + 1) the second multiplier gets there where the sum of the products of
+all d_i but one vanishes, which is smooth where two multipliers coincide.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.bifurcations.branch import BRANCHING, branching
+from periodic.bifurcations.doubling import DOUBLING, doubling, passing
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.stationary import BRANCHING as CROSSING
+from periodic.bifurcations.stationary import HOPF
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.bifurcations.torus import TORUS, complex_pair, nearest_pair, noise, torus_of
+from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
+from periodic.correction.condition import Condition
+from periodic.correction.problem import Problem
+from periodic.correction.solution import Solution
+from periodic.linear.unknowns import mean_weights
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Complex, Stability
+
+PASSAGES = {Stability.MULTIPLIERS: (DOUBLING, TORUS), Stability.EIGENVALUES: (HOPF, CROSSING)}
+"""Test functions of the special points of a branch, turns (LP) apart, by what decides stability."""
+
+BESIDE_TURNS = {Stability.MULTIPLIERS: (BRANCHING,), Stability.EIGENVALUES: ()}
+"""Those that are looked for only where the branch does not turn."""
+
+REVERSED = 0.05
+"""At a cusp both parameters turn: the second one's rate is this part of that at the step's ends at most."""
+
+
+def second_at(solution: Solution, at: float) -> float:
+    """Sum of the products of all (mu_i - at) / (1 + |mu_i|) but one, the trivial multiplier left out."""
+    found = solution.spectrum.nontrivial
+    if np.sort(np.abs(found - at))[1:2].min(initial=np.inf) < noise(solution):
+        return 0.0
+    factors = np.poly((found - at) / (1 + np.abs(found)))
+    return float(factors[-2].real)
+
+
+def _cosine(solution: Solution) -> float:
+    """Half the sum of the pair whose product is 1: the cosine of its angle while it is complex."""
+    found = solution.spectrum.nontrivial
+    return float(found[nearest_pair(found)].sum().real) / 2
+
+
+def _beside(solution: Solution) -> Complex:
+    """The multipliers without the one that is held at 1 or -1."""
+    found = solution.spectrum.nontrivial
+    return np.delete(found, np.abs(np.abs(found) - 1).argmin())
+
+
+def _passing_beside(solution: Solution, at: int) -> float:
+    """Whether one passes 1 or -1 of the multipliers without the pair whose product is held at 1."""
+    found = solution.spectrum.nontrivial
+    return passing(np.delete(found, nearest_pair(found)), at)
+
+
+def _torus_beside(solution: Solution) -> float:
+    return torus_of(_beside(solution), noise(solution))
+
+
+def _complex_beside(solution: Solution) -> bool:
+    return complex_pair(_beside(solution))
+
+
+FOLDS = (
+    TestFunction(label=Label.RESONANCE_1, value=lambda solution: second_at(solution, 1.0)),
+    TestFunction(label=Label.FOLD_DOUBLING, value=doubling),
+    TestFunction(label=Label.FOLD_TORUS, value=_torus_beside, genuine=_complex_beside),
+)
+DOUBLINGS = (
+    TestFunction(label=Label.RESONANCE_2, value=lambda solution: second_at(solution, -1.0)),
+    TestFunction(label=Label.FOLD_DOUBLING, value=branching),
+    TestFunction(label=Label.DOUBLING_TORUS, value=_torus_beside, genuine=_complex_beside),
+)
+TORI = (
+    TestFunction(label=Label.RESONANCE_1, value=lambda solution: _cosine(solution) - 1.0),
+    TestFunction(label=Label.RESONANCE_2, value=lambda solution: _cosine(solution) + 1.0),
+    TestFunction(label=Label.RESONANCE_3, value=lambda solution: _cosine(solution) + 0.5),
+    TestFunction(label=Label.RESONANCE_4, value=_cosine),
+    TestFunction(label=Label.FOLD_TORUS, value=lambda solution: _passing_beside(solution, 1)),
+    TestFunction(label=Label.DOUBLING_TORUS, value=lambda solution: _passing_beside(solution, -1)),
+)
+CURVES: dict[type, tuple[TestFunction, ...]] = {
+    FoldCondition: FOLDS,
+    DoublingCondition: DOUBLINGS,
+    TorusCondition: TORI,
+}
+HELD: dict[type, float] = {FoldCondition: 1.0, DoublingCondition: -1.0}
+
+
+def picked(problem: Problem) -> Condition | None:
+    """Return the condition that picks the orbits of a curve, if there is one."""
+    chosen = [c for c in problem.conditions if not c.intrinsic]
+    return next((c for c in chosen if type(c) in CURVES), chosen[0] if chosen else None)
+
+
+def marginal(problem: Problem) -> bool:
+    """Whether a multiplier is held on the unit circle."""
+    return type(picked(problem)) in CURVES
+
+
+def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
+    """Return the tests for special points in a step to a solution; `turned` if the parameter turns in it.
+
+    On a curve of orbits at a level, or of peaks, the folds of the branches that it crosses are where a
+    multiplier is 1.
+    """
+    condition, decides = picked(solution.problem), solution.discretisation.stability
+    if condition is None:
+        return PASSAGES[decides] + (() if turned else BESIDE_TURNS[decides])
+    if type(condition) in CURVES:
+        return CURVES[type(condition)]
+    return (*PASSAGES[decides], TestFunction(label=Label.FOLD, value=branching))
+
+
+def alignment(base: Solution, new: Solution) -> float:
+    """Cosine between the critical motions of two orbits on one mesh: eigenvectors carried over the period.
+
+    The two sides of a narrow tongue have nearly the same orbits, but critical motions across each other. 1
+    on a curve that holds no simple multiplier.
+    """
+    condition = picked(base.problem)
+    if type(condition) not in HELD:
+        return 1.0
+    held = HELD[type(condition)]
+    a, b = (_critical(solution, held) for solution in (base, new))
+    square = np.einsum("j,sjn,tjn->st", mean_weights(base.orbit), (a, b), (a, b))
+    return float(abs(square[0, 1]) / np.sqrt(square[0, 0] * square[1, 1]))
+
+
+def _critical(solution: Solution, held: float) -> Array:
+    """The disturbance (N+1, n) that comes back `held` times itself."""
+    monodromy = solution.spectrum.monodromy
+    vector = np.linalg.svd(monodromy - held * np.eye(len(monodromy)))[2][-1]
+    return solution.spectrum.fundamental @ vector
+
+
+def turn(found: Solution, base: Solution, new: Solution) -> Label:
+    """Return what a turn of the parameter is on a curve: a cusp where its other parameter turns too."""
+    problem = found.problem
+    if not isinstance(picked(problem), FoldCondition):
+        return Label.NONE
+    own = next(k for k, c in enumerate(problem.conditions) if not c.intrinsic)
+    rates = [float(s.tangent.others[own]) for s in (found, base, new)]
+    reverses = rates[1] * rates[2] < 0 and abs(rates[0]) < REVERSED * max(map(abs, rates[1:]))
+    return Label.CUSP if reverses else Label.NONE

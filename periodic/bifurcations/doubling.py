@@ -1,0 +1,49 @@
+"""PD: period doublings (flips), where a Floquet multiplier is -1: prod (mu + 1) = 0."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.correction.solution import Solution
+from periodic.stability.spectrum import Complex
+from periodic.stability.winding import passes
+
+NEGATIVE = 1e-3
+"""Real multipliers nearer to 0 than this are too far from -1."""
+
+
+def passing(found: Complex, at: int) -> float:
+    """prod (mu - at) / (1 + |mu|) of given multipliers; each factor over its size, so that none overflows."""
+    return float(np.prod((found - at) / (1 + np.abs(found))).real)
+
+
+def doubling(solution: Solution) -> float:
+    """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
+    spectrum = solution.spectrum
+    return passing(spectrum.nontrivial, -1) if spectrum.known else 0.0
+
+
+def known(solution: Solution) -> bool:
+    """Whether the multipliers are more than rounding, and known as well as the discretisation can."""
+    return solution.spectrum.known and trusted(solution)
+
+
+def trusted(solution: Solution) -> bool:
+    """Whether the error of the multipliers is one with which the discretisation's tell special points."""
+    limit = solution.discretisation.trusted
+    return limit == np.inf or solution.error.multiplier < limit
+
+
+def doubles_twice(base: Solution, new: Solution) -> bool:
+    """Whether the orbits may double between two orbits and be single again at the second.
+
+    A pair of multipliers turns past -1, or is real and negative at one end, on its way out or back.
+    """
+    ends = [end.spectrum.multipliers for end in (base, new)]
+    negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
+    return max(negative) > 1 or passes(base.spectrum, new.spectrum, -1)
+
+
+DOUBLING = TestFunction(label=Label.DOUBLING, value=doubling, genuine=known, twice=doubles_twice)

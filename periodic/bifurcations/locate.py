@@ -1,0 +1,172 @@
+"""Special points inside one continuation step, located on arclength constraints between its ends.
+
+User points (UZ) and bounds (EP) are where the parameter takes a given value, looked for on each side of the
+turns, where the parameter is monotone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.bifurcations import codim2
+from periodic.bifurcations.fold import FOLD, VERTICAL
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
+from periodic.bifurcations.testfunction import LEFT, TestFunction
+from periodic.bifurcations.turning import Found, is_one, named, shrinks
+from periodic.correction.problem import Problem
+from periodic.correction.refinement import refined
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+
+STANDING = 1e-5
+"""A branch that begins with so small a part of its later slope begins at a turn."""
+
+SHORTER = 0.9
+"""A step that would end at a special point is taken so much shorter: then it lies within the next."""
+
+JUMP = 1e-3
+"""What is left of a user's function where it vanishes, as a part of the larger value at its ends."""
+
+ALIGNED = 0.8
+"""Least cosine between the tangents of a special equilibrium and of the step's base: else it is on another
+branch."""
+
+
+@dataclass(frozen=True)
+class Sought:
+    """What is looked for in a step: values of the parameter that get a point (UZ), the user's tests.
+
+    since: the parameter up to which values have been looked for, that of the last point, from which the base
+    may differ by its error where it was solved again on a new mesh.
+    """
+
+    values: Sequence[float]
+    since: float
+    tests: tuple[TestFunction, ...] = ()
+
+
+def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sought: Sought) -> list[Found]:
+    """Return the special points of a step in order along the branch.
+
+    A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). Raises RejectedError.
+    """
+    stretch = Stretch(solver, base, {0.0: base, ds: new}, ds)
+    from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
+    turns = [] if from_turn else _where(stretch, new, ds, FOLD)
+    begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
+    pieces = [begin, *turns, Found(Label.NONE, ds, new)]
+    _check_ways(solver.problem, pieces)
+    found = turned = [named(stretch, turn, new, ds) for turn in turns]
+    for test in (*codim2.sought(new, bool(turns) or from_turn), *sought.tests):
+        met = _where(stretch, new, ds, test)
+        found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
+    found = found + _at_values(stretch, pieces, sought)
+    found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
+    final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
+    return found[: final[0] + 1] if final else found
+
+
+def _at_values(stretch: Stretch, pieces: list[Found], sought: Sought) -> list[Found]:
+    """The points at values of the parameter that were asked for, and at a bound."""
+    bounds, found = stretch.solver.problem.bounds, []
+    starts = [sought.since, *(turn.solution.value for turn in pieces[1:-1])]
+    for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
+        last = end.solution.value
+        bound = bounds[1] if last > first else bounds[0]
+        for value, label in [*((v, Label.USER) for v in sought.values), (bound, Label.END)]:
+            if first < value <= last or last <= value < first:
+                found.append(_at_value(stretch, begin, end, value, label))
+    return found
+
+
+def _check_ways(problem: Problem, pieces: list[Found]) -> None:
+    """Reject a step whose end does not lie where the folds within it lead.
+
+    Between folds the parameter goes the way of the tangent; an end on the other side is on another part of
+    the branch.
+    """
+    for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
+        way = (end if begin.label is Label.FOLD else begin).solution.tangent.parameter
+        change = end.solution.value - begin.solution.value
+        if change * way < 0 and abs(change) > VERTICAL * problem.scale:
+            raise RejectedError("the step ends on another part of the branch")
+
+
+def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> list[Found]:
+    """Locate where a test function changes sign within a step, if it does.
+
+    Raises RejectedError where it vanishes at the step's end, having fallen to it; it is also 0 where it is
+    not known.
+    """
+    base, value = stretch.base, test.value
+    ends = [value(solution) for solution in (base, new)]
+    if ends[0] * ends[1] < 0:
+        return _located(stretch, (0.0, ds), ds, test)
+    if ends[0] != 0 and ends[1] == 0 and 0 < value(stretch.at(SHORTER * ds)) / ends[0] < LEFT:
+        raise RejectedError("the step ends at a special point", SHORTER)
+    if ends[0] * ends[1] == 0 or not test.twice(base, new):
+        return []
+    sign = np.sign(ends[0])
+    between = second_change(
+        lambda distance: sign * value(stretch.at(distance)), ds, abs(ends[0]), abs(ends[1])
+    )
+    if between is None:
+        return []
+    return [found for span in ((0.0, between), (between, ds)) for found in _located(stretch, span, ds, test)]
+
+
+def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:
+    """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
+    solver, base, crossed = stretch.solver, stretch.base, test is not FOLD
+    precision, ends = test.precision * ds, [stretch.at(end) for end in span]
+    distance, solution = stretch.root(span, test.value, precision, aside=crossed)
+    turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.scale)
+    if solution.orbit.equilibrium and turned < ALIGNED:
+        raise RejectedError("a special point of another branch was met")
+    if not test.genuine(solution) or (test.name and _jumps(test.value, solution, ends)):
+        return []
+    if not crossed and shrinks(solution, *ends):
+        return [Found(test.label, distance, solution)]  # it has no size for its error to be a part of
+    better = _accepted(solver, refined(solver, solution))
+    if better is not solution:
+        solution = _again(solver, better, ds, test, aside=crossed)
+    return [Found(test.label, distance, solution, test.name)]
+
+
+def _again(solver: Solver, near: Solution, ds: float, test: TestFunction, aside: bool) -> Solution:
+    """Locate the zero of a test function about a solution near it."""
+    around = Stretch(solver, near, {0.0: near})
+    for reach in (0.05 * ds, 0.5 * ds):
+        ends = [test.value(around.at(side)) for side in (-reach, reach)]
+        if ends[0] * ends[1] < 0:
+            return around.root((-reach, reach), test.value, test.precision * ds, aside=aside)[1]
+    raise RejectedError("a special point was not found again on a finer mesh")
+
+
+def _jumps(value: Callable[[Solution], float], solution: Solution, ends: Sequence[Solution]) -> bool:
+    """Whether a function does not vanish where it changes sign between two ends."""
+    return abs(value(solution)) > JUMP * max(abs(value(end)) for end in ends)
+
+
+def _accepted(solver: Solver, solution: Solution) -> Solution:
+    """Return a solution that meets the tolerance; raise RejectedError for any other."""
+    if not solution.ok:
+        raise RejectedError(solution.outcome.value)
+    if solution.error.motion > solver.tolerance.orbit:
+        raise RejectedError("the error estimate of a special point exceeds the tolerance")
+    return solution
+
+
+def _at_value(stretch: Stretch, begin: Found, end: Found, value: float, label: Label) -> Found:
+    """Locate a parameter value in a monotone piece, then solve at exactly that value."""
+    solver, ends = stretch.solver, (begin.distance, end.distance)
+    distance, near = stretch.root(ends, lambda s: s.value - value, 1e-4 * (ends[1] - ends[0]))
+    parameter = near.orbit.parameter.copy()
+    parameter[solver.problem.index] = value
+    sign = float(np.sign(near.tangent.parameter)) or 1.0
+    exact = solver.at_parameter(replace(near.orbit, parameter=parameter), sign)
+    return Found(label, distance, _accepted(solver, refined(solver, exact, fixed=True)))

@@ -1,0 +1,98 @@
+"""Test functions of equilibria, with the eigenvalues lambda of d(dx)/dt = J dx:
+
+LP  d parameter / d arclength     HB  prod over pairs (lambda_i + lambda_j), of a complex pair only
+BP  det [R_u; tangent], u = (x, z, p): it changes sign where two branches cross, and not at an LP
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.correction.solution import Solution
+from periodic.equilibrium.linearise import crossing, rows_at
+from periodic.orbit.scheme import Array
+
+Complex = NDArray[np.complex128]
+
+CONSERVED = 1e-12
+"""Sums of two eigenvalues this small, in parts of the largest one, are 0: energy is conserved."""
+
+LIGHT = 0.1
+"""Damping ratio below which a pair may cross the imaginary axis and come back within a step."""
+
+VERTICAL = 1e-5
+"""A branch of smaller slope, in ranges of the parameter, turns."""
+
+
+def hopf(solution: Solution) -> float:
+    """prod over i < j of (lambda_i + lambda_j) / (|lambda_i| + |lambda_j|); 0 where energy is conserved."""
+    found = solution.spectrum.multipliers
+    first, second = np.triu_indices(len(found), 1)
+    sums = found[first] + found[second]
+    if (np.abs(sums) <= CONSERVED * np.abs(found).max()).any():
+        return 0.0
+    return float(np.prod(sums / (np.abs(found[first]) + np.abs(found[second]))).real)
+
+
+def _complex(solution: Solution) -> bool:
+    """Whether the pair whose sum is nearest 0 is complex: else it is a neutral saddle."""
+    found = solution.spectrum.multipliers
+    first, second = np.triu_indices(len(found), 1)
+    nearest = np.abs(found[first] + found[second]).argmin()
+    return bool(found[first[nearest]].imag != 0)
+
+
+def _crosses_twice(base: Solution, new: Solution) -> bool:
+    """Whether a pair may cross the axis and come back: lightly damped, or moved by more than its distance."""
+    before, after = (found[found.imag > 0] for found in (base.spectrum.multipliers, new.spectrum.multipliers))
+    for a in before if len(after) else ():
+        b = after[np.abs(after - a).argmin()]
+        real = min(abs(a.real), abs(b.real))
+        if real < max(LIGHT * abs(a), abs(a - b)):
+            return True
+    return False
+
+
+def _matrix(solution: Solution) -> tuple[Array, Array]:
+    """R_u and the tangent of length 1, u = (x, z, p), p in ranges of the parameter."""
+    problem, orbit, tangent = solution.problem, solution.orbit, solution.tangent
+    rows = rows_at(problem.system, orbit, problem.free).balanced(problem.scale)
+    outer = tangent.parameters / problem.scale
+    along = np.concatenate([tangent.nodes[0], tangent.algebraic[0, 0], outer])
+    return rows, along / np.linalg.norm(along)
+
+
+def branching(solution: Solution) -> float:
+    """det [R_u; tangent]."""
+    return float(np.linalg.det(np.vstack(_matrix(solution))))
+
+
+def _on_its_way(solution: Solution) -> bool:
+    """Whether the branch goes on past another there: where it turns as well, the turn is the branch point."""
+    return abs(solution.tangent.parameter) > VERTICAL * solution.problem.scale
+
+
+def crosses(turn: Solution, base: Solution, new: Solution) -> bool:
+    """Whether two branches cross where one of them turns."""
+    return branching(base) * branching(new) < 0 and crossing(_matrix(turn)[0])
+
+
+def _touches_twice(base: Solution, new: Solution) -> bool:
+    """Whether a real eigenvalue moved by more than half its distance from 0."""
+    before, after = (
+        found[found.imag == 0].real for found in (base.spectrum.multipliers, new.spectrum.multipliers)
+    )
+    for a in before if len(after) else ():
+        b = after[np.abs(after - a).argmin()]
+        if min(abs(a), abs(b)) < 2 * abs(a - b):
+            return True
+    return False
+
+
+HOPF = TestFunction(label=Label.HOPF, value=hopf, precision=1e-12, genuine=_complex, twice=_crosses_twice)
+BRANCHING = TestFunction(
+    label=Label.BRANCH, value=branching, genuine=_on_its_way, twice=_touches_twice, touches=crosses
+)

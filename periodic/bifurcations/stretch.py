@@ -1,0 +1,163 @@
+"""Solutions at given distances inside one continuation step, and roots of functions of them."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from periodic.bifurcations.testfunction import LEFT
+from periodic.correction.outcome import Outcome
+from periodic.correction.predictor import cubic, tangent
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.orbit.orbit import Orbit
+
+ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
+"""Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
+
+ORBITS = 1e1
+"""How many times as far that is of orbits, which have errors of their own."""
+
+
+class RejectedError(Exception):
+    """A step that cannot be taken, or inside which Newton failed on an arclength constraint.
+
+    The message says why. shorter: the part of it to be tried next; not a half, which from a step that leads
+    to an orbit of no size leads there again and again.
+    """
+
+    def __init__(self, why: str, shorter: float = 0.6) -> None:
+        super().__init__(why)
+        self.shorter = shorter
+
+
+class _NoOrbitError(RejectedError):
+    """Newton failed at a distance from a step's base."""
+
+    def __init__(self, why: str, distance: float) -> None:
+        super().__init__(why)
+        self.distance = distance
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Orbits on arclength constraints at given distances from a step's base, each solved for once.
+
+    The guess is the cubic to the step's end, where there is one, then the base's tangent: orbits solved for
+    close to a singular one have lost digits that a guess must not carry on.
+    """
+
+    solver: Solver
+    base: Solution
+    known: dict[float, Solution]
+    end: float | None = None
+
+    def at(self, distance: float) -> Solution:
+        """Return the orbit at a distance. Raises RejectedError where there is none."""
+        if distance not in self.known:
+            self.known[distance] = self._solved(distance)
+        return self.known[distance]
+
+    def _solved(self, distance: float) -> Solution:
+        solver, base = self.solver, self.base
+        constraint = solver.constraint(base.orbit, base.tangent, distance)
+        newton, failure = replace(solver.tolerance.newton, close=0.0), Outcome.TOO_MANY
+        for guess in self._guesses(distance):
+            found = solver.on(guess, constraint, newton)
+            if found.ok:
+                return found
+            failure = found.outcome
+        raise _NoOrbitError(failure.value, distance)
+
+    def _guesses(self, distance: float) -> Iterator[Orbit]:
+        if self.end is not None:
+            yield cubic(self.solver, self.base, self.known[self.end], self.end, distance)
+        yield tangent(self.solver.problem, self.base, distance)
+
+    def root(
+        self,
+        ends: tuple[float, float],
+        function: Callable[[Solution], float],
+        precision: float,
+        *,
+        aside: bool = False,
+    ) -> tuple[float, Solution]:
+        """Return distance and solution where a function changes sign between two distances from the base.
+
+        `aside` accepts a solution very near to it where there is none at the place itself.
+        """
+
+        def value(distance: float) -> float:
+            return function(self.at(distance))
+
+        at_ends = [value(end) for end in ends]
+        if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
+            nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
+            return nearest, self.at(nearest)
+        try:
+            root = scipy.optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
+            return root, self.at(root)
+        except _NoOrbitError as failed:
+            if not aside:
+                raise
+            return self._aside(ends, failed)
+
+    def _aside(self, ends: tuple[float, float], failed: _NoOrbitError) -> tuple[float, Solution]:
+        """Return the solution nearest to where there was none; raise what failed if there is none near."""
+        length = (ends[1] - ends[0]) * (1 if self.base.orbit.equilibrium else ORBITS)
+        for part in ASIDE:
+            distance = failed.distance + part * length
+            if min(ends) <= distance <= max(ends):
+                with contextlib.suppress(_NoOrbitError):
+                    return distance, self.at(distance)
+        raise failed
+
+
+TRIALS = 15
+"""Most orbits solved for within a step to find a second change of sign."""
+
+CONFIRMED = 0.1
+"""How well, relatively, the parabola must predict it."""
+
+DISTINCT = 0.1
+"""A place to look at lies at least so far on the way from the least value to the next place known."""
+
+
+def second_change(value: Callable[[float], float], ds: float, begin: float, end: float) -> float | None:
+    """Return a distance within a step at which a function, positive at both ends, is negative, if any.
+
+    Parabolas lead to its minimum until one has predicted it.
+    """
+    known = {0.0: begin, ds: end}
+    place, expected = ds / (1 + np.sqrt(end / begin)), np.nan  # where a parabola touches zero
+    for _ in range(TRIALS):
+        least = min(known.values())
+        known[place] = found = value(place)
+        if found < 0:
+            return float(place)
+        if abs(found - expected) < CONFIRMED * found and found > LEFT * least:
+            return None
+        place, expected = _lowest(known)
+    return None
+
+
+def _lowest(known: dict[float, float]) -> tuple[float, float]:
+    """Return where to look for a function's minimum and what a parabola through its least values predicts.
+
+    That is the parabola's vertex, or halfway to its neighbour where an end is the least.
+    """
+    at = sorted(known)
+    least = at.index(min(at, key=lambda distance: known[distance]))
+    near = at[max(0, min(least - 1, len(at) - 3)) :][:3]
+    parabola = np.polynomial.Polynomial.fit(near, [known[distance] for distance in near], 2)
+    if 0 < least < len(at) - 1:
+        vertex, middle = float(parabola.deriv().roots()[0]), near[1]
+        gap = (near[2] if vertex > middle else near[0]) - middle
+        place = middle + gap * max((vertex - middle) / gap, DISTINCT)
+    else:
+        place = (at[least] + at[1 if least == 0 else -2]) / 2
+    return place, float(parabola(place))

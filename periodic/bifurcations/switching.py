@@ -1,0 +1,206 @@
+"""From a special point to the branch that begins there: doubled orbits at a PD, another branch at a BP.
+
+With M v = mu v, mu = -1 or 1, the new branch leaves along x(tau) + s Phi(tau) v, Phi the fundamental matrix.
+Where mu = -1 this perturbation has the opposite sign in the second period.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.bifurcations.crossing import tangents
+from periodic.collocation.condensation import condensed
+from periodic.collocation.method import Collocation
+from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.condition import Condition, side_conditions
+from periodic.correction.newton import correct, moved
+from periodic.equilibrium.linearise import linearise
+from periodic.linear.bordering import Chain
+from periodic.linear.unknowns import Increment
+from periodic.orbit.construction import as_read_by
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, index_of
+
+FAR = 0.02
+"""Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
+
+
+class SwitchError(ArithmeticError):
+    """No orbit of the new branch was found; the message says why."""
+
+
+def doubled(
+    system: System,
+    orbit: Orbit,
+    parameter: str,
+    *,
+    determined: Mapping[str, Condition] | None = None,
+    distance: float | None = None,
+) -> Orbit:
+    """Return an orbit of twice the period near a period doubling (PD): a guess for `trace`.
+
+    It lies along x(tau) + s Phi(tau) v, M v = -v, at a parameter of its own.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    orbit : Orbit
+        The orbit at the PD.
+    parameter : str
+        The parameter of the branch.
+    determined : mapping of str to Condition, optional
+        As in `trace`.
+    distance : float, optional
+        From the orbit, root mean square of the scaled states; default FAR times the largest peak to peak.
+
+    Returns
+    -------
+    Orbit
+        The guess, of twice the period.
+
+    Raises
+    ------
+    SwitchError
+        Where no orbit of the new branch is found.
+    """
+    orbit = as_read_by(system, orbit).collocated()
+    once = away(system, orbit, -1, autonomous=False)
+    twice = repeated(orbit, 2)
+    nodes = np.concatenate([once.nodes[:-1], -once.nodes])
+    direction = Increment(
+        nodes=nodes,
+        stages=np.concatenate([once.stages, -once.stages]),
+        algebraic=np.concatenate([once.algebraic, -once.algebraic]),
+        phases=np.zeros(2 * len(orbit.phases)),
+        parameters=np.zeros(1),
+        profile=nodes,
+    )
+    return switched(system, twice, direction, parameter, determined or {}, distance)
+
+
+def branched(
+    system: System,
+    orbit: Orbit,
+    parameter: str,
+    *,
+    determined: Mapping[str, Condition] | None = None,
+    distance: float | None = None,
+    leaving: Orbit | None = None,
+) -> Orbit:
+    """Return an orbit of the branch that crosses another at a branch point (BP): a guess for `trace`.
+
+    An orbit lies along x(tau) + s Phi(tau) v, M v = v, an equilibrium along the tangent of the other branch,
+    each at a parameter of its own.
+
+    Parameters
+    ----------
+    system, orbit, parameter, determined
+        As in `doubled`, the orbit at the BP.
+    distance : float, optional
+        As in `doubled`; a negative one gives the orbit on the other side.
+    leaving : Orbit, optional
+        A nearby equilibrium of the branch to leave. Without it, of two branches of equilibria that one is
+        taken along which the parameter changes less.
+
+    Returns
+    -------
+    Orbit
+        The guess.
+
+    Raises
+    ------
+    SwitchError
+        Where no orbit of the new branch is found.
+    """
+    orbit = as_read_by(system, orbit)
+    if orbit.equilibrium:
+        across = _across(system, orbit, index_of(system, parameter), leaving)
+        return switched(system, orbit, across, parameter, determined or {}, distance)
+    autonomous = any(c.trivial for c in (determined or {}).values())
+    orbit = orbit.collocated()
+    direction = away(system, orbit, 1, autonomous)
+    return switched(system, orbit, direction, parameter, determined or {}, distance)
+
+
+def _across(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Increment:
+    """The tangent of the other branch of equilibria at a branch point."""
+    found = tangents(system, orbit, index)
+    if not found:
+        raise SwitchError("no other branch of equilibria crosses there")
+    if leaving is None:
+        return found[0]
+    leaving = as_read_by(system, leaving)
+    jump = float(leaving.parameter[index] - orbit.parameter[index])
+    way = replace(found[0], profile=leaving.nodes[0] - orbit.nodes, parameters=np.array([jump]))
+
+    def aligned(tangent: Increment) -> float:
+        length = np.sqrt(tangent.dot(tangent, orbit, 1.0))
+        return abs(tangent.dot(way, orbit, 1.0)) / float(length)
+
+    return min(found, key=aligned)
+
+
+def switched(
+    system: System,
+    origin: Orbit,
+    direction: Increment,
+    parameter: str,
+    determined: Mapping[str, Condition],
+    distance: float | None,
+) -> Orbit:
+    """Solve on the arclength constraint some way along a direction. Raises SwitchError."""
+    free = tuple(index_of(system, name) for name in (parameter, *determined))
+    length = FAR * origin.span() if distance is None else distance
+    parameters = np.append(direction.parameter, np.zeros(len(determined)))
+    unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
+    direction = replace(direction, parameters=parameters).scaled(unit)
+    constraint = ArclengthConstraint(origin, direction, length, 1.0, free[0])
+    guess = moved(system, free, origin, direction, length)
+    closing = [*side_conditions(list(determined.values()), free[1:], guess), constraint]
+    equations = linearise if origin.equilibrium else Collocation().linearise
+    found = correct(equations, system, guess, free, closing)
+    if not found.ok:
+        raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
+    return found.orbit
+
+
+def repeated(orbit: Orbit, times: int) -> Orbit:
+    """Return the same orbit gone through several times."""
+    mesh, ntst = orbit.mesh, len(orbit.nodes) - 1
+    if mesh.events:
+        breaks = mesh.breaks * times
+    else:
+        breaks = (np.append(np.concatenate([(k + mesh.breaks[0][:-1]) / times for k in range(times)]), 1.0),)
+    return replace(
+        orbit,
+        mesh=Mesh(mesh.scheme, breaks, mesh.events * times, times * mesh.period),
+        nodes=np.concatenate([*[orbit.nodes[:ntst]] * (times - 1), orbit.nodes]),
+        stages=np.concatenate([orbit.stages] * times),
+        algebraic=np.concatenate([orbit.algebraic] * times),
+        phases=np.concatenate([orbit.phases + k * mesh.period for k in range(times)]),
+    )
+
+
+def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Increment:
+    """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
+    orbit = orbit.collocated()
+    chain = Chain(condensed(system, orbit, ()))
+    fundamental = chain.fundamental
+    flow = orbit.node_rates[0] if autonomous and multiplier == 1 else None
+    nodes = fundamental @ _kept(fundamental[-1] - multiplier * np.eye(len(fundamental[-1])), flow)
+    still = np.zeros(len(orbit.phases))
+    stages, algebraic = chain.condensed.recover(nodes, still, 0.0)
+    return Increment(nodes, stages, algebraic, still, np.zeros(1), nodes)
+
+
+def _kept(matrix: Array, flow: Array | None) -> Array:
+    """The vector nearest to the kernel of a matrix, across the flow if there is one."""
+    if flow is not None:
+        matrix = np.concatenate([matrix, flow[None, :] / np.linalg.norm(flow)])
+    return np.linalg.svd(matrix)[2][-1]

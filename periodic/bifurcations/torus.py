@@ -1,0 +1,50 @@
+"""NS: torus bifurcations (Neimark-Sacker), where a complex pair is on the unit circle: mu_i mu_j = 1."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.bifurcations.doubling import known
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.correction.solution import Solution
+from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+
+
+def noise(solution: Solution) -> float:
+    """What multipliers cannot be told apart by."""
+    return CONSERVED * solution.error.multiplier + ROUNDING
+
+
+def torus(solution: Solution) -> float:
+    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
+    spectrum = solution.spectrum
+    return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0
+
+
+def torus_of(found: Complex, noise: float) -> float:
+    """The torus test of given multipliers, their products known to within `noise`."""
+    first, second = np.triu_indices(len(found), 1)
+    products = found[first] * found[second]
+    if (np.abs(products - 1) < noise).any():
+        return 0.0
+    return float(np.prod((products - 1) / (1 + np.abs(products))).real)
+
+
+def nearest_pair(found: Complex) -> list[int]:
+    """Return the indices of the two multipliers whose product is nearest 1."""
+    first, second = np.triu_indices(len(found), 1)
+    nearest = np.abs(found[first] * found[second] - 1).argmin()
+    return [int(first[nearest]), int(second[nearest])]
+
+
+def complex_pair(found: Complex) -> bool:
+    """Whether the pair whose product is nearest 1 is complex: else it is a neutral saddle."""
+    return bool(found[nearest_pair(found)[0]].imag != 0)
+
+
+def _genuine(solution: Solution) -> bool:
+    return known(solution) and complex_pair(solution.spectrum.nontrivial)
+
+
+TORUS = TestFunction(label=Label.TORUS, value=torus, genuine=_genuine)

@@ -1,0 +1,80 @@
+"""What a turn of a branch is: a fold, or another special point at which branches turn as well.
+
+A branch of doubled orbits turns where it meets the orbits it came from: the same doubling (PD), seen from the
+other branch. So does one that leaves a symmetric branch (BP).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.bifurcations import codim2
+from periodic.bifurcations.branch import branching
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.stretch import RejectedError, Stretch
+from periodic.correction.identity import from_itself
+from periodic.correction.solution import Solution
+
+MERGED = 0.05
+"""What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
+
+BESIDE = 1e-3
+"""How far from a turn its multipliers are looked at, and what else is not it, as a part of the step."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A special point at `distance` from the step's base; `name` is the user's of an event or limit."""
+
+    label: Label
+    distance: float
+    solution: Solution
+    name: str = ""
+
+    @property
+    def shrunk(self) -> bool:
+        """Whether a branch of orbits ends at an equilibrium there."""
+        return self.label is Label.HOPF and not self.solution.orbit.equilibrium
+
+
+def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
+    """Return a turn of the branch by its name.
+
+    PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
+    more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
+    follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
+    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp. Raises
+    RejectedError where a multiplier passes 1 and comes back within the step: a fold and a branch point.
+    """
+    base, problem = stretch.base, stretch.solver.problem
+    if codim2.picked(problem) is not None:
+        return replace(turn, label=codim2.turn(turn.solution, base, new))
+    if shrinks(turn.solution, base, new):
+        return replace(turn, label=Label.HOPF)
+    apart = [from_itself(solution) for solution in (turn.solution, base, new)]
+    if apart[0] < MERGED * max(apart[1:]) < np.inf:
+        return replace(turn, label=Label.DOUBLING)
+    decides = new.discretisation.stability
+    tests = (*codim2.PASSAGES[decides], *codim2.BESIDE_TURNS[decides])
+    labels = [test.label for test in tests if test.touches(turn.solution, base, new)]
+    if labels and codim2.BESIDE_TURNS[decides] and problem.trivial < 2 and _passes(stretch, turn, ds):
+        raise RejectedError("the branch turns beside a branch point")
+    return replace(turn, label=labels[0]) if labels else turn
+
+
+def _passes(stretch: Stretch, turn: Found, ds: float) -> bool:
+    """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
+    before, after = (branching(stretch.at(turn.distance + side * BESIDE * ds)) for side in (-1, 1))
+    return before * after < 0
+
+
+def shrinks(turn: Solution, *ends: Solution) -> bool:
+    """Whether autonomous orbits shrink to an equilibrium at a turn of their branch."""
+    return turn.problem.autonomous and turn.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
+
+
+def is_one(point: Found, turn: Found, ds: float) -> bool:
+    """Whether a special point is the turn of the branch, which has its name already."""
+    return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds

@@ -1,0 +1,51 @@
+"""What users give, refused in one sentence that names the field, the value and what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+
+def number(name: str, value: Any) -> float:
+    """Return a real number, not finite ones included. Raises ValueError for what is none."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
+        raise ValueError(f"{name} is {value!r}; it must be a number")
+    return float(value)
+
+
+def positive(name: str, value: Any) -> float:
+    """Return a positive finite number. Raises ValueError for any other."""
+    if not 0 < number(name, value) < np.inf:
+        raise ValueError(f"{name} is {value!r}; it must be a positive number")
+    return float(value)
+
+
+def at_least_0(name: str, value: Any) -> float:
+    """Return a finite number that is not negative. Raises ValueError for any other."""
+    if not 0 <= number(name, value) < np.inf:
+        raise ValueError(f"{name} is {value!r}; it must be a number of at least 0")
+    return float(value)
+
+
+def between(name: str, value: Any, low: float, high: float) -> float:
+    """Return a number between two others. Raises ValueError for any other."""
+    if not low < number(name, value) < high:
+        raise ValueError(f"{name} is {value!r}; it must lie between {low:g} and {high:g}")
+    return float(value)
+
+
+def whole(name: str, value: Any, least: int = 1) -> int:
+    """Return a whole number that is large enough. Raises ValueError for any other."""
+    counts = isinstance(value, int | np.integer) and not isinstance(value, bool | np.bool_)
+    if not (counts and value >= least):
+        raise ValueError(f"{name} is {value!r}; it must be a whole number of at least {least}")
+    return int(value)
+
+
+def named(name: str, value: Any, what: str) -> Mapping[str, Any]:
+    """Return a mapping from names that are texts. Raises ValueError for what is none."""
+    if not isinstance(value, Mapping) or not all(isinstance(key, str) and key for key in value):
+        raise ValueError(f"{name} is {value!r}; it must give {what} by their names")
+    return value

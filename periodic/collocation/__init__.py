@@ -1,0 +1,1 @@
+"""Orthogonal collocation on meshes tied to the kinks of the motion."""

@@ -1,0 +1,129 @@
+"""Condensation in C (`elimination.c`), for small systems that can compile it: see `Compiling`.
+
+NumPy's calls cost more than the work that they do where matrices are small; large ones are BLAS's.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+import numpy as np
+
+from periodic.linear.kinematic import LARGE
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import LinearisationLike, System, compiling
+
+NOT_FINITE, SINGULAR = 1, 2
+"""What `condense` answers where it fails."""
+
+_Address = ctypes.c_char * 0
+
+
+@dataclass(frozen=True)
+class Routines:
+    """The functions of a library; arrays and errors as in `periodic.collocation.condensation`."""
+
+    library: ctypes.CDLL
+
+    def __post_init__(self) -> None:
+        size, array, lib = ctypes.c_ssize_t, ctypes.c_void_p, self.library
+        lib.condense.argtypes, lib.condense.restype = [size] * 6 + [array] * 21, ctypes.c_int
+        lib.chain.argtypes, lib.chain.restype = [size] * 3 + [array] * 2, None
+        lib.recover.argtypes, lib.recover.restype = [size] * 5 + [ctypes.c_double] + [array] * 9, None
+
+    def condense(self, orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array, Array, float]:
+        """Return step, stages, algebraic and residual of the equations linearised at an orbit.
+
+        Raises as `periodic.collocation.condensation.condense`, and ValueError for derivatives of a wrong
+        shape.
+        """
+        (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
+        k, p = len(orbit.phases), line.d_parameter.shape[2]
+        w = 1 + n + k + p
+        _check(line, count * ncol, n, m)
+        step, stages = np.empty((count, n, w)), np.empty((count, ncol, n, w))
+        algebraic, residual = np.empty((count, ncol, m, w + n)), np.empty(1)
+        room = (ncol * n + m) * (w + n) + m * (m + w + n) + ncol * n * (ncol * n + w + 1) + 3 * ncol**2
+        grid, scheme = orbit.grid, orbit.mesh.scheme
+        code = self.library.condense(
+            *(count, ncol, n, m, k, p),
+            *_given(line.residual, line.d_rate, line.d_state),
+            *_given(line.d_algebraic, line.d_phase, line.d_parameter),
+            *_given(grid.width, grid.left_gradient, grid.width_gradient),
+            *_given(scheme.points, scheme.stage_rates, scheme.end),
+            *_given(orbit.knots, orbit.knot_rates, orbit.nodes),
+            *_given(step, stages, algebraic, residual, np.empty(room), np.empty(4 * n)),
+        )
+        if code == NOT_FINITE:
+            raise FloatingPointError("the residual or a derivative is not finite")
+        if code == SINGULAR:
+            raise np.linalg.LinAlgError("a local matrix is singular")
+        return step, stages, algebraic, float(residual[0])
+
+    def chain(self, step: Array) -> Array:
+        """Return the affine maps from the first mesh point to all, see `periodic.linear.bordering.chain`."""
+        count, n, w = step.shape
+        maps = np.empty((count + 1, n, w))
+        self.library.chain(count, n, w, *_given(step, maps))
+        return maps
+
+    def recover(
+        self,
+        orbit: Orbit,
+        by_stage: Array,
+        by_unknown: Array,
+        nodes: Array,
+        outer: Array,
+        constant: float,
+    ) -> tuple[Array, Array]:
+        """Return the increments of stages and unknowns from their maps."""
+        (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
+        stages, algebraic = np.empty((count, ncol, n)), np.empty((count, ncol, m))
+        self.library.recover(
+            *(count, ncol, n, m, len(outer), constant),
+            *_given(by_stage, by_unknown, orbit.mesh.scheme.stage_rates),
+            *_given(orbit.grid.width, nodes, outer, stages, algebraic, np.empty(n)),
+        )
+        return stages, algebraic
+
+
+def routines(system: System) -> Routines | None:
+    """Return what a system has compiled, or None where NumPy is to do."""
+    with_compiler = compiling(system)
+    if with_compiler is None or len(system.states) >= LARGE:
+        return None
+    library = with_compiler.library(_source())
+    return None if library is None else _routines(library)
+
+
+@cache
+def _source() -> str:
+    return resources.files("periodic.collocation").joinpath("elimination.c").read_text()
+
+
+@cache
+def _routines(library: ctypes.CDLL) -> Routines:
+    return Routines(library)
+
+
+def _check(line: LinearisationLike, points: int, n: int, m: int) -> None:
+    """Refuse what C would read past the end of."""
+    lengths = {"residual": (), "d_rate": (n,), "d_state": (n,), "d_algebraic": (m,), "d_phase": ()}
+    for name, tail in {**lengths, "d_parameter": line.d_parameter.shape[2:]}.items():
+        shape, wanted = getattr(line, name).shape, (points, n + m, *tail)
+        if shape != wanted:
+            raise ValueError(f"{name} of the linearised equations has shape {shape}; it must be {wanted}")
+
+
+def _given(*arrays: Array) -> list[ctypes.Array[ctypes.c_char]]:
+    return [_Address.from_buffer(_plain(array).data) for array in arrays]
+
+
+def _plain(array: Array) -> Array:
+    """The array as C takes it."""
+    plain = np.ascontiguousarray(array, dtype=float)
+    return plain if plain.flags.writeable else plain.copy()

@@ -1,0 +1,349 @@
+/* What `periodic.collocation.condensation` and `periodic.linear.bordering` do, point by point and interval by interval.
+
+   Arrays are contiguous, row by row; the names and shapes are those of the Python code.
+   w1 = 1 + 2n + q columns of a point's rows, w = 1 + n + q columns of an interval's. */
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+typedef ptrdiff_t whole;
+
+enum { DONE, NOT_FINITE, SINGULAR };
+
+/* Solve A X = B with partial pivoting; rows of `both` are those of (A | B), B becomes X. */
+static int solve(whole size, whole right, double *restrict both)
+{
+    const whole width = size + right;
+    for (whole k = 0; k < size; k++) {
+        whole best = k;
+        for (whole i = k + 1; i < size; i++)
+            if (fabs(both[i * width + k]) > fabs(both[best * width + k]))
+                best = i;
+        double *restrict row = both + k * width, *other = both + best * width;
+        if (best != k)
+            for (whole j = k; j < width; j++) {
+                const double held = row[j];
+                row[j] = other[j];
+                other[j] = held;
+            }
+        if (row[k] == 0)
+            return SINGULAR;
+        const double inverse = 1 / row[k];
+        for (whole i = k + 1; i < size; i++) {
+            double *restrict below = both + i * width;
+            const double factor = below[k] * inverse;
+            if (factor != 0)
+                for (whole j = k + 1; j < width; j++)
+                    below[j] -= factor * row[j];
+        }
+    }
+    for (whole k = size - 1; k >= 0; k--) {
+        double *restrict row = both + k * width;
+        for (whole i = k + 1; i < size; i++)
+            for (whole j = size; j < width; j++)
+                row[j] -= row[i] * both[i * width + j];
+        const double inverse = 1 / row[k];
+        for (whole j = size; j < width; j++)
+            row[j] *= inverse;
+    }
+    return DONE;
+}
+
+static int finite_all(whole count, const double *values)
+{
+    for (whole i = 0; i < count; i++)
+        if (!(fabs(values[i]) <= DBL_MAX))
+            return 0;
+    return 1;
+}
+
+/* Rows c (w1) of a point: residual, d rate, d state, dy; without the unknowns, which `algebraic` has.
+   local is room for m (m + w1) numbers. */
+static int eliminate(whole n, whole m, whole w1, const double *unknown, double *columns,
+                     double *restrict algebraic, double *local)
+{
+    for (whole r = 0; r < m; r++) {
+        memcpy(local + r * (m + w1), unknown + (n + r) * m, m * sizeof(double));
+        memcpy(local + r * (m + w1) + m, columns + (n + r) * w1, w1 * sizeof(double));
+    }
+    if (solve(m, w1, local) != DONE)
+        return SINGULAR;
+    for (whole i = 0; i < m; i++) {
+        double *found = algebraic + i * w1;
+        memcpy(found, local + i * (m + w1) + m, w1 * sizeof(double));
+        for (whole r = 0; r < n; r++) {
+            const double factor = unknown[r * m + i];
+            if (factor != 0)
+                for (whole s = 0; s < w1; s++)
+                    columns[r * w1 + s] -= factor * found[s];
+        }
+    }
+    return DONE;
+}
+
+/* Kinematic rows a dq' + b dv = .. of an interval's columns (ncol, n, w1), as in `kinematic.py`:
+   position[r] and velocity[r] are their states, position[r] is -1 for other rows. */
+static void find_kinematic(whole ncol, whole n, whole w1, const double *columns, whole *position,
+                           whole *velocity, whole *gone)
+{
+    for (whole s = 0; s < n; s++)
+        gone[s] = 0;
+    for (whole r = 0; r < n; r++) {
+        whole rate = -1, state = -1, fits = 1;
+        position[r] = -1;
+        for (whole l = 0; l < ncol && fits; l++) {
+            const double *c = columns + (l * n + r) * w1 + 1;
+            for (whole s = 0; s < n; s++) {
+                if (c[s] != 0) {
+                    fits &= rate < 0 || rate == s;
+                    rate = s;
+                }
+                if (c[n + s] != 0) {
+                    fits &= state < 0 || state == s;
+                    state = s;
+                }
+            }
+            fits = fits && rate >= 0 && c[rate] != 0;
+        }
+        fits = fits && state >= 0 && state != rate && !gone[rate] && !gone[state];
+        for (whole i = 0; fits && i < ncol * n; i++)
+            fits = i % n == r || columns[i * w1 + 1 + rate] == 0;
+        for (whole other = 0; other < r; other++)
+            fits = fits && !(position[other] >= 0 && velocity[other] == rate);
+        if (fits) {
+            position[r] = rate;
+            velocity[r] = state;
+            gone[rate] = 1;
+        }
+    }
+}
+
+/* Stages (ncol, n, w) of an interval of width h from its columns (ncol, n, w1). integral (ncol, ncol)
+   is the inverse of the stages' part of stage_rates. `both`: room for ncol n (ncol n + w + 1) numbers,
+   marks: for 4n. */
+static int solve_stages(whole ncol, whole n, whole w, double h, const double *columns,
+                        const double *stage_rates, const double *integral, double *restrict stages,
+                        double *restrict both, whole *marks)
+{
+    const whole w1 = w + n;
+    whole *position = marks, *velocity = marks + n, *gone = marks + 2 * n, *place = marks + 3 * n;
+    find_kinematic(ncol, n, w1, columns, position, velocity, gone);
+    whole kept = 0;
+    for (whole s = 0; s < n; s++)
+        place[s] = gone[s] ? -1 : kept++;
+    const whole size = ncol * kept, width = size + w;
+    double *restrict ratio = both + size * width; /* (n, ncol): b / a of kinematic rows */
+    for (whole r = 0; r < n; r++)
+        for (whole l = 0; position[r] >= 0 && l < ncol; l++) {
+            const double *c = columns + (l * n + r) * w1 + 1;
+            ratio[r * ncol + l] = h * (c[n + velocity[r]] / c[position[r]]);
+        }
+    const double inverse = 1 / h;
+
+    /* Stages of positions but for their velocities' part: h integral (given rates). */
+    memset(stages, 0, ncol * n * w * sizeof(double));
+    for (whole r = 0; r < n; r++)
+        for (whole k = 0; position[r] >= 0 && k < ncol; k++) {
+            const double *c = columns + (k * n + r) * w1;
+            const double slope = c[1 + position[r]], length = h / slope;
+            for (whole l = 0; l < ncol; l++) {
+                const double factor = integral[l * ncol + k] * length;
+                double *x = stages + (l * n + position[r]) * w;
+                x[0] -= factor * c[0];
+                for (whole j = 1 + n; j < w; j++)
+                    x[j] -= factor * c[n + j];
+                x[1 + position[r]] -= factor * slope * (stage_rates[k * (ncol + 1)] * inverse);
+            }
+        }
+
+    double *row = both;
+    for (whole l = 0; l < ncol; l++) {
+        const double *weights = stage_rates + l * (ncol + 1);
+        for (whole r = 0; r < n; r++) {
+            if (position[r] >= 0)
+                continue;
+            const double *c = columns + (l * n + r) * w1;
+            double *right = row + size;
+            memset(row, 0, size * sizeof(double));
+            for (whole i = 0; i < ncol; i++)
+                for (whole s = 0; s < n; s++)
+                    if (place[s] >= 0)
+                        row[i * kept + place[s]] = c[1 + s] * (weights[1 + i] * inverse);
+            for (whole s = 0; s < n; s++)
+                if (place[s] >= 0)
+                    row[l * kept + place[s]] += c[1 + n + s];
+            right[0] = -c[0];
+            for (whole s = 0; s < n; s++)
+                right[1 + s] = -c[1 + s] * (weights[0] * inverse);
+            for (whole j = 1 + n; j < w; j++)
+                right[j] = -c[n + j];
+            for (whole k = 0; k < n; k++) {
+                const whole q = position[k];
+                if (q < 0 || c[1 + n + q] == 0)
+                    continue;
+                const double factor = c[1 + n + q], *x = stages + (l * n + q) * w;
+                for (whole j = 0; j < w; j++)
+                    right[j] -= factor * x[j];
+                for (whole i = 0; i < ncol; i++)
+                    row[i * kept + place[velocity[k]]] -=
+                        factor * integral[l * ncol + i] * ratio[k * ncol + i];
+            }
+            row += width;
+        }
+    }
+    if (solve(size, w, both) != DONE)
+        return SINGULAR;
+    for (whole l = 0; l < ncol; l++)
+        for (whole s = 0; s < n; s++)
+            if (place[s] >= 0)
+                memcpy(stages + (l * n + s) * w, both + (l * kept + place[s]) * width + size,
+                       w * sizeof(double));
+    for (whole r = 0; r < n; r++)
+        for (whole k = 0; position[r] >= 0 && k < ncol; k++) {
+            const double *v = stages + (k * n + velocity[r]) * w;
+            for (whole l = 0; l < ncol; l++) {
+                const double factor = integral[l * ncol + k] * ratio[r * ncol + k];
+                double *x = stages + (l * n + position[r]) * w;
+                for (whole j = 0; j < w; j++)
+                    x[j] -= factor * v[j];
+            }
+        }
+    return DONE;
+}
+
+/* The inverse (ncol, ncol) of the stages' part of stage_rates. */
+static void integrate(whole ncol, const double *stage_rates, double *integral, double *both)
+{
+    for (whole l = 0; l < ncol; l++)
+        for (whole i = 0; i < ncol; i++) {
+            both[l * 2 * ncol + i] = stage_rates[l * (ncol + 1) + 1 + i];
+            both[l * 2 * ncol + ncol + i] = l == i;
+        }
+    solve(ncol, ncol, both);
+    for (whole l = 0; l < ncol; l++)
+        memcpy(integral + l * ncol, both + l * 2 * ncol + ncol, ncol * sizeof(double));
+}
+
+/* work holds ncol (n+m) w1 + m (m + w1) + ncol n (ncol n + w + 1) + 3 ncol ncol numbers, marks 4n. */
+int condense(whole count, whole ncol, whole n, whole m, whole k, whole p,
+             const double *line_residual, const double *d_rate, const double *d_state,
+             const double *d_algebraic, const double *d_phase, const double *d_parameter,
+             const double *width, const double *left_gradient, const double *width_gradient,
+             const double *points, const double *stage_rates, const double *end,
+             const double *knots, const double *knot_rates, const double *nodes,
+             double *step, double *stages, double *algebraic, double *residual, double *work,
+             whole *marks)
+{
+    const whole q = k + p, rows = n + m, w1 = 1 + 2 * n + q, w = 1 + n + q;
+    double *columns = work, *integral = columns + ncol * n * w1 + m * w1;
+    double *local = integral + ncol * ncol, *both = local + m * (m + w1);
+    double largest = 0;
+    integrate(ncol, stage_rates, integral, both);
+    for (whole j = 0; j < count; j++) {
+        for (whole l = 0; l < ncol; l++) {
+            const whole point = j * ncol + l;
+            const double *rate = knot_rates + (j * (ncol + 1) + l + 1) * n;
+            const double *unknown = d_algebraic + point * rows * m;
+            double *own = columns + l * n * w1; /* the algebraic rows lie where the next point's will */
+            for (whole r = 0; r < rows; r++) {
+                const whole row = point * rows + r;
+                double *c = own + r * w1, along = 0;
+                c[0] = line_residual[row];
+                largest = fmax(largest, fabs(c[0]));
+                memcpy(c + 1, d_rate + row * n, n * sizeof(double));
+                memcpy(c + 1 + n, d_state + row * n, n * sizeof(double));
+                for (whole s = 0; s < n; s++)
+                    along += c[1 + s] * rate[s];
+                for (whole a = 0; a < k; a++) {
+                    const double stretch = width_gradient[j * k + a];
+                    const double shift = left_gradient[j * k + a] + stretch * points[l];
+                    c[1 + 2 * n + a] = d_phase[row] * shift - along * (stretch / width[j]);
+                }
+                memcpy(c + 1 + 2 * n + k, d_parameter + row * p, p * sizeof(double));
+            }
+            if (!finite_all(rows * w1, own) || !finite_all(rows * m, unknown))
+                return NOT_FINITE;
+            if (m && eliminate(n, m, w1, unknown, own, algebraic + point * m * w1, local) != DONE)
+                return SINGULAR;
+        }
+        double *inside = stages + j * ncol * n * w;
+        if (solve_stages(ncol, n, w, width[j], columns, stage_rates, integral, inside, both, marks) != DONE)
+            return SINGULAR;
+        for (whole r = 0; r < n; r++) {
+            double *s = step + (j * n + r) * w, gap = -nodes[(j + 1) * n + r];
+            memset(s, 0, w * sizeof(double));
+            for (whole l = 0; l < ncol; l++)
+                if (end[1 + l] != 0)
+                    for (whole i = 0; i < w; i++)
+                        s[i] += end[1 + l] * inside[(l * n + r) * w + i];
+            for (whole l = 0; l <= ncol; l++)
+                gap += end[l] * knots[(j * (ncol + 1) + l) * n + r];
+            s[1 + r] += end[0];
+            s[0] += gap;
+        }
+    }
+    *residual = largest;
+    return DONE;
+}
+
+/* maps (count + 1, n, w): affine maps of (1, dx_0, dy), from step (count, n, w). */
+void chain(whole count, whole n, whole w, const double *step, double *restrict maps)
+{
+    memset(maps, 0, n * w * sizeof(double));
+    for (whole r = 0; r < n; r++)
+        maps[r * w + 1 + r] = 1;
+    for (whole j = 0; j < count; j++)
+        for (whole r = 0; r < n; r++) {
+            const double *s = step + (j * n + r) * w, *before = maps + j * n * w;
+            double *restrict after = maps + ((j + 1) * n + r) * w;
+            memcpy(after, s, w * sizeof(double));
+            memset(after + 1, 0, n * sizeof(double));
+            for (whole i = 0; i < n; i++)
+                for (whole c = 0; c < w; c++)
+                    after[c] += s[1 + i] * before[i * w + c];
+        }
+}
+
+/* Increments of stages (count, ncol, n) and unknowns (count, ncol, m) from those of mesh points and y.
+
+   rate is room for n numbers. */
+void recover(whole count, whole ncol, whole n, whole m, whole q, double constant,
+             const double *stage_map, const double *algebraic_map, const double *stage_rates,
+             const double *width, const double *nodes, const double *outer,
+             double *restrict stages, double *restrict algebraic, double *restrict rate)
+{
+    const whole w = 1 + n + q, w1 = w + n;
+    for (whole j = 0; j < count; j++) {
+        const double *start = nodes + j * n;
+        double *inside = stages + j * ncol * n;
+        for (whole i = 0; i < ncol * n; i++) {
+            const double *row = stage_map + (j * ncol * n + i) * w;
+            double sum = row[0] * constant;
+            for (whole s = 0; s < n; s++)
+                sum += row[1 + s] * start[s];
+            for (whole s = 0; s < q; s++)
+                sum += row[1 + n + s] * outer[s];
+            inside[i] = sum;
+        }
+        for (whole l = 0; m && l < ncol; l++) {
+            const double *weights = stage_rates + l * (ncol + 1), *state = inside + l * n;
+            for (whole s = 0; s < n; s++) {
+                rate[s] = weights[0] * start[s];
+                for (whole i = 0; i < ncol; i++)
+                    rate[s] += weights[1 + i] * inside[i * n + s];
+                rate[s] /= width[j];
+            }
+            for (whole i = 0; i < m; i++) {
+                const double *row = algebraic_map + ((j * ncol + l) * m + i) * w1;
+                double sum = row[0] * constant;
+                for (whole s = 0; s < n; s++)
+                    sum += row[1 + s] * rate[s] + row[1 + n + s] * state[s];
+                for (whole s = 0; s < q; s++)
+                    sum += row[1 + 2 * n + s] * outer[s];
+                algebraic[(j * ncol + l) * m + i] = -sum;
+            }
+        }
+    }
+}

@@ -1,0 +1,26 @@
+"""Event nodes: mesh points that lie where a switch passes a level, so that kinks fall between intervals."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.system import System
+
+
+def event_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Row]:
+    """Return the condition of each event node, linearised: s(x, phi, p) = level where its segment begins."""
+    return [_row(system, orbit, index, free) for index in range(len(orbit.phases))]
+
+
+def _row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
+    node, event, k = orbit.mesh.starts[index], orbit.mesh.events[index], len(orbit.phases)
+    where = (orbit.nodes[node : node + 1], orbit.phases[index : index + 1], orbit.parameter)
+    d_state, d_phase, d_parameter = system.switch_gradient(*where)
+    nodes = np.zeros_like(orbit.nodes)
+    nodes[node] = d_state[0, event.switch]
+    outer = np.zeros(k + len(free))
+    outer[index] = d_phase[0, event.switch]
+    outer[k:] = d_parameter[0, event.switch, list(free)]
+    return Row(float(system.switch(*where)[0, event.switch]) - event.level, nodes, outer)

@@ -1,0 +1,254 @@
+"""Which kinks of an orbit the mesh should be tied to.
+
+A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest
+that is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and
+returns) shorter than a threshold are left to the ordinary mesh, where they are too weak to matter: an
+event node tied to a passage that is about to vanish would turn the continuation back on itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from periodic.checks import at_least_0, number
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System
+
+SAME = 1e-9
+"""Phases closer than this are the same."""
+
+DEEPEST = 0.1
+"""Shallowest switch level worth an event node, in tolerances or errors of the states."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A passage of a switch through a level along an orbit.
+
+    slope: the smaller of |ds/dtau| at the collocation points before and after it.
+    """
+
+    event: EventNode
+    phase: float
+    slope: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class KinkSettings:
+    """When the mesh is tied to a passage of a switch by an event node.
+
+    Parameters
+    ----------
+    appear, vanish : float
+        Shortest excursion (rad) that gets new event nodes, and below which present ones go.
+    deepest : float, optional
+        Levels of a switch between 0 and this are not used; below the accuracy of the states themselves a
+        level has no meaning. Default a tenth of the tolerance.
+    exchange : float
+        How many times deeper another level must be to replace the one in use.
+    steep : float
+        Least slope of a passage, as a part of the slope at the shallowest level.
+
+    Raises
+    ------
+    ValueError
+        For numbers that are not allowed, in one sentence.
+    """
+
+    appear: float = 0.10
+    vanish: float = 0.05
+    deepest: float | None = None
+    exchange: float = 5.0
+    steep: float = 0.25
+
+    def __post_init__(self) -> None:
+        if not 0 < number("vanish", self.vanish) <= number("appear", self.appear):
+            raise ValueError(
+                f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}"
+            )
+        if self.deepest is not None:
+            at_least_0("deepest", self.deepest)
+        if not 1 <= number("exchange", self.exchange) < np.inf:
+            raise ValueError(f"exchange is {self.exchange}; it must be a number of at least 1")
+        if not 0 <= number("steep", self.steep) <= 1:
+            raise ValueError(f"steep is {self.steep}; it must lie between 0 and 1")
+
+    def at(self, tolerance: float) -> KinkSettings:
+        """Return the settings for a tolerance of the orbits.
+
+        Parameters
+        ----------
+        tolerance : float
+            Bound of their error estimates.
+
+        Returns
+        -------
+        KinkSettings
+            With `deepest` chosen, where it was left open.
+        """
+        return replace(self, deepest=DEEPEST * tolerance) if self.deepest is None else self
+
+
+def crossings(system: System, orbit: Orbit) -> list[Crossing]:
+    """Return all passages of all switches through their levels, in order of phase for each level.
+
+    Signs are read at the collocation points alone: only there do the states fulfil the equations exactly,
+    and a switch may stay far closer to its level than the interpolation error between them. Phases are
+    interpolated linearly.
+    """
+    if not system.switches:
+        return []
+    tau, flat = orbit.stage_phases.ravel(), (-1, orbit.stages.shape[2])
+    state = orbit.stages.reshape(flat)
+    values = system.switch(state, tau, orbit.parameter)
+    d_state, d_phase, _ = system.switch_gradient(state, tau, orbit.parameter)
+    slopes = np.abs(d_phase + np.einsum("tkn,tn->tk", d_state, orbit.knot_rates[:, 1:].reshape(flat)))
+    tau = np.append(tau, tau[0] + orbit.mesh.period)
+    values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
+    found = []
+    for k, switch in enumerate(system.switches):
+        above = values[:, k, None] > np.array(switch.levels)
+        for i, j in np.argwhere(above[1:] != above[:-1]):
+            level = switch.levels[j]
+            begin, end = values[i, k] - level, values[i + 1, k] - level
+            phase = tau[i] + (tau[i + 1] - tau[i]) * begin / (begin - end)
+            event = EventNode(k, 1 if end > begin else -1, level)
+            found.append(Crossing(event, float(phase), float(slopes[i : i + 2, k].min())))
+    return found
+
+
+def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
+    found = crossings(system, orbit)
+    chosen: list[Crossing] = []
+    for k, switch in enumerate(system.switches):
+        levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
+        kept = [
+            _merged([c for c in found if c.event.switch == k and c.event.level == level], orbit, settings)
+            for level in levels
+        ]
+        directions = (switch.direction,) if switch.direction else (-1, 1)
+        for excursion in _excursions(kept[0]) if kept else []:
+            chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
+    return sorted(chosen, key=lambda crossing: crossing.phase)
+
+
+def _kink(
+    kept: list[list[Crossing]],
+    excursion: tuple[Crossing, Crossing],
+    direction: int,
+    orbit: Orbit,
+    settings: KinkSettings,
+) -> Crossing:
+    """The passage within an excursion that marks the kink at its begin (-1) or end (+1)."""
+    edge = excursion[0] if direction < 0 else excursion[1]
+    candidates = []
+    for level in kept:
+        inside = [
+            c for c in level if c.event.direction == direction and _inside(c, excursion, orbit.mesh.period)
+        ]
+        candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
+    steep = [c for c in candidates if c.slope >= settings.steep * edge.slope]
+    deepest = min(steep, key=lambda c: c.event.level)
+    reach = settings.exchange * deepest.event.level
+    used = [c for c in steep if _is_tied(c, orbit) and c.event.level <= reach]
+    return used[0] if used else deepest
+
+
+def _wrapped(phase: float, orbit: Orbit) -> float:
+    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)
+
+
+def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
+    """Pair the crossings of one level: each falling one with the rising one that follows."""
+    falling = [i for i, c in enumerate(kept) if c.event.direction < 0]
+    return [(kept[i], kept[(i + 1) % len(kept)]) for i in falling]
+
+
+def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
+    begin, end = excursion[0].phase, excursion[1].phase
+    return bool(np.mod(crossing.phase - begin + SAME, period) <= np.mod(end - begin, period) + 2 * SAME)
+
+
+def _merged(found: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Leave out pairs of neighbouring crossings that lie closer than the threshold."""
+    kept = list(found)
+    while len(kept) >= 2:
+        phases = np.array([c.phase for c in kept])
+        gaps = np.diff(np.append(phases, phases[0] + orbit.mesh.period))
+        limits = np.array(
+            [_limit(kept[i], kept[(i + 1) % len(kept)], orbit, settings) for i in range(len(kept))]
+        )
+        short = int(np.argmin(gaps / limits))
+        if gaps[short] >= limits[short]:
+            break
+        drop = {short, (short + 1) % len(kept)}
+        kept = [c for i, c in enumerate(kept) if i not in drop]
+    return kept
+
+
+def _limit(a: Crossing, b: Crossing, orbit: Orbit, settings: KinkSettings) -> float:
+    return settings.vanish if _is_tied(a, orbit) or _is_tied(b, orbit) else settings.appear
+
+
+def _is_tied(crossing: Crossing, orbit: Orbit) -> bool:
+    return match(crossing, orbit) is not None
+
+
+def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | None:
+    """Return the index of the orbit's event node that is this crossing, if one is."""
+    for i, (event, phase) in enumerate(zip(orbit.mesh.events, orbit.phases, strict=True)):
+        if event == crossing.event and abs(_wrapped(crossing.phase - phase, orbit)) < tolerance:
+            return i
+    return None
+
+
+def fits(chosen: list[Crossing], orbit: Orbit) -> bool:
+    """Whether the orbit's mesh is tied to exactly these crossings."""
+    matched = [match(c, orbit) for c in chosen]
+    return None not in matched and len(chosen) == len(orbit.phases)
+
+
+def genuine(system: System, orbit: Orbit) -> bool:
+    """Whether every event node is a crossing in its own direction, not past where a pair vanished."""
+    if not orbit.mesh.events:
+        return True
+    at = orbit.nodes[orbit.mesh.starts]
+    d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
+    rates = orbit.node_rates[orbit.mesh.starts]
+    for i, event in enumerate(orbit.mesh.events):
+        slope = d_phase[i, event.switch] + d_state[i, event.switch] @ rates[i]
+        if slope * event.direction <= 0:
+            return False
+    return True
+
+
+def placed(system: System, orbit: Orbit, chosen: list[Crossing]) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and exact phases of crossings for a new mesh, the first phase in [0, period)."""
+    phases = np.array([_exact(system, orbit, c) for c in chosen])
+    period = orbit.mesh.period
+    return tuple(c.event for c in chosen), phases - period * np.floor(phases[:1] / period)
+
+
+def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:
+    """The phase of a crossing: the event node's own where the mesh is tied to it, else on the polynomial."""
+    index = match(crossing, orbit)
+    if index is not None:
+        turns = np.round((crossing.phase - orbit.phases[index]) / orbit.mesh.period)
+        return float(orbit.phases[index] + turns * orbit.mesh.period)
+
+    def value(tau: float) -> float:
+        at = np.array([tau])
+        switch = system.switch(orbit.state(at), at, orbit.parameter)[0, crossing.event.switch]
+        return float(switch) - crossing.event.level
+
+    reach = orbit.grid.width[orbit.locate(np.array([crossing.phase]))[0][0]]
+    begin, end = crossing.phase - reach, crossing.phase + reach
+    if value(begin) * value(end) >= 0:
+        return crossing.phase
+    return float(scipy.optimize.brentq(value, begin, end, xtol=1e-13))

@@ -1,0 +1,221 @@
+"""Orthogonal collocation on meshes tied to the kinks of the motion: the method for every orbit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from periodic.checks import whole
+from periodic.collocation import kinks
+from periodic.collocation.condensation import condensation
+from periodic.collocation.event import event_rows
+from periodic.collocation.kinks import Crossing, KinkSettings
+from periodic.collocation.local import relax
+from periodic.collocation.residual import evaluated
+from periodic.collocation.unresolved import lost
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
+from periodic.correction.meshes import Refinement, wanted_ntst
+from periodic.correction.newton import Correction, in_order
+from periodic.correction.outcome import EventsCrossedError, Outcome
+from periodic.correction.problem import Problem
+from periodic.linear.operator import LinearSolver, Operator
+from periodic.linear.unknowns import Increment
+from periodic.orbit.construction import at_rest, transfer
+from periodic.orbit.mesh import Mesh, uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.redistribution import redistribute
+from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.stability.spectrum import Spectrum
+from periodic.system import System
+
+DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
+"""Collocation points in each interval down to a tolerance."""
+
+ASIDE = (1.0, 0.0, 10.0)
+"""How far before its kink an event node begins on a new mesh (rad), in tolerances; tried in turn."""
+
+SHALLOWER = (10.0, 100.0)
+"""How much shallower event nodes are tried where a new mesh fails."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Collocation(Discretisation):
+    """Orthogonal collocation R(x', x, z, tau, p) = 0 at ncol points in each of ntst intervals.
+
+    Parameters
+    ----------
+    scheme : Scheme, optional
+        Family and number of collocation points; default Radau IIA with as many as the tolerance asks for.
+    ntst, ntst_min, ntst_max : int
+        Intervals to begin with, fewest and most.
+    kinks : KinkSettings, optional
+        When the mesh is tied to a passage of a switch; default what the tolerance asks for.
+    solver : callable
+        The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+    tolerance : float
+        What meshes are made for; set by the trace.
+
+    References
+    ----------
+    Ascher, Mattheij & Russell, Numerical Solution of Boundary Value Problems, 1995.
+    Doedel, Keller & Kernevez, Int. J. Bifurcation and Chaos 1 (1991) 745.
+    """
+
+    scheme: Scheme | None = None
+    ntst: int = 24
+    ntst_min: int = 8
+    ntst_max: int = 1000
+    kinks: KinkSettings | None = None
+    solver: LinearSolver = condensation
+    tolerance: float = 1e-7
+
+    def __post_init__(self) -> None:
+        check_intervals(self.ntst, self.ntst_min, self.ntst_max)
+        check_scheme(self.scheme)
+        if self.kinks is not None and not isinstance(self.kinks, KinkSettings):
+            raise ValueError(f"kinks is {self.kinks!r}; it must be KinkSettings(...)")
+        if not callable(self.solver):
+            raise ValueError(f"solver is {self.solver!r}; it must be a function that makes an Operator")
+
+    @property
+    def shortest(self) -> float:
+        """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
+        return 0.005 * self.tolerance
+
+    @property
+    def alternatives(self) -> tuple[Discretisation, ...]:
+        """The same with other schemes: Newton's way from a rest is a matter of luck."""
+        schemes = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
+        return tuple(replace(self, scheme=scheme) for scheme in schemes)
+
+    def at(self, tolerance: float) -> Collocation:
+        """Return it with scheme, depth of event nodes and meshes for a tolerance."""
+        return replace(
+            self,
+            scheme=self.scheme or scheme_for(tolerance),
+            kinks=(self.kinks or KinkSettings()).at(tolerance),
+            tolerance=tolerance,
+        )
+
+    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
+        """Return the orbit at rest, or one carried to this scheme, its hard intervals solved locally."""
+        scheme = self.scheme or Scheme()
+        if near is None:
+            return at_rest(system, uniform(scheme, self.ntst), parameter)
+        if near.equilibrium:
+            near = transfer(near, uniform(scheme, self.ntst), near.phases)
+        old = near.mesh
+        mesh = Mesh(scheme, old.breaks, old.events, old.period)
+        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
+        return relax(system, adopted)
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
+        """Return the collocation equations and those of the event nodes."""
+        if not in_order(orbit):
+            raise EventsCrossedError
+        return self.solver(system, orbit, evaluated(system, orbit, free), event_rows(system, orbit, free))
+
+    def accepted(self, system: System, correction: Correction) -> Correction:
+        """Return it as failed where an event node is not a crossing in its own direction."""
+        if kinks.genuine(system, correction.orbit):
+            return correction
+        return replace(correction, outcome=Outcome.EVENTS_CROSSED)
+
+    def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+        """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
+
+        Past its kink a switch hardly changes, and Newton has nothing to hold on to.
+        """
+        deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
+        for aside in ASIDE if deep.any() else (0.0,):
+            yield relax(system, transfer(orbit, mesh, phases + aside * self.tolerance * deep))
+
+    def error(
+        self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
+    ) -> ErrorEstimate:
+        """Estimate the errors by a Newton step on the halved mesh."""
+        found = deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
+        if found is UNKNOWN:
+            return found
+        multiplier = max(found.multiplier, lost(problem.system, correction.orbit))
+        return replace(found, multiplier=multiplier)
+
+    def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
+        """Say to which events the mesh should be tied, and how many intervals it needs."""
+        return CollocationRefinement(self, system, orbit, error)
+
+
+class CollocationRefinement(Refinement):
+    """Meshes for an orbit of `Collocation`."""
+
+    def __init__(self, method: Collocation, system: System, orbit: Orbit, error: ErrorEstimate) -> None:
+        super().__init__(orbit, error)
+        self.method, self.system = method, system
+
+    @cached_property
+    def wanted(self) -> list[Crossing]:
+        """The crossings to tie the mesh to, at levels that the orbit is accurate enough for."""
+        settings, meaningful = self._settings, kinks.DEEPEST * min(self.error.orbit, 1.0)
+        deepest = max(settings.deepest or 0.0, meaningful)
+        return kinks.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
+
+    @property
+    def _settings(self) -> KinkSettings:
+        return self.method.kinks or KinkSettings()
+
+    @property
+    def fits(self) -> bool:
+        """Whether the mesh is tied to just the crossings it should be."""
+        return kinks.fits(self.wanted, self.orbit)
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the orbit has the largest number of intervals."""
+        return self.orbit.mesh.ntst >= self.method.ntst_max
+
+    @property
+    def _ntst(self) -> int:
+        method = self.method
+        return wanted_ntst(self.orbit, self.error, method.tolerance, method.ntst_min, method.ntst_max)
+
+    def refined(self) -> Mesh:
+        """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
+        orbit = self.orbit
+        return redistribute(orbit, self._ntst, orbit.mesh.events, orbit.phases, self.method.shortest)
+
+    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
+        """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        for chosen in self._choices():
+            tied, phases = kinks.placed(self.system, self.orbit, chosen)
+            yield redistribute(self.orbit, self._ntst, tied, phases, self.method.shortest), phases
+
+    def _choices(self) -> Iterator[list[Crossing]]:
+        yield self.wanted
+        levels = [c.event.level for c in self.wanted if c.event.level > 0]
+        for factor in SHALLOWER if levels else ():
+            shallower = replace(self._settings, deepest=factor * min(levels))
+            yield kinks.wanted(self.system, self.orbit, shallower)
+
+
+def scheme_for(tolerance: float) -> Scheme:
+    """Return the scheme for a tolerance."""
+    points = (points for least, points in DEGREES.items() if tolerance >= least)
+    return Scheme(Family.RADAU, next(points, max(DEGREES.values())))
+
+
+def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
+    """Raise ValueError for numbers of intervals that are none, or not in order."""
+    for name, value in {"ntst": ntst, "ntst_min": ntst_min, "ntst_max": ntst_max}.items():
+        whole(name, value)
+    if not ntst_min <= ntst <= ntst_max:
+        raise ValueError(f"ntst is {ntst}; it must lie from ntst_min = {ntst_min} to ntst_max = {ntst_max}")
+
+
+def check_scheme(scheme: object) -> None:
+    """Raise ValueError for what is no scheme, nor left open."""
+    if scheme is not None and not isinstance(scheme, Scheme):
+        raise ValueError(f"scheme is {scheme!r}; it must be Scheme(family, ncol)")

@@ -1,0 +1,107 @@
+"""Collocation equations: the residual at the collocation points, linearised, with the unknowns z eliminated.
+
+At each collocation point R(x', x, z, tau, p) = 0 with x' the polynomial's derivative. The unknowns z are
+eliminated point by point through the algebraic rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import LinearisationLike, System
+
+BEFORE = 1e-9
+"""How far before a kink (rad) the equations are evaluated where a collocation point falls on it."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The linearised equations at all points.
+
+    columns (points, n+m, 1+2n+q): residual, d rate, d state, dy; d_algebraic (points, n+m, m).
+    """
+
+    columns: Array
+    d_algebraic: Array
+
+    @property
+    def residual(self) -> float:
+        """The largest residual."""
+        return float(np.abs(self.columns[:, :, 0]).max())
+
+
+def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> LinearisationLike:
+    """Return residual and derivatives at the collocation points of an orbit, interval by interval."""
+    count, ncol, n = orbit.stages.shape
+    rate = orbit.knot_rates[:, 1:]
+    tau, stages = _before_kinks(orbit, rate)
+    return system.linearise(
+        rate.reshape(-1, n),
+        stages.reshape(-1, n),
+        orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
+        tau.ravel(),
+        orbit.parameter,
+        free,
+    )
+
+
+def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
+    """Phases and stages at which the equations are evaluated: the collocation points, BEFORE a kink.
+
+    A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
+    either side, as rounding has it.
+    """
+    tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
+    if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
+        stages = stages.copy()
+        tau[ends, -1] -= BEFORE
+        stages[ends, -1] -= BEFORE * rate[ends, -1]
+    return tau, stages
+
+
+def rows_of(orbit: Orbit, line: LinearisationLike) -> Rows:
+    """Return the rows of evaluated equations, with columns for the event nodes' phases.
+
+    Raises FloatingPointError where they are not finite.
+    """
+    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
+    columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
+    return finite(Rows(np.concatenate(columns, axis=2), line.d_algebraic))
+
+
+def finite(rows: Rows) -> Rows:
+    """Return the rows. Raises FloatingPointError where they are not finite."""
+    if not (np.isfinite(rows.columns).all() and np.isfinite(rows.d_algebraic).all()):
+        raise FloatingPointError("the residual or a derivative is not finite")
+    return rows
+
+
+def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
+    """Derivatives of the rows in the event nodes' phases, which move and stretch the intervals."""
+    grid, points = orbit.grid, orbit.mesh.scheme.points
+    k = len(orbit.phases)
+    shift = grid.left_gradient[:, None, :] + grid.width_gradient[:, None, :] * points[:, None]
+    stretch = np.repeat(grid.width_gradient / grid.width[:, None], len(points), axis=0)
+    rate = orbit.knot_rates[:, 1:].reshape(len(d_phase), -1, 1)
+    return d_phase[:, :, None] * shift.reshape(len(d_phase), 1, k) - (d_rate @ rate) * stretch[:, None, :]
+
+
+def eliminate(rows: Rows, n: int) -> tuple[Array, Array]:
+    """Eliminate the unknowns z point by point through the algebraic rows.
+
+    Returns the differential rows without z, (points, n, w), and -dz as a map of the columns, (points, m, w).
+    """
+    unknown, columns = rows.d_algebraic, rows.columns
+    if unknown.shape[2] == 0:
+        return columns, columns[:, n:]
+    if unknown.shape[2] == 1:
+        if not unknown[:, n].all():
+            raise np.linalg.LinAlgError("an algebraic row does not depend on its unknown")
+        algebraic = columns[:, n:] / unknown[:, n:]
+        return columns[:, :n] - unknown[:, :n] * algebraic, algebraic
+    algebraic = np.linalg.solve(unknown[:, n:], columns[:, n:]).astype(float, copy=False)
+    return columns[:, :n] - unknown[:, :n] @ algebraic, algebraic

@@ -1,0 +1,60 @@
+"""Vibrations too fast for the mesh: what the multipliers lose to them.
+
+A stiffly accurate scheme damps what it does not resolve. A slow orbit is none the worse, but the multiplier
+of a fast vibration reads 0, on the halved mesh as well, where it is exp of the integral of Re lambda, lambda
+an eigenvalue of the Jacobian in dx' = J dx (adiabatically; the vibration is fast).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import System
+
+FAST = 4.0
+"""rad in an interval beyond which a vibration is looked at; below, the halved mesh tells its error."""
+
+Complex = NDArray[np.complex128]
+
+
+def lost(system: System, orbit: Orbit) -> float:
+    """Return by how much the multiplier of the least damped of such vibrations comes out too small."""
+    width = orbit.grid.width
+    jacobian = _jacobians(system, orbit) * width[:, None, None]
+    large = np.abs(jacobian @ jacobian).sum(axis=2).max(axis=1) > FAST**2
+    if not (large.any() and np.isfinite(jacobian).all()):
+        return 0.0
+    exponents = np.linalg.eigvals(jacobian[large]).astype(np.complex128)
+    fast = np.abs(exponents.imag) > FAST
+    held = fast.any(axis=1)
+    if not held.any():
+        return 0.0
+    least = np.where(fast, exponents.real, -np.inf)[held].argmax(axis=1)
+    exponents = exponents[held][np.arange(held.sum()), least]
+    true = exponents.real.sum()
+    found = np.minimum(exponents.real, np.log(np.abs(growth(orbit.mesh.scheme, exponents)))).sum()
+    return float(np.exp(min(true, 0.0)) - np.exp(min(found, 0.0)))
+
+
+def _jacobians(system: System, orbit: Orbit) -> Array:
+    """J of dx' = J dx about the middle of every interval, (N, n, n); not a number where it has none."""
+    k, n = orbit.mesh.scheme.ncol // 2, orbit.nodes.shape[1]
+    at = orbit.knot_rates[:, 1 + k], orbit.stages[:, k], orbit.algebraic[:, k], orbit.stage_phases[:, k]
+    found = system.linearise(*at, orbit.parameter)
+    rates = np.concatenate([found.d_rate, found.d_algebraic], axis=2)
+    try:
+        return np.linalg.solve(rates, -found.d_state)[:, :n].astype(float, copy=False)
+    except np.linalg.LinAlgError:  # rates that the equations do not determine there
+        return np.full((len(rates), n, n), np.nan)
+
+
+def growth(scheme: Scheme, exponents: Complex) -> Complex:
+    """Return what the scheme makes of exp(z) in one interval: its stability function, shape of z (k,)."""
+    inner = scheme.differentiation[1:, 1:] - exponents[:, None, None] * np.eye(scheme.ncol)
+    start = np.broadcast_to(-scheme.differentiation[1:, :1], (len(exponents), scheme.ncol, 1))
+    stages = np.linalg.solve(inner, start.astype(np.complex128))[:, :, 0]
+    end = scheme.basis(np.array([1.0]))[0]
+    return end[0] + stages @ end[1:]

@@ -1,0 +1,1 @@
+"""What else may determine an orbit: phases, levels, peaks, folds, doublings, tori; functionals."""

@@ -1,0 +1,1 @@
+"""One orbit to a tolerance: Newton's method, the arclength constraint, error estimate, mesh refinement."""

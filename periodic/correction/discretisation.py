@@ -1,0 +1,204 @@
+"""The boundary to discretisations: how an orbit is represented, linearised, held against its error, refined.
+
+A new one is one file: a class with the five methods of `Discretisation` that have no body here. Orbits are
+`periodic.orbit.orbit.Orbit` (or a subclass): values at mesh points and, in each interval, at the points of a
+scheme.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import Protocol, Self, runtime_checkable
+
+from periodic.correction.error import ErrorEstimate
+from periodic.correction.meshes import Refinement
+from periodic.correction.newton import Correction
+from periodic.correction.problem import Problem
+from periodic.linear.operator import Operator
+from periodic.linear.unknowns import Increment
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum, Stability
+from periodic.system import System
+
+
+@runtime_checkable
+class Discretisation(Protocol):
+    """A method for orbits. Its settings are its fields."""
+
+    @abstractmethod
+    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
+        """Return the orbit from which Newton starts.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+        near : Orbit or None
+            An orbit of any method to carry over; None for the system at rest.
+
+        Returns
+        -------
+        Orbit
+            The guess, in this discretisation's representation.
+        """
+
+    @abstractmethod
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
+        """Return the equations at an orbit, linearised in its unknowns and the free parameters.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            Where they are linearised.
+        free : tuple of int
+            Indices of the free parameters.
+
+        Returns
+        -------
+        Operator
+            The linearised equations.
+
+        Raises
+        ------
+        ArithmeticError, numpy.linalg.LinAlgError
+            Where that fails; see `periodic.correction.outcome.FAILURES`.
+        """
+
+    @abstractmethod
+    def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+        """Yield guesses for an orbit carried to another mesh.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            The orbit on its own mesh.
+        mesh : Mesh
+            The new mesh.
+        phases : ndarray, shape (k,)
+            Phases of the new mesh's event nodes, in rad.
+
+        Yields
+        ------
+        Orbit
+            A guess on the new mesh, the best first.
+        """
+
+    @abstractmethod
+    def error(
+        self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
+    ) -> ErrorEstimate:
+        """Estimate the errors of a converged orbit across its branch.
+
+        Parameters
+        ----------
+        problem : Problem
+            What is solved.
+        correction : Correction
+            The converged Newton iteration.
+        tangent : Increment
+            Tangent of the branch.
+        spectrum : Spectrum
+            The orbit's Floquet multipliers.
+
+        Returns
+        -------
+        ErrorEstimate
+            Relative errors of orbit, multipliers and continuation parameter.
+        """
+
+    @abstractmethod
+    def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
+        """Return the mesh refinement that an orbit calls for.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            A converged orbit.
+        error : ErrorEstimate
+            Its errors.
+
+        Returns
+        -------
+        Refinement
+            What to change of its mesh.
+        """
+
+    @property
+    def stability(self) -> Stability:
+        """What decides stability, and so which special points there are."""
+        return Stability.MULTIPLIERS
+
+    @property
+    def trusted(self) -> float:
+        """Error of the multipliers above which they tell no special points."""
+        return float("inf")
+
+    @property
+    def alternatives(self) -> tuple[Discretisation, ...]:
+        """Others with which a first orbit is looked for if Newton does not find it with this one."""
+        return ()
+
+    def at(self, tolerance: float) -> Self:
+        """Return the discretisation with what its settings leave open chosen for a tolerance.
+
+        Parameters
+        ----------
+        tolerance : float
+            Bound of an orbit's error estimate, relative.
+
+        Returns
+        -------
+        Discretisation
+            The same with all settings chosen.
+
+        Raises
+        ------
+        ValueError
+            Where its settings cannot meet the tolerance.
+        """
+        return self
+
+    def accepted(self, system: System, correction: Correction) -> Correction:
+        """Return a converged correction with its fundamental matrices, or as failed where it is spurious.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        correction : Correction
+            The converged Newton iteration.
+
+        Returns
+        -------
+        Correction
+            What a solution is made of.
+        """
+        return correction
+
+    def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
+        """Return the Floquet multipliers of a correction.
+
+        Parameters
+        ----------
+        correction : Correction
+            The Newton iteration, with its fundamental matrices.
+        trivial : int
+            How many multipliers are 1 whatever the parameters.
+
+        Returns
+        -------
+        Spectrum
+            Multipliers and eigenvectors.
+        """
+        return Spectrum(correction.fundamental, trivial)

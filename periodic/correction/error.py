@@ -1,0 +1,120 @@
+"""The error estimate: one Newton step on the mesh with every interval halved (deferred correction).
+
+The step solves the linearised equations on a discretisation that is 2^(ncol+1) times more accurate between
+mesh points, so its increment is the error of the orbit to first order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.newton import Linearise, NewtonSettings, newton_step
+from periodic.correction.outcome import FAILURES
+from periodic.correction.problem import Problem
+from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only
+from periodic.orbit.construction import bisect
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
+
+LEAST_SPAN = 1e-6
+"""Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
+
+SAFETY = 3.0
+"""How much smaller than a tolerance error estimates are to be, which beside kinks are not just right."""
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Relative errors of an orbit, as estimated.
+
+    Parameters
+    ----------
+    orbit : float
+        Largest error of the states over their largest peak to peak.
+    multiplier : float
+        Error of the sums of the Floquet multipliers and of their squares, relative to the largest one where
+        that exceeds 1; it is the multipliers' own error unless two of them all but coincide.
+    parameter : float
+        Error of the continuation parameter across the branch, so that of an LP its place, relative.
+    """
+
+    orbit: float
+    multiplier: float
+    parameter: float = 0.0
+
+    @property
+    def motion(self) -> float:
+        """What is held against the tolerance but for the multipliers."""
+        return SAFETY * max(self.orbit, self.parameter)
+
+    @property
+    def worst(self) -> float:
+        """What is held against the tolerance."""
+        return max(self.motion, SAFETY * self.multiplier)
+
+
+EXACT = ErrorEstimate(0.0, 0.0)
+"""Of what is not discretised."""
+
+UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
+"""Where the errors could not be estimated."""
+
+
+SMALL = 0.1
+"""Values of a parameter, in parts of its range, with which its error is compared at the least."""
+
+
+def deferred(
+    linearise: Linearise, problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spectrum
+) -> ErrorEstimate:
+    """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
+
+    `linearise` has the equations that it is held against on the halved mesh.
+    """
+    fine = bisect(orbit)
+    across = ArclengthConstraint(fine, _onto(tangent, fine), 0.0, problem.scale, problem.index)
+    closing = [*problem.side_conditions(fine), across]
+    try:
+        step = newton_step(linearise, problem.system, fine, problem.free, closing, NewtonSettings())
+        multiplier = spectral_distance(step.operator.fundamental[-1], spectrum)
+    except FAILURES:
+        return UNKNOWN
+    change = step.increment
+    nodes = step.operator.orbit.nodes - fine.nodes + change.nodes
+    stages = step.operator.orbit.stages - fine.stages + change.stages
+    moved = np.abs(at_fixed_phase(fine, nodes, change.phases)).max()
+    moved = max(moved, np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases)).max())
+    largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
+    parameter = float(abs(change.parameter) / largest)
+    return ErrorEstimate(float(moved) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+
+
+def _stage_shift(orbit: Orbit, moved: Array) -> Array:
+    """How far the collocation points move in tau with the event nodes, shape (N, ncol, 1)."""
+    grid, points = orbit.grid, orbit.mesh.scheme.points
+    left, stretch = grid.left_gradient @ moved, grid.width_gradient @ moved
+    return (left[:, None] + stretch[:, None] * points)[:, :, None]
+
+
+def spectral_distance(monodromy: Array, spectrum: Spectrum) -> float:
+    """Distance of two spectra in the sums of their first and second powers, over the largest multiplier.
+
+    Unlike the multipliers themselves these stay smooth where two of them meet.
+    """
+    other, scale = spectrum.monodromy, spectrum.radius
+    first = abs(np.trace(monodromy) - np.trace(other)) / scale
+    second = abs(np.trace(monodromy @ monodromy) - np.trace(other @ other)) / (2 * scale**2)
+    return float(max(first, second))
+
+
+def _onto(tangent: Increment, fine: Orbit) -> Increment:
+    """What the arclength constraint needs of a tangent on the halved mesh."""
+    coarse, blank = tangent.profile, parameter_only(fine, tangent.parameter)
+    profile = np.empty_like(fine.nodes)
+    profile[::2] = coarse
+    profile[1::2] = (coarse[1:] + coarse[:-1]) / 2
+    return Increment(blank.nodes, blank.stages, blank.algebraic, blank.phases, blank.parameters, profile)

@@ -1,0 +1,263 @@
+"""Damped Newton on the equations of an orbit and its side conditions, whatever the discretisation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.checks import between, number, positive, whole
+from periodic.correction.condition import SideCondition
+from periodic.correction.outcome import FAILURES, Outcome, outcome_of
+from periodic.linear.operator import Operator
+from periodic.linear.unknowns import Increment
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System
+
+Linearise = Callable[[System, Orbit, tuple[int, ...]], Operator]
+"""What linearises the equations at an orbit, in its unknowns and some free parameters; raises FAILURES."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonSettings:
+    """When Newton's iteration is converged, and how it is damped.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest relative increment of the last step, which is still taken.
+    close : float
+        Increment, in tolerances, up to which a linearisation has the multipliers and the tangent of the orbit
+        that it leads to; they take another one else.
+    max_iterations, max_halvings : int
+        Bounds on iterations, and on how often a step that makes things worse is cut (to a quarter each time).
+    max_change : float
+        Largest relative change in one iteration; longer steps are cut to it.
+    short : float
+        Width (rad) of intervals below which their unknowns count less in damping.
+    negligible : float
+        Change of the scaled states that a parameter about zero is compared with.
+    tiny : float
+        Nominal value that a parameter of 0 is given for this.
+    """
+
+    tolerance: float = 1e-8
+    close: float = 1e-4
+    max_iterations: int = 12
+    max_halvings: int = 6
+    max_change: float = 2.0
+    short: float = 1e-3
+    negligible: float = 1e-3
+    tiny: float = 1e-3
+
+    def __post_init__(self) -> None:
+        between("Newton tolerance", self.tolerance, 0, 1)
+        if not 0 <= number("close", self.close) <= 1:
+            raise ValueError(f"close is {self.close}; it must lie from 0 to 1")
+        whole("max_iterations", self.max_iterations)
+        whole("max_halvings", self.max_halvings, 0)
+        for name in ("max_change", "short", "negligible", "tiny"):
+            positive(name, getattr(self, name))
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
+
+    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). kernel: the tangent of the
+    branch, of any length; None where no side condition closes the equations.
+    """
+
+    orbit: Orbit
+    outcome: Outcome
+    iterations: int
+    increment: float
+    residual: float
+    fundamental: Array
+    kernel: Increment | None
+
+    @property
+    def ok(self) -> bool:
+        """Whether it converged."""
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def monodromy(self) -> Array:
+        """The monodromy matrix, shape (n, n)."""
+        return self.fundamental[-1]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One Newton increment from the operator's orbit, with the kernel of the same linearisation.
+
+    size is the largest relative increment for the convergence test, length that for damping.
+    """
+
+    operator: Operator
+    increment: Increment
+    kernel: Increment | None
+    size: float
+    length: float
+
+
+def correct(
+    linearise: Linearise,
+    system: System,
+    guess: Orbit,
+    free: tuple[int, ...] = (),
+    conditions: Sequence[SideCondition] = (),
+    settings: NewtonSettings | None = None,
+) -> Correction:
+    """Solve for the orbit near `guess`, with the parameters `free` closed by as many side conditions.
+
+    The outcome is on the result; nothing is raised for a numerical failure.
+    """
+    settings = settings or NewtonSettings()
+    equations = _Equations(linearise, system, free, tuple(conditions), settings)
+    found = equations.iterated(guess)
+    orbit, outcome, last = found.orbit, found.outcome, found.last
+    n = orbit.nodes.shape[1]
+    nothing = np.full((1, n, n), np.nan)
+    if last is None:
+        return Correction(orbit, outcome, found.iterations, np.inf, np.inf, nothing, None)
+    size, fundamental = last.size, nothing
+    if outcome is Outcome.CONVERGED:
+        try:
+            if last.length > settings.close * settings.tolerance:
+                last = equations.step(orbit)
+                orbit = last.operator.orbit
+            fundamental = last.operator.fundamental
+        except FAILURES as error:
+            outcome = outcome_of(error)
+    residual = last.operator.residual
+    return Correction(orbit, outcome, found.iterations, size, residual, fundamental, last.kernel)
+
+
+@dataclass(frozen=True)
+class _Iterated:
+    """The last iterate, how the iteration ended, the last step taken."""
+
+    orbit: Orbit
+    outcome: Outcome
+    iterations: int
+    last: Step | None
+
+
+@dataclass(frozen=True)
+class _Equations:
+    """What is solved, and how."""
+
+    linearise: Linearise
+    system: System
+    free: tuple[int, ...]
+    conditions: tuple[SideCondition, ...]
+    settings: NewtonSettings
+
+    def step(self, orbit: Orbit) -> Step:
+        """Return the Newton increment from an orbit."""
+        return newton_step(self.linearise, self.system, orbit, self.free, self.conditions, self.settings)
+
+    def iterated(self, guess: Orbit) -> _Iterated:
+        """Iterate until an increment is small, in steps that are cut where they make things worse."""
+        orbit, last, factor, settings = guess, None, 1.0, self.settings
+        failure = Outcome.TOO_MANY
+        for iteration in range(1, settings.max_iterations + 1):
+            trial: Step | None = None
+            try:
+                trial = self.step(orbit)
+            except FAILURES as error:
+                failure = outcome_of(error)
+            worse = last is not None and (trial is None or trial.length > 2 * last.length)
+            if worse and last is not None and factor > 0.5**settings.max_halvings:
+                factor /= 4
+                orbit = self._moved(last, factor)
+                continue
+            if trial is None:
+                return _Iterated(orbit, failure, iteration, last)
+            last, factor = trial, settings.max_change / max(trial.length, settings.max_change)
+            orbit = self._moved(last, factor)
+            if last.size < settings.tolerance:
+                outcome = Outcome.CONVERGED if in_order(orbit) else Outcome.EVENTS_CROSSED
+                return _Iterated(orbit, outcome, iteration, last)
+        return _Iterated(orbit, Outcome.TOO_MANY, settings.max_iterations, last)
+
+    def _moved(self, step: Step, factor: float) -> Orbit:
+        return moved(self.system, self.free, step.operator.orbit, step.increment, factor)
+
+
+def newton_step(
+    linearise: Linearise,
+    system: System,
+    orbit: Orbit,
+    free: tuple[int, ...],
+    conditions: Sequence[SideCondition],
+    settings: NewtonSettings,
+) -> Step:
+    """Return one Newton increment. Raises FAILURES."""
+    operator = linearise(system, orbit, free)
+    orbit = operator.orbit
+    rows = [condition.linearise(system, orbit, free) for condition in conditions]
+    right = np.eye(1 + len(rows))[:, [0, -1]] if rows else np.ones((1, 1))
+    found = operator.solve(rows, right)
+    size, length = sizes(system, operator, found[0], free, settings)
+    return Step(operator, found[0], found[1] if rows else None, size, length)
+
+
+def in_order(orbit: Orbit) -> bool:
+    """Whether the event nodes of an orbit's mesh follow each other."""
+    return bool((orbit.mesh.segment_lengths(orbit.phases) > 0).all())
+
+
+def sizes(
+    system: System, operator: Operator, increment: Increment, free: tuple[int, ...], settings: NewtonSettings
+) -> tuple[float, float]:
+    """Largest relative increment, for the convergence test and for damping.
+
+    States count relative to the largest peak to peak where that exceeds 1. For convergence the unknowns
+    count with their square: that is what the last step leaves of them, and rounding in the rates of very
+    short intervals keeps their own increments from falling further. For damping they count the less in short
+    intervals, over whose width they hardly act on the states. Free parameters count relative to their values,
+    or where these are about zero to what changes the states by `negligible`, at most the nominal value.
+    """
+    orbit, chosen = operator.orbit, list(free)
+    large = max(1.0, orbit.span())
+    parts = [np.abs(increment.nodes).max() / large, np.abs(increment.stages).max() / large]
+    parts.append(np.abs(increment.phases).max(initial=0.0))
+    nominal = np.maximum(np.abs(system.nominal[chosen]), settings.tiny)
+    least = np.minimum(settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
+    parts += list(np.abs(increment.parameters) / np.maximum(np.abs(orbit.parameter[chosen]), least))
+    regular = float(max(parts))
+    change = moved_unknowns(system, orbit.algebraic, increment.algebraic) - orbit.algebraic
+    unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
+    left = float(unknowns.max()) ** 2
+    felt = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
+    if not np.isfinite(regular + left + felt):
+        return np.inf, np.inf
+    return max(regular, left), max(regular, felt)
+
+
+def moved_unknowns(system: System, algebraic: Array, increment: Array) -> Array:
+    """Return unknowns of shape (N, ncol, m) after an increment."""
+    flat = (algebraic.shape[0] * algebraic.shape[1], algebraic.shape[2])
+    if algebraic.shape[2] == 0:
+        return algebraic
+    return system.move(algebraic.reshape(flat), increment.reshape(flat)).reshape(algebraic.shape)
+
+
+def moved(
+    system: System, free: tuple[int, ...], orbit: Orbit, increment: Increment, factor: float = 1.0
+) -> Orbit:
+    """Return an orbit and its free parameters after a part of an increment."""
+    parameter = orbit.parameter.copy()
+    parameter[list(free)] += factor * increment.parameters
+    return replace(
+        orbit,
+        nodes=orbit.nodes + factor * increment.nodes,
+        stages=orbit.stages + factor * increment.stages,
+        algebraic=moved_unknowns(system, orbit.algebraic, factor * increment.algebraic),
+        phases=orbit.phases + factor * increment.phases,
+        parameter=parameter,
+    )

@@ -1,0 +1,39 @@
+"""How the search for an orbit ends."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import numpy as np
+
+
+class Outcome(Enum):
+    """How a Newton iteration ended; the value says it in words."""
+
+    CONVERGED = "converged"
+    TOO_MANY = "Newton did not converge within its iterations"
+    NOT_FINITE = "the equations were not finite near the iterate"
+    SINGULAR = "the linear system was singular"
+    NOT_INTEGRATED = "time integration failed near the iterate"
+    EVENTS_CROSSED = "two event nodes of the mesh met"
+    COLLAPSED = "the orbit shrank to an equilibrium"
+    MOVED = "the orbit became another one on a new mesh"
+
+
+class EventsCrossedError(ArithmeticError):
+    """Two event nodes of a mesh have met or passed each other."""
+
+
+FAILURES = (ArithmeticError, np.linalg.LinAlgError)
+"""What linearising an orbit's equations, or solving them, raises where it fails."""
+
+
+def outcome_of(failure: Exception) -> Outcome:
+    """Return the outcome that one of the FAILURES stands for."""
+    if isinstance(failure, np.linalg.LinAlgError):
+        return Outcome.SINGULAR
+    if isinstance(failure, EventsCrossedError):
+        return Outcome.EVENTS_CROSSED
+    if isinstance(failure, FloatingPointError):
+        return Outcome.NOT_FINITE
+    return Outcome.NOT_INTEGRATED

@@ -1,0 +1,138 @@
+"""What is solved: a system, its free parameters, and what determines all of them but one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from periodic.checks import named, number
+from periodic.correction.condition import Condition, SideCondition, side_conditions
+from periodic.orbit.orbit import Orbit
+from periodic.system import System, check_system, index_of
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A branch of periodic orbits, apart from the method that finds them.
+
+    Parameters
+    ----------
+    system : System
+        The equations R(x', x, z, tau, p) = 0.
+    parameter : str
+        Name of the parameter that the branch is continued in.
+    bounds : tuple of float
+        Its range (SI), the first where branches begin by default. The distance of the two is the unit of
+        arclength in the parameter; `bounds` keeps them in rising order, `begin` the first.
+    determined : mapping of str to Condition, optional
+        Further free parameters by name, and the conditions that determine them: {"omega": PhaseCondition()}
+        of an autonomous system, {"F": FoldCondition()} for a curve of folds in two parameters.
+
+    Raises
+    ------
+    ValueError
+        For names that are no parameters of the system, bounds that are no range, and what is no condition.
+    """
+
+    system: System = field(repr=False)
+    parameter: str
+    bounds: tuple[float, float]
+    determined: Mapping[str, Condition] = field(default_factory=dict)
+    begin: float = field(init=False, repr=False, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_system(self.system)
+        index_of(self.system, self.parameter)
+        ends = _range(self.parameter, self.bounds)
+        object.__setattr__(self, "bounds", (min(ends), max(ends)))
+        object.__setattr__(self, "begin", ends[0])
+        named("determined", self.determined, "conditions")
+        for name, condition in self.determined.items():
+            if isinstance(condition, type) or not hasattr(condition, "at"):
+                raise ValueError(
+                    f"determined has {condition!r} for {name}; it must be a condition, as FoldCondition() is"
+                )
+            if name == self.parameter:
+                raise ValueError(
+                    f"determined has {name!r}, which is also the parameter continued in; "
+                    f"it must be one or the other"
+                )
+            index_of(self.system, name)
+
+    @cached_property
+    def index(self) -> int:
+        """Index of the continuation parameter."""
+        return index_of(self.system, self.parameter)
+
+    @cached_property
+    def others(self) -> tuple[int, ...]:
+        """Indices of the further free parameters."""
+        return tuple(index_of(self.system, name) for name in self.determined)
+
+    @cached_property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What determines them, one for each."""
+        return tuple(self.determined.values())
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """Indices of all free parameters, the continuation parameter first."""
+        return (self.index, *self.others)
+
+    @property
+    def scale(self) -> float:
+        """The unit of arclength in the continuation parameter."""
+        return self.bounds[1] - self.bounds[0]
+
+    @cached_property
+    def trivial(self) -> int:
+        """How many multipliers of the orbits are 1 whatever the parameters."""
+        return max((condition.trivial for condition in self.conditions), default=0)
+
+    @property
+    def autonomous(self) -> bool:
+        """Whether the orbits have a multiplier that is 1 whatever the parameters."""
+        return self.trivial > 0
+
+    def side_conditions(self, origin: Orbit) -> list[SideCondition]:
+        """Return the side conditions of orbits near `origin`.
+
+        Parameters
+        ----------
+        origin : Orbit
+            An orbit on the same mesh.
+
+        Returns
+        -------
+        list of SideCondition
+            One for each of `determined`.
+        """
+        return side_conditions(self.conditions, self.others, origin)
+
+    def value(self, orbit: Orbit) -> float:
+        """Return the continuation parameter of an orbit.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit.
+
+        Returns
+        -------
+        float
+            The parameter in SI units.
+        """
+        return float(orbit.parameter[self.index])
+
+
+def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
+    try:
+        first, second = (number("bound", end) for end in bounds)
+    except (TypeError, ValueError):
+        first = second = np.nan
+    if not (np.isfinite(first) and np.isfinite(second) and first != second):
+        raise ValueError(f"bounds of {parameter} are {bounds}; they must be two different finite numbers")
+    return first, second

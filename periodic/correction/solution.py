@@ -1,0 +1,90 @@
+"""A solution: an orbit with its outcome, its tangent, its multipliers and its errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import ErrorEstimate
+from periodic.correction.meshes import Refinement
+from periodic.correction.newton import Correction
+from periodic.correction.outcome import Outcome
+from periodic.correction.problem import Problem
+from periodic.linear.unknowns import Increment
+from periodic.orbit.orbit import Orbit
+from periodic.stability.spectrum import Spectrum
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What Newton found for a problem; `ok` tells whether it is a solution, `outcome` why not.
+
+    Floquet multipliers, error estimate and mesh refinement are computed once, when first asked for.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is solved.
+    discretisation : Discretisation
+        The method.
+    correction : Correction
+        Result of the Newton iteration.
+    tangent : Increment
+        Tangent of the branch, of unit length.
+    """
+
+    problem: Problem = field(repr=False)
+    discretisation: Discretisation = field(repr=False)
+    correction: Correction
+    tangent: Increment
+
+    @property
+    def outcome(self) -> Outcome:
+        """How the search for it ended."""
+        return self.correction.outcome
+
+    @property
+    def ok(self) -> bool:
+        """Whether it is a solution."""
+        return self.correction.ok
+
+    def failed(self, outcome: Outcome) -> Solution:
+        """Return the same as no solution.
+
+        Parameters
+        ----------
+        outcome : Outcome
+            Why it is none.
+
+        Returns
+        -------
+        Solution
+            The same with this outcome.
+        """
+        return replace(self, correction=replace(self.correction, outcome=outcome))
+
+    @property
+    def orbit(self) -> Orbit:
+        """The orbit itself."""
+        return self.correction.orbit
+
+    @property
+    def value(self) -> float:
+        """The continuation parameter (SI)."""
+        return self.problem.value(self.orbit)
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """The Floquet multipliers."""
+        return self.discretisation.spectrum(self.correction, self.problem.trivial)
+
+    @cached_property
+    def error(self) -> ErrorEstimate:
+        """The errors of orbit and multipliers."""
+        return self.discretisation.error(self.problem, self.correction, self.tangent, self.spectrum)
+
+    @cached_property
+    def refinement(self) -> Refinement:
+        """What to change of the mesh."""
+        return self.discretisation.refine(self.problem.system, self.orbit, self.error)

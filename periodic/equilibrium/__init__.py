@@ -1,0 +1,1 @@
+"""Equilibria: orbits that are constant."""

@@ -1,0 +1,1 @@
+"""Harmonic balance and Hill's method."""

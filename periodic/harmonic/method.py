@@ -1,0 +1,228 @@
+"""Harmonic balance: the quick method for smooth orbits, with as many harmonics as each needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+
+from periodic.checks import whole
+from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
+from periodic.correction.meshes import Refinement
+from periodic.correction.newton import Correction, NewtonSettings, moved, newton_step
+from periodic.correction.outcome import FAILURES, outcome_of
+from periodic.correction.problem import Problem
+from periodic.harmonic.balance import Balance, sampled
+from periodic.harmonic.hill import Floquet, floquet
+from periodic.harmonic.series import NO_PHASES, FourierOrbit, harmonics_of, mesh_for, series, tail
+from periodic.linear.operator import Operator
+from periodic.linear.unknowns import Increment
+from periodic.orbit.algebraic import algebraic_at
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
+from periodic.system import System
+
+WAYS = (1.0, 0.5, 0.25)
+"""How far on the way to the harmonics needed an orbit is tried, in turn."""
+
+AIM = 0.1
+"""The part of the tolerance that a new number of harmonics aims at."""
+
+ROUGHLY = 1e-4
+"""Harmonics of a guess that are smaller, as a part of its peak to peak, are left to Newton."""
+
+KNOWN = 1e-2
+"""Error of the multipliers above which they tell no special points: those of few harmonics may jump."""
+
+HILL = 8
+"""Fewest harmonics (of the excitation frequency) that Hill's method is given; the orbit's may be fewer."""
+
+LEAST = 3
+"""Fewest harmonics that an orbit is given, unless it begins with fewer."""
+
+
+@dataclass(frozen=True)
+class FourierCorrection(Correction):
+    """A correction that knows Floquet's form of its fundamental matrices."""
+
+    floquet: Floquet = field(kw_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicBalance(Discretisation):
+    """Fourier series x = a_0 + sum_k a_k cos k w tau + b_k sin k w tau, their residual projected on the same.
+
+    Parameters
+    ----------
+    harmonics : int
+        Of the excitation frequency, to begin with. They become fewer or more as the tolerance asks for.
+    most : int
+        At most so many; with most = harmonics = H there are never more than H, and a tolerance that they do
+        not meet is refused.
+    tolerance : float
+        What their number is chosen for; set by the trace.
+
+    References
+    ----------
+    Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems, 2019.
+    """
+
+    harmonics: int = 8
+    most: int = 64
+    tolerance: float = 1e-7
+
+    def __post_init__(self) -> None:
+        for name in ("harmonics", "most"):
+            whole(name, getattr(self, name))
+        if self.harmonics > self.most:
+            raise ValueError(f"harmonics is {self.harmonics}; it must be at most most = {self.most}")
+
+    @property
+    def trusted(self) -> float:
+        """Error of the multipliers above which they tell no special points."""
+        return KNOWN
+
+    def at(self, tolerance: float) -> HarmonicBalance:
+        """Return it with as many harmonics as a tolerance will ask for."""
+        return replace(self, tolerance=tolerance)
+
+    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
+        """Return the constant orbit at rest, or a series of as many harmonics as an orbit seems to need."""
+        if near is None:
+            mesh = mesh_for(self.harmonics, FORCED)
+            return series(at_rest(system, mesh, parameter), mesh)
+        least, most = self.harmonics * near.periods, self.most * near.periods
+        full = series(near, mesh_for(most, near.mesh.period))
+        large = np.flatnonzero(full.amplitudes > ROUGHLY * max(full.span(), LEAST_SPAN))
+        wanted = int(np.clip(1 + large.max(initial=0), least, most))
+        fitted = series(full, mesh_for(wanted, near.mesh.period))
+        return _with_unknowns(system, replace(fitted, parameter=parameter))
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
+        """Return the balanced equations."""
+        return Balance(_series(orbit), sampled(system, _series(orbit), free))
+
+    def accepted(self, system: System, correction: Correction) -> Correction:
+        """Return it with its fundamental matrices by Hill's method, or as failed where there are none."""
+        orbit = _series(correction.orbit)
+        try:
+            form = floquet(system, _at_least(system, orbit, HILL * orbit.periods))
+            fundamental = form.fundamental(orbit)
+        except FAILURES as error:
+            return replace(correction, outcome=outcome_of(error))
+        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
+        return FourierCorrection(**{**given, "fundamental": fundamental}, floquet=form)
+
+    def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+        """Yield the series cut or filled up with zeros, its unknowns solved for."""
+        yield _with_unknowns(system, series(orbit, mesh))
+
+    def error(
+        self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
+    ) -> ErrorEstimate:
+        """Estimate the errors by a Newton step with half as many harmonics again (deferred correction)."""
+        assert isinstance(correction, FourierCorrection)
+        system, orbit = problem.system, correction.orbit
+        more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
+        fine = _with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
+        direction = tangent.restricted(orbit, fine)
+        across = ArclengthConstraint(fine, direction, 0.0, problem.scale, problem.index)
+        closing, newton = [*problem.side_conditions(fine), across], NewtonSettings()
+        try:
+            step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
+        except FAILURES:
+            return UNKNOWN
+        error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
+        factor = newton.max_change / max(step.length, newton.max_change)
+        better = moved(system, problem.free, fine, step.increment, factor)
+        try:
+            multiplier = correction.floquet.error(system, _series(better))
+        except FAILURES:
+            multiplier = np.inf
+        return ErrorEstimate(error, multiplier)
+
+    def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
+        """Say how many harmonics the orbit needs."""
+        return FourierRefinement(self, _series(orbit), error)
+
+
+class FourierRefinement(Refinement):
+    """Numbers of harmonics for an orbit of `HarmonicBalance`."""
+
+    def __init__(self, method: HarmonicBalance, orbit: FourierOrbit, error: ErrorEstimate) -> None:
+        super().__init__(orbit, error)
+        self.method, self.series = method, orbit
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the orbit has the largest number of harmonics."""
+        return self.series.harmonics >= self.method.most * self.series.periods
+
+    @property
+    def shortfall(self) -> str:
+        """How far the spectrum has fallen."""
+        left = tail(self.series, LEAST_SPAN)
+        return (
+            f"the spectrum's tail is {left:.1e} at {self.series.harmonics} harmonics (error estimate "
+            f"{self.error.motion:.1e}); the tolerance is {self.method.tolerance:g}"
+        )
+
+    @property
+    def _wanted(self) -> int:
+        method, orbit = self.method, self.series
+        least, most = min(LEAST, method.harmonics) * orbit.periods, method.most * orbit.periods
+        return int(np.clip(needed(orbit, self.error.worst, AIM * method.tolerance), least, most))
+
+    def refined(self) -> Mesh:
+        """Return the mesh for the number of harmonics that the orbit needs."""
+        return mesh_for(self._wanted, self.series.mesh.period)
+
+    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
+        """Yield that mesh, then those on the way there."""
+        present, wanted = self.series.harmonics, self._wanted
+        for part in WAYS:
+            count = present + round(part * (wanted - present))
+            if count != present or part == 1:
+                yield mesh_for(count, self.series.mesh.period), NO_PHASES
+
+
+def _series(orbit: Orbit) -> FourierOrbit:
+    if not isinstance(orbit, FourierOrbit):
+        raise ValueError(
+            f"orbit is a {orbit!r}; harmonic balance needs the guess that its `guess` makes of it"
+        )
+    return orbit
+
+
+def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
+    """The number of harmonics that brings an error to its goal, if the spectrum falls on as it has fallen.
+
+    From half to twice as many as there are.
+    """
+    present, amplitudes = orbit.harmonics, orbit.amplitudes
+    if not np.isfinite(error):
+        return 2 * present
+    floor = np.finfo(float).tiny
+    top, last = amplitudes.max(), max(float(amplitudes[-max(present // 4, min(2, present)) :].max()), floor)
+    rate = max(float(np.log(max(top, floor) / last)) / present, 0.01)
+    change = np.log(max(error, floor) / goal) / rate
+    return int(np.ceil(np.clip(present + change, present / 2, 2 * present)))
+
+
+def _at_least(system: System, orbit: FourierOrbit, harmonics: int) -> FourierOrbit:
+    """The same orbit with at least so many harmonics, the further ones zero."""
+    if orbit.harmonics >= harmonics:
+        return orbit
+    return _with_unknowns(system, series(orbit, mesh_for(harmonics, orbit.mesh.period)))
+
+
+def _with_unknowns(system: System, orbit: FourierOrbit) -> FourierOrbit:
+    """Solve for the unknowns at the samples."""
+    unknowns = algebraic_at(system, orbit, orbit.stage_phases.ravel())
+    return replace(orbit, algebraic=unknowns.reshape(orbit.algebraic.shape))

@@ -1,0 +1,169 @@
+"""The chain of intervals and its border: what is left of an orbit's linearised equations after condensation.
+
+Intervals are chained to affine maps of (1, dx_0, dy); periodicity dx_N = dx_0 and the side conditions then
+give a dense system of size n + q for (dx_0, dy). The chain's linear part is the monodromy matrix.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.linear.unknowns import Increment
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+
+SMALL = 16
+"""Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
+
+
+class Compiled(Protocol):
+    """Compiled routines of a system, where it has some."""
+
+    def chain(self, step: Array) -> Array:
+        """Return the affine maps from the first mesh point to all."""
+
+
+class Condensed(Protocol):
+    """Linearised equations with what is local eliminated: each mesh point follows from an earlier one.
+
+        dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
+
+    orbit is the one linearised at, residual the largest of its equations; compiled chains in C.
+    """
+
+    @property
+    def orbit(self) -> Orbit: ...
+    @property
+    def step(self) -> Array: ...
+    @property
+    def origin(self) -> NDArray[np.int_]: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def compiled(self) -> Compiled | None: ...
+
+    def reduced(self, row: Row) -> Row:
+        """Return a row in mesh-point states and y alone, its stages eliminated."""
+
+    def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
+        """Return the increments of stages and unknowns that go with node increments and dy = `outer`.
+
+        constant is 1 for a Newton step, 0 for a direction along the solution set.
+        """
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Condensed equations as an operator, see `periodic.linear.operator.Operator`.
+
+    own: the rows of its event nodes, one for each phase of the orbit.
+    """
+
+    condensed: Condensed
+    own: Sequence[Row] = ()
+
+    @property
+    def orbit(self) -> Orbit:
+        """The orbit that the equations are linearised at."""
+        return self.condensed.orbit
+
+    @property
+    def residual(self) -> float:
+        """The largest residual."""
+        return self.condensed.residual
+
+    @cached_property
+    def maps(self) -> Array:
+        """The affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
+        return chain(self.condensed)
+
+    @property
+    def fundamental(self) -> Array:
+        """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
+        return self.maps[:, :, 1 : 1 + self.maps.shape[1]]
+
+    @property
+    def effect(self) -> Array:
+        """About how much the states change with each free parameter over a period, shape (q,)."""
+        step, k = self.condensed.step, len(self.orbit.phases)
+        intervals = np.count_nonzero(np.bincount(self.condensed.origin))
+        first = 1 + step.shape[1] + k
+        return intervals * np.abs(step[:, :, first:]).max(axis=(0, 1), initial=0.0)
+
+    def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
+        """Return an increment for each column of `right`, shape (1 + len(rows), columns).
+
+        Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
+        """
+        maps, orbit = self.maps, self.orbit
+        n, k = maps.shape[1], len(orbit.phases)
+        top = maps[-1].copy()
+        top[:, 1 : 1 + n] -= np.eye(n)
+        top[:, 0] += orbit.nodes[-1] - orbit.nodes[0]
+        every = [self.condensed.reduced(row) for row in (*self.own, *rows)]
+        border = np.array([onto_start(row, maps) for row in every]).reshape(len(every), maps.shape[2])
+        matrix = np.concatenate([top, border])
+        aim = -matrix[:, :1] * right[:1]
+        aim[n + len(self.own) :] += right[1:]
+        found = np.linalg.solve(matrix[:, 1:], aim)
+        if not np.isfinite(found).all():
+            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        return tuple(self._recovered(*pair, k) for pair in zip(right[0], found.T, strict=True))
+
+    def _recovered(self, constant: float, start: Array, k: int) -> Increment:
+        """The increment of (dx_0, dy)."""
+        n = self.maps.shape[1]
+        nodes, outer = constant * self.maps[:, :, 0] + self.maps[:, :, 1:] @ start, start[n:]
+        stages, algebraic = self.condensed.recover(nodes, outer, constant)
+        return Increment.of(self.orbit, nodes, stages, algebraic, outer[:k], outer[k:])
+
+
+def chain(condensed: Condensed) -> Array:
+    """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
+    if condensed.compiled is not None:
+        return condensed.compiled.chain(condensed.step)
+    count, n, width = condensed.step.shape
+    first = np.zeros((1, n, width))
+    first[0, :, 1 : 1 + n] = np.eye(n)
+    if n <= SMALL and np.array_equal(condensed.origin, np.arange(count)):
+        return np.concatenate([first, _chained(condensed.step)])
+    maps = np.concatenate([first, np.empty((count, n, width))])
+    for j in range(count):
+        maps[j + 1 : j + 2] = _after(condensed.step[j : j + 1], maps[condensed.origin[j]][None])
+    return maps
+
+
+def _chained(step: Array) -> Array:
+    """The maps from the first mesh point to all others, from those of every second one."""
+    if len(step) == 1:
+        return step
+    even = len(step) // 2 * 2
+    maps = np.empty_like(step)
+    maps[0] = step[0]
+    maps[1::2] = _chained(_after(step[1:even:2], step[0:even:2]))
+    maps[2::2] = _after(step[2::2], maps[1:-1:2])
+    return maps
+
+
+def _after(later: Array, earlier: Array) -> Array:
+    """Affine maps of (1, dx, dy), one after the other."""
+    n = later.shape[1]
+    both = later[:, :, 1 : 1 + n] @ earlier
+    both[:, :, 0] += later[:, :, 0]
+    both[:, :, 1 + n :] += later[:, :, 1 + n :]
+    return both
+
+
+def onto_start(row: Row, maps: Array) -> Array:
+    """Return a row, its stages eliminated, as one in (1, dx_0, dy)."""
+    onto = np.einsum("jn,jnw->w", row.nodes, maps)
+    onto[0] += row.value
+    onto[len(onto) - len(row.outer) :] += row.outer
+    return onto

@@ -1,0 +1,176 @@
+"""One arithmetic for Newton increments, tangents and differences of orbits, and their metric."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Protocol, Self
+
+import numpy as np
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+
+
+class Unknowns(Protocol):
+    """A change of an orbit and of its free parameters: what continuation adds, scales, measures and carries.
+
+    `Increment` is one; a discretisation of another kind brings its own.
+    """
+
+    def __add__(self, other: Self) -> Self:
+        """Return the sum of two changes of the same orbit."""
+
+    def scaled(self, factor: float) -> Self:
+        """Return the change times a factor.
+
+        Parameters
+        ----------
+        factor : float
+            The factor.
+
+        Returns
+        -------
+        Unknowns
+            The multiple.
+        """
+
+    def dot(self, other: Self, orbit: Orbit, scale: float) -> float:
+        """Return the scalar product in the metric of continuation.
+
+        Parameters
+        ----------
+        other : Unknowns
+            A change of the same orbit.
+        orbit : Orbit
+            The orbit, whose mesh weights the states.
+        scale : float
+            Unit of arclength in the continuation parameter (SI).
+
+        Returns
+        -------
+        float
+            The scalar product.
+        """
+
+    def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
+        """Return on another mesh what the arclength constraint needs of it.
+
+        Parameters
+        ----------
+        old, new : Orbit
+            Orbits on the present mesh and on the other one.
+        later : float
+            How much later in phase (rad) it is taken.
+
+        Returns
+        -------
+        Unknowns
+            The change on the mesh of `new`.
+        """
+
+    def save(self) -> dict[str, Array]:
+        """Return the arrays that it is made of, by name."""
+
+
+@dataclass(frozen=True)
+class Increment:
+    """A change of an `Orbit`; see `Unknowns`.
+
+    Parameters
+    ----------
+    nodes, stages, algebraic : ndarray, shapes (N+1, n), (N, ncol, n), (N, ncol, m)
+        Of states and unknowns at points that move with the mesh.
+    phases : ndarray, shape (k,)
+        Of the event nodes' phases.
+    parameters : ndarray, shape (q,)
+        Of the free parameters, the continuation parameter first.
+    profile : ndarray, shape (N+1, n)
+        Of the states at the mesh points, at fixed tau.
+    """
+
+    nodes: Array
+    stages: Array
+    algebraic: Array
+    phases: Array
+    parameters: Array
+    profile: Array
+
+    @classmethod
+    def of(
+        cls, orbit: Orbit, nodes: Array, stages: Array, algebraic: Array, phases: Array, parameters: Array
+    ) -> Self:
+        """Return an increment whose profile follows from the others.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit that is changed.
+        nodes, stages, algebraic, phases, parameters : ndarray
+            As in `Increment`.
+
+        Returns
+        -------
+        Increment
+            With the states' change at fixed tau as profile.
+        """
+        return cls(nodes, stages, algebraic, phases, parameters, at_fixed_phase(orbit, nodes, phases))
+
+    @property
+    def parameter(self) -> float:
+        """That of the continuation parameter."""
+        return float(self.parameters[0])
+
+    @property
+    def others(self) -> Array:
+        """Those of the further free parameters, shape (q-1,)."""
+        return self.parameters[1:]
+
+    def __add__(self, other: Self) -> Self:
+        return type(self)(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
+    def scaled(self, factor: float) -> Self:
+        """Return the increment times a factor."""
+        return type(self)(*(factor * getattr(self, f.name) for f in fields(self)))
+
+    def dot(self, other: Self, orbit: Orbit, scale: float) -> float:
+        """Return mean over the period of <x, y>, x and y at fixed tau, plus the parameters' p q / scale^2."""
+        states = np.einsum("j,jn,jn->", mean_weights(orbit), self.profile, other.profile)
+        return float(states) + self.parameter * other.parameter / scale**2
+
+    def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
+        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
+        at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later
+        wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
+        profile = np.stack([np.interp(wrapped, at, column) for column in self.profile.T], axis=1)
+        blank = parameter_only(new, self.parameter)
+        return type(self)(blank.nodes, blank.stages, blank.algebraic, blank.phases, blank.parameters, profile)
+
+    def save(self) -> dict[str, Array]:
+        """Return the arrays by name."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
+
+def parameter_only(orbit: Orbit, rate: float) -> Increment:
+    """Return the increment in which only the continuation parameter changes."""
+    zero = np.zeros_like(orbit.nodes)
+    stages, algebraic = np.zeros_like(orbit.stages), np.zeros_like(orbit.algebraic)
+    return Increment(zero, stages, algebraic, np.zeros_like(orbit.phases), np.array([rate]), zero)
+
+
+def mean_weights(orbit: Orbit) -> Array:
+    """Trapezoidal weights of the mesh points over one period, shape (N+1,); their sum is 1."""
+    half = orbit.grid.width / (2 * orbit.mesh.period)
+    return np.append(half, 0.0) + np.append(0.0, half)
+
+
+def node_phase_gradient(orbit: Orbit) -> Array:
+    """How the mesh points' phases follow those of the event nodes, shape (N+1, k)."""
+    gradient = orbit.grid.left_gradient
+    return np.concatenate([gradient, gradient[:1]])
+
+
+def at_fixed_phase(orbit: Orbit, nodes: Array, phases: Array) -> Array:
+    """Turn increments of mesh-point states that move with the mesh into increments at fixed tau."""
+    if len(phases) == 0:
+        return nodes
+    return nodes - orbit.node_rates * (node_phase_gradient(orbit) @ phases)[:, None]

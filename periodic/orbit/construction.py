@@ -1,0 +1,158 @@
+"""Orbits made otherwise than by solving: constants, and orbits on another mesh or in other scales."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.orbit.layout import Layout, layout_of
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, check_system
+
+
+def as_read_by(system: System, orbit: Orbit) -> Orbit:
+    """Return an orbit in the scales of a system: itself, as a rule.
+
+    Parameters
+    ----------
+    system : System
+        The system that is to read it.
+    orbit : Orbit
+        An orbit of it, or of an equal system with other scales.
+
+    Returns
+    -------
+    Orbit
+        The orbit whose numbers the system takes.
+
+    Raises
+    ------
+    ValueError
+        Where the orbit's names or units are not the system's, and for what is no system or orbit.
+    """
+    check_system(system)
+    if not isinstance(orbit, Orbit):
+        raise ValueError(f"orbit is a {type(orbit).__name__}; it must be an Orbit, as point.orbit is")
+    if orbit.layout is None or orbit.layout.fits(system):
+        return orbit
+    return orbit.expressed_in(layout_of(system))
+
+
+def at_rest(system: System, mesh: Mesh, parameter: Array) -> Orbit:
+    """Return the constant orbit at the system's rest values.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    mesh : Mesh
+        The orbit's mesh.
+    parameter : ndarray, shape (p,)
+        The parameters in SI.
+
+    Returns
+    -------
+    Orbit
+        The orbit.
+    """
+    return constant(mesh, *system.rest(parameter), parameter, layout_of(system))
+
+
+def constant(
+    mesh: Mesh, state: Array, algebraic: Array, parameter: Array, layout: Layout | None = None
+) -> Orbit:
+    """Return the constant orbit of a state and unknowns.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The orbit's mesh.
+    state : ndarray, shape (n,)
+        Scaled states.
+    algebraic : ndarray, shape (m,)
+        Scaled unknowns.
+    parameter : ndarray, shape (p,)
+        The parameters in SI.
+    layout : Layout, optional
+        Names, units and scales.
+
+    Returns
+    -------
+    Orbit
+        The orbit.
+    """
+    count, ncol = mesh.ntst, mesh.scheme.ncol
+    return Orbit(
+        mesh,
+        np.tile(state, (count + 1, 1)),
+        np.tile(state, (count, ncol, 1)),
+        np.tile(algebraic, (count, ncol, 1)),
+        np.zeros(0),
+        np.array(parameter, dtype=float),
+        layout=layout,
+    )
+
+
+def transfer(orbit: Orbit, mesh: Mesh, phases: Array) -> Orbit:
+    """Return an orbit interpolated onto another mesh.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit.
+    mesh : Mesh
+        Its new mesh.
+    phases : ndarray, shape (k,)
+        Where the new mesh's event nodes lie, in rad.
+
+    Returns
+    -------
+    Orbit
+        The interpolant: no solution before it is corrected.
+    """
+    grid = mesh.grid(phases)
+    tau = (grid.left[:, None] + grid.width[:, None] * mesh.scheme.points).ravel()
+    inside = tau - 1e-9 * np.repeat(grid.width, mesh.scheme.ncol)
+    shape = (mesh.ntst, mesh.scheme.ncol, -1)
+    return Orbit(
+        mesh,
+        orbit.state(mesh.nodes(phases)),
+        orbit.state(tau).reshape(shape),
+        orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
+        phases,
+        orbit.parameter,
+        layout=orbit.layout,
+    )
+
+
+def bisect(orbit: Orbit) -> Orbit:
+    """Return the same piecewise polynomial on the mesh with every interval halved.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit.
+
+    Returns
+    -------
+    Orbit
+        The orbit on 2 N intervals.
+    """
+    scheme = orbit.mesh.scheme
+    halves = np.concatenate([scheme.points / 2, (1 + scheme.points) / 2])
+    count = 2 * orbit.mesh.ntst
+    nodes = np.empty((count + 1, orbit.nodes.shape[1]))
+    nodes[::2] = orbit.nodes
+    nodes[1::2] = scheme.basis(np.array([0.5]))[0] @ orbit.knots
+    return replace(
+        orbit,
+        mesh=orbit.mesh.bisected(),
+        nodes=nodes,
+        stages=(scheme.basis(halves) @ orbit.knots).reshape(count, scheme.ncol, -1),
+        algebraic=(scheme.algebraic_basis(halves) @ orbit.algebraic).reshape(
+            count, scheme.ncol, orbit.algebraic.shape[2]
+        ),
+    )

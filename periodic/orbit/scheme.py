@@ -1,0 +1,144 @@
+"""Collocation points and the polynomials through them, on the unit interval.
+
+Radau IIA (right end included) is stiffly accurate and keeps multipliers right through loss of contact;
+Gauss points give the higher order 2 ncol at mesh points for smooth problems (Hairer & Wanner, Solving
+ODEs II, IV.5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Family(Enum):
+    """Families of collocation points."""
+
+    RADAU = "Radau IIA"
+    GAUSS = "Gauss"
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Collocation points on (0, 1].
+
+    Parameters
+    ----------
+    family : Family
+        Radau IIA or Gauss.
+    ncol : int
+        Number of points in each interval, from 2 to 7.
+
+    Raises
+    ------
+    ValueError
+        For another number.
+    """
+
+    family: Family = Family.RADAU
+    ncol: int = 4
+
+    def __post_init__(self) -> None:
+        if self.ncol not in range(2, 8):
+            raise ValueError(f"ncol is {self.ncol}; it must be a whole number from 2 to 7")
+
+    @cached_property
+    def points(self) -> Array:
+        """Collocation points c, shape (ncol,)."""
+        if self.family is Family.GAUSS:
+            return (scipy.special.roots_legendre(self.ncol)[0] + 1) / 2
+        interior = scipy.special.roots_jacobi(self.ncol - 1, 1, 0)[0]
+        return np.append((interior + 1) / 2, 1.0)
+
+    @cached_property
+    def knots(self) -> Array:
+        """Points that carry the state polynomial: 0 and the collocation points, shape (ncol+1,)."""
+        return np.append(0.0, self.points)
+
+    @cached_property
+    def differentiation(self) -> Array:
+        """D with p'(knot_i) = sum_l D[i, l] p(knot_l), shape (ncol+1, ncol+1)."""
+        gaps = self.knots[:, None] - self.knots[None, :] + np.eye(len(self.knots))
+        weights = 1 / gaps.prod(axis=1)
+        matrix = weights[None, :] / weights[:, None] / gaps
+        np.fill_diagonal(matrix, 0.0)
+        np.fill_diagonal(matrix, -matrix.sum(axis=1))
+        return matrix
+
+    @cached_property
+    def stage_rates(self) -> Array:
+        """The rows of D at the collocation points, shape (ncol, ncol+1)."""
+        return np.ascontiguousarray(self.differentiation[1:])
+
+    @cached_property
+    def end(self) -> Array:
+        """Weights of the knots' values in the value at 1, shape (ncol+1,)."""
+        return self.basis(np.array([1.0]))[0]
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the quadrature at the collocation points, shape (ncol,); their sum is 1."""
+        if self.family is Family.GAUSS:
+            return scipy.special.roots_legendre(self.ncol)[1] / 2
+        nodes, weights = scipy.special.roots_jacobi(self.ncol - 1, 1, 0)
+        return np.append(weights / (1 - nodes) / 2, 1 / self.ncol**2)
+
+    def basis(self, theta: Array) -> Array:
+        """Return the Lagrange polynomials of the knots.
+
+        Parameters
+        ----------
+        theta : ndarray, shape (K,)
+            Places in [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (K, ncol+1)
+            One column a knot.
+        """
+        return lagrange(self.knots, theta)
+
+    def algebraic_basis(self, theta: Array) -> Array:
+        """Return the Lagrange polynomials of the collocation points alone.
+
+        Parameters
+        ----------
+        theta : ndarray, shape (K,)
+            Places in [0, 1].
+
+        Returns
+        -------
+        ndarray, shape (K, ncol)
+            One column a point.
+        """
+        return lagrange(self.points, theta)
+
+
+def lagrange(knots: Array, theta: Array) -> Array:
+    """Return the Lagrange polynomials l_j(theta) = prod_{i != j} (theta - c_i) / (c_j - c_i).
+
+    Parameters
+    ----------
+    knots : ndarray, shape (L,)
+        Their knots c.
+    theta : ndarray, shape (K,)
+        Where to evaluate them.
+
+    Returns
+    -------
+    ndarray, shape (K, L)
+        One column a polynomial.
+    """
+    gaps = knots[:, None] - knots + np.eye(len(knots))
+    factors = np.ones((len(knots) + 2, len(theta)))  # one on either side
+    factors[1:-1] = theta - knots[:, None]
+    before = np.cumprod(factors[:-2], axis=0)
+    after = np.cumprod(factors[:1:-1], axis=0)[::-1]
+    return (before * after / gaps.prod(axis=1)[:, None]).T

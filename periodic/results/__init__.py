@@ -1,0 +1,1 @@
+"""What a trace leaves: points, branches, files, journals, plots."""

@@ -1,0 +1,238 @@
+"""A branch: the points of one continuation, and ways to read, show and keep them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.orbit.scheme import Array
+from periodic.results import frames, netcdf
+from periodic.results.point import Point
+from periodic.results.record import Record
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+class Branch(Record):
+    """The points of one continuation, a sequence in order along the branch.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter that was continued in.
+    layout : Layout
+        Names, units and scales of the system's quantities.
+    points : tuple of Point
+        The points, in order along the branch.
+    stop : Stop
+        Why the branch ended.
+    stop_backwards : Stop, optional
+        Why its first part ended, of a branch that was traced both ways from its start.
+    newton_iterations : int
+        All of them, those for rejected steps included.
+    elapsed : float
+        Time in s.
+    versions : dict
+        Versions of the packages that made it, by name.
+    checkpoints : tuple of Checkpoint
+        Where its runs (one or two) stand, for `trace` to take them up.
+    backwards : int
+        How many of the first points are those of the first of two runs.
+    made : dict
+        What it was made with, by value: see `periodic.results.described`.
+    """
+
+    def __repr__(self) -> str:
+        return f"Branch({self.parameter}, {len(self)} points, {self.stop})"
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, index: int) -> Point:
+        if not self.points:
+            raise IndexError(f"branch has no points; it ended with: {self.stop}")
+        return self.points[index]
+
+    def __iter__(self) -> Iterator[Point]:
+        return iter(self.points)
+
+    @property
+    def special_points(self) -> tuple[Point, ...]:
+        """The labelled points, in order along the branch."""
+        return tuple(p for p in self.points if p.label is not Label.NONE)
+
+    def labelled(self, label: str) -> tuple[Point, ...]:
+        """Return the points with a label, or of one of the user's events by its name.
+
+        Parameters
+        ----------
+        label : Label or str
+            `Label.FOLD` or "LP", or the name of an event.
+
+        Returns
+        -------
+        tuple of Point
+            In order along the branch.
+
+        Raises
+        ------
+        ValueError
+            For a text that is neither; it says which there are.
+        """
+        events = dict.fromkeys((*self.made.get("events", {}), *(p.event for p in self.points if p.event)))
+        known = [*(known.value for known in Label.known()), *events]
+        if label and label not in known:
+            raise ValueError(f"label is {str(label)!r}; it must be one of {', '.join(known)}")
+        return tuple(p for p in self.points if label == p.label or (label and label == p.event))
+
+    @property
+    def values(self) -> Array:
+        """The continuation parameter along the branch (SI), shape (points,)."""
+        return np.array([p.parameter for p in self.points])
+
+    @property
+    def stable(self) -> np.ndarray:
+        """Whether each point is stable, shape (points,)."""
+        return np.array([p.stable for p in self.points], dtype=bool)
+
+    def peak_to_peak(self, output: str) -> Array:
+        """Return maximum minus minimum of an output along the branch.
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        Array
+            SI values, shape (points,).
+
+        Raises
+        ------
+        ValueError
+            For a name that is none; it says which there are.
+        """
+        names = [q.name for q in self.layout.outputs]
+        if output not in names:
+            raise ValueError(f"output is {output!r}; it must be one of {', '.join(names)}")
+        return np.array([p.peak_to_peak(output) for p in self.points])
+
+    def column(self, name: str) -> Array:
+        """Return a column of numbers along the branch.
+
+        Parameters
+        ----------
+        name : str
+            A parameter, a functional that was asked for, or another column of `to_pandas`: "x p-p".
+
+        Returns
+        -------
+        Array
+            SI values, shape (points,).
+
+        Raises
+        ------
+        ValueError
+            For a name that is none; it says which there are.
+        """
+        known = frames.units(self)
+        if name not in known:
+            raise ValueError(f"column is {name!r}; it must be one of {', '.join(known)}")
+        return np.array([frames.row(self, p)[name] for p in self.points])
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the branch as a Dataset with one entry a point, units in the variables' attributes.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over the dimension point: parameters (SI), "x min", "x max" and "x p-p" of each output x (of
+            equilibria x itself), the functionals asked for, errors, residual and iterations, `multipliers`
+            (point, multiplier), complex; the coordinates label, event and stable.
+        """
+        return frames.to_xarray(self)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the branch as a table with one row a point, units in `attrs["units"]`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The columns are those of `to_xarray`, the multipliers in "multiplier 1" and so on.
+        """
+        return frames.to_pandas(self)
+
+    def table(self) -> str:
+        """Return one line per point: label, parameter, peak to peak of each output, largest multiplier.
+
+        Of equilibria the outputs themselves and the largest real part of the eigenvalues (1/s).
+
+        Returns
+        -------
+        str
+            A heading and the lines, all of one width.
+        """
+        names = [q.name for q in self.layout.outputs]
+        measured, largest = (" p-p", "|mu| max")
+        if any(p.equilibrium for p in self.points):
+            measured, largest = ("", "Re lambda max")
+        head = ["label", self.parameter, *(n + measured for n in names), largest, "stable", "error"]
+        rows = [head, *([*_cells(p, names)] for p in self.points)]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
+        return "\n".join(
+            "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the branch, its orbits included, to a NetCDF file, replacing it in one move.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Raises
+        ------
+        BranchFileError
+            Where there is something that is no ordinary file.
+        OSError
+            Where it cannot be written.
+        """
+        netcdf.save(self, Path(path))
+
+    @staticmethod
+    def load(path: str | Path) -> Branch:
+        """Read a branch from a NetCDF file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Branch
+            The branch, bit for bit.
+
+        Raises
+        ------
+        BranchFileError
+            In one sentence, if it is missing, damaged or no branch.
+        """
+        return Branch(**vars(netcdf.load(Path(path))))
+
+
+def _cells(point: Point, names: list[str]) -> list[str]:
+    take = point.maximum.__getitem__ if point.equilibrium else point.peak_to_peak
+    ripple = [f"{take(name):.9g}" for name in names]
+    largest = point.multipliers.real if point.equilibrium else np.abs(point.multipliers)
+    size = f"{largest.max():.9f}"
+    stable = "yes" if point.stable else "no"
+    return [point.label.value, f"{point.parameter:.12g}", *ripple, size, stable, f"{point.error.worst:.1e}"]

@@ -1,0 +1,168 @@
+"""A point of a branch: an orbit with everything that is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.bifurcations.codim2 import marginal
+from periodic.bifurcations.label import Label
+from periodic.correction.error import ErrorEstimate
+from periodic.correction.solution import Solution
+from periodic.orbit.extrema import extrema
+from periodic.orbit.orbit import Orbit
+from periodic.stability.spectrum import CONSERVED, ROUNDING, without_trivial
+
+NOISE = 30.0
+"""How much larger than its estimate the error of a small multiplier may be."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Point:
+    """An orbit of a branch and what is said of it.
+
+    A point is stable when all nontrivial multipliers lie inside the unit circle, of a conservative orbit on
+    it, within their error; a special point where one is on it is not, nor a `marginal` one. An equilibrium
+    is stable when all real parts are negative.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit.
+    parameter : float
+        The continuation parameter (SI).
+    label : Label
+        What kind of special point it is, if one.
+    multipliers : ndarray of complex, shape (n,)
+        Floquet multipliers, largest first; of an equilibrium the eigenvalues of its Jacobian (1/s), largest
+        real part first.
+    minimum, maximum : dict
+        Extremes of each output over the period (SI), by name.
+    error : ErrorEstimate
+        Estimated errors of orbit, multipliers and parameter.
+    residual : float
+        Of the discretised equations.
+    iterations : int
+        Newton iterations.
+    slope : float
+        d parameter / d arclength.
+    trivial : float, optional
+        Distance from 1 of the multiplier that an autonomous orbit has there (two of a conservative one),
+        which tells how accurate the multipliers are; None for a forced orbit.
+    conservative : bool
+        Whether two multipliers are 1 whatever the parameters.
+    marginal : bool
+        Whether it is on a curve of points with a multiplier on the unit circle.
+    event : str
+        The user's name of the event met there.
+    columns : dict
+        Functionals asked for, by name.
+    """
+
+    orbit: Orbit
+    parameter: float
+    label: Label
+    multipliers: NDArray[np.complex128]
+    minimum: dict[str, float]
+    maximum: dict[str, float]
+    error: ErrorEstimate
+    residual: float
+    iterations: int
+    slope: float
+    trivial: float | None = None
+    conservative: bool = False
+    marginal: bool = False
+    event: str = ""
+    columns: dict[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        kind = " ".join(filter(None, [self.label.value, self.event, "stable" if self.stable else "unstable"]))
+        return f"Point({self.parameter:.12g}, {kind})"
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die away, or of a conservative orbit stay small."""
+        if self.marginal or self.label.critical:
+            return False
+        if self.equilibrium:
+            return bool((self.multipliers.real < 0).all())
+        slack = CONSERVED * self.error.multiplier + ROUNDING if self.conservative else 0.0
+        return bool((np.abs(self.nontrivial) < 1 + slack).all())
+
+    @property
+    def equilibrium(self) -> bool:
+        """Whether the orbit is constant."""
+        return self.orbit.equilibrium
+
+    @property
+    def nontrivial(self) -> NDArray[np.complex128]:
+        """The multipliers without those that are 1 whatever the parameters, largest first."""
+        return without_trivial(self.multipliers, 0 if self.trivial is None else 1 + self.conservative)
+
+    @property
+    def floor(self) -> float:
+        """The noise floor: multipliers of this size or less are only known to be so small.
+
+        NOISE times their error, rounding included, relative to the largest where that exceeds 1.
+        """
+        largest = float(np.abs(self.multipliers).max(initial=1.0))
+        return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
+
+    def peak_to_peak(self, output: str) -> float:
+        """Return maximum minus minimum of an output.
+
+        Parameters
+        ----------
+        output : str
+            Its name.
+
+        Returns
+        -------
+        float
+            SI value.
+
+        Raises
+        ------
+        ValueError
+            For a name that is none; it says which there are.
+        """
+        if output not in self.maximum:
+            raise ValueError(f"output is {output!r}; it must be one of {', '.join(self.maximum)}")
+        return self.maximum[output] - self.minimum[output]
+
+
+def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
+    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None of none.
+
+    Unlike those themselves, which all but coincide, they are as accurate as the other multipliers.
+    """
+    nearest = multipliers[np.abs(multipliers - 1).argsort()[:count]]
+    return float(max(abs(nearest.mean() - 1), abs(nearest.prod() - 1))) if count else None
+
+
+def describe(solution: Solution, label: Label, event: str, columns: dict[str, float]) -> Point:
+    """Return what is said of a solution: label, the user's name of an event, columns, and all the rest."""
+    problem, orbit = solution.problem, solution.orbit
+    found = extrema(problem.system, orbit)
+    names = [output.name for output in problem.system.outputs]
+    multipliers = solution.spectrum.multipliers
+    order = -multipliers.real if orbit.equilibrium else -np.abs(multipliers)
+    return Point(
+        orbit=orbit,
+        parameter=solution.value,
+        label=label,
+        multipliers=multipliers[np.argsort(order, kind="stable")],
+        minimum=dict(zip(names, map(float, found.minimum), strict=True)),
+        maximum=dict(zip(names, map(float, found.maximum), strict=True)),
+        error=solution.error,
+        residual=solution.correction.residual,
+        iterations=solution.correction.iterations,
+        slope=solution.tangent.parameter,
+        trivial=_distance(multipliers, problem.trivial),
+        conservative=problem.trivial > 1,
+        marginal=marginal(problem),
+        event=event,
+        columns=columns,
+    )

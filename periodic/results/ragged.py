@@ -1,0 +1,152 @@
+"""Orbits as ragged arrays: those of all points in one array each, and how many numbers are every point's.
+
+The dimensions segment, break, node, stage and event run over all points; the variables `*_count` tell the
+share of each. Sums of shares that are not the arrays' lengths raise ValueError.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from periodic.harmonic.series import SAMPLES, FourierOrbit
+from periodic.orbit.layout import Layout
+from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Family, Scheme
+
+Tables = dict[str, tuple[tuple[str, ...], np.ndarray]]
+"""Arrays by name, with the names of their dimensions."""
+
+Arrays = Mapping[str, np.ndarray]
+"""The same without their dimensions."""
+
+FOURIER = "Fourier series"
+"""Stands for the scheme of orbits that are such series."""
+
+
+def scheme_said(orbits: Sequence[Orbit]) -> dict[str, Any]:
+    """Return the scheme that all orbits share, as text and number."""
+    schemes = {orbit.mesh.scheme for orbit in orbits}
+    scheme = schemes.pop() if schemes else Scheme()
+    return {"scheme": FOURIER if scheme == SAMPLES else scheme.family.value, "ncol": scheme.ncol}
+
+
+def orbit_tables(orbits: Sequence[Orbit], layout: Layout) -> Tables:
+    """Return the arrays of some orbits.
+
+    Parameters
+    ----------
+    orbits : sequence of Orbit
+        Orbits of one scheme.
+    layout : Layout
+        Their layout.
+
+    Returns
+    -------
+    dict
+        Name: (dimensions, array).
+    """
+    n, m, p = len(layout.states), len(layout.algebraics), len(layout.parameters)
+    events = [a for o in orbits for a in o.mesh.events]
+    breaks = [b for o in orbits for b in o.mesh.breaks]
+
+    def counts(found: list[int]) -> np.ndarray:
+        return np.array(found, dtype=int)
+
+    return {
+        "parameters": (("point", "parameter"), _rows([o.parameter for o in orbits], (p,))),
+        "period": (("point",), np.array([o.mesh.period for o in orbits], dtype=float)),
+        "equilibrium": (("point",), np.array([o.equilibrium for o in orbits], dtype=bool)),
+        "segment_count": (("point",), counts([len(o.mesh.breaks) for o in orbits])),
+        "event_count": (("point",), counts([len(o.mesh.events) for o in orbits])),
+        "break_count": (("segment",), counts([len(b) for b in breaks])),
+        "sigma": (("break",), _rows(breaks)),
+        "event_switch": (("event",), counts([a.switch for a in events])),
+        "event_direction": (("event",), counts([a.direction for a in events])),
+        "event_level": (("event",), np.array([a.level for a in events], dtype=float)),
+        "event_phase": (("event",), _rows([o.phases for o in orbits])),
+        "node_state": (("node", "state"), _rows([o.nodes for o in orbits], (n,))),
+        "stage_state": (("stage", "state"), _rows([o.stages for o in orbits], (n,))),
+        "stage_algebraic": (("stage", "algebraic"), _rows([o.algebraic for o in orbits], (m,))),
+    }
+
+
+def _rows(arrays: Sequence[np.ndarray], tail: tuple[int, ...] = ()) -> np.ndarray:
+    def flat(a: np.ndarray) -> np.ndarray:
+        return a.reshape(math.prod(a.shape[: a.ndim - len(tail)]), *tail)
+
+    return np.concatenate([np.zeros((0, *tail)), *map(flat, arrays)])
+
+
+def orbits_of(arrays: Arrays, said: Mapping[str, Any], layout: Layout) -> list[Orbit]:
+    """Cut the ragged arrays into orbits.
+
+    Parameters
+    ----------
+    arrays : mapping of str to ndarray
+        As from `orbit_tables`, without dimensions.
+    said : mapping
+        As from `scheme_said`.
+    layout : Layout
+        Names, units and scales.
+
+    Returns
+    -------
+    list of Orbit
+        One for each point.
+
+    Raises
+    ------
+    ValueError
+        Where shares do not add up.
+    """
+    series = said["scheme"] == FOURIER
+    scheme = SAMPLES if series else Scheme(Family(said["scheme"]), int(said["ncol"]))
+    meshes = _meshes(arrays, scheme)
+    intervals = [mesh.ntst for mesh in meshes]
+    nodes = _cut(arrays["node_state"], [count + 1 for count in intervals])
+    stages = _cut(arrays["stage_state"], [count * scheme.ncol for count in intervals])
+    unknowns = _cut(arrays["stage_algebraic"], [count * scheme.ncol for count in intervals])
+    phases = _cut(arrays["event_phase"], arrays["event_count"])
+    kind = FourierOrbit if series else Orbit
+    return [
+        kind(
+            mesh,
+            nodes[i],
+            stages[i].reshape(mesh.ntst, scheme.ncol, len(layout.states)),
+            unknowns[i].reshape(mesh.ntst, scheme.ncol, len(layout.algebraics)),
+            phases[i],
+            arrays["parameters"][i],
+            bool(arrays["equilibrium"][i]),
+            layout,
+        )
+        for i, mesh in enumerate(meshes)
+    ]
+
+
+def _meshes(arrays: Arrays, scheme: Scheme) -> list[Mesh]:
+    breaks = _cut(arrays["sigma"], arrays["break_count"])
+    columns = zip(*(arrays[f"event_{name}"] for name in ("switch", "direction", "level")), strict=True)
+    events = [EventNode(int(switch), int(way), float(level)) for switch, way, level in columns]
+    segments = _spans(arrays["segment_count"], len(breaks))
+    tied = _spans(arrays["event_count"], len(events))
+    return [
+        Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period))
+        for own, ties, period in zip(segments, tied, arrays["period"], strict=True)
+    ]
+
+
+def _cut(array: np.ndarray, counts: Sequence[int] | np.ndarray) -> list[np.ndarray]:
+    return [array[span] for span in _spans(counts, len(array))]
+
+
+def _spans(counts: Sequence[int] | np.ndarray, length: int) -> list[slice]:
+    """Consecutive slices of given lengths. Raises ValueError unless they make up the whole."""
+    ends = np.cumsum(np.append(0, counts)).astype(int)
+    if ends[-1] != length or (np.diff(ends) < 0).any():
+        raise ValueError(f"shares add up to {ends[-1]}; they must make {length}")
+    return [slice(int(a), int(b)) for a, b in zip(ends[:-1], ends[1:], strict=True)]

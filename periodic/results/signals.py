@@ -1,0 +1,59 @@
+"""Signals that end a program (Ctrl-C, SIGTERM): handled otherwise, or made to wait, while a block runs."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+Handler = Callable[[int, FrameType | None], Any] | int | None
+ENDING = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def handled(handler: Handler) -> Iterator[dict[int, Handler]]:
+    """Inside the block the signals that end a program have another handler.
+
+    Parameters
+    ----------
+    handler : callable or signal.Handlers
+        As for `signal.signal`.
+
+    Yields
+    ------
+    dict
+        The handlers from before, by signal, which are set again after the block. None outside the main
+        thread: only that one is interrupted, and only it may change handlers.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield {}
+        return
+    before: dict[int, Handler] = {each: signal.signal(each, handler) for each in ENDING}
+    try:
+        yield before
+    finally:
+        for each, old in before.items():
+            signal.signal(each, old or signal.SIG_DFL)
+
+
+@contextmanager
+def deferred() -> Iterator[None]:
+    """Inside the block signals that end a program wait; the handler of the first is called after it.
+
+    Yields
+    ------
+    None
+        Nothing.
+    """
+    heard: list[tuple[int, FrameType | None]] = []
+    with handled(lambda *at: heard.append(at)) as before:
+        yield
+    for number, frame in heard[:1]:
+        handler = before[number]
+        if callable(handler):
+            handler(number, frame)
+        elif handler == signal.SIG_DFL:
+            signal.raise_signal(number)

@@ -1,0 +1,1 @@
+"""Single and multiple shooting by a trusted integrator."""

@@ -1,0 +1,1 @@
+"""What Floquet multipliers tell, and how they wind."""

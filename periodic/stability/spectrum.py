@@ -1,0 +1,131 @@
+"""The Floquet multipliers of an orbit, from its fundamental matrices, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.scheme import Array
+
+Complex = NDArray[np.complex128]
+
+CONSERVED = 100.0
+"""What lies within so many errors of the multipliers from 1 cannot be told from it,"""
+
+ROUNDING = 1e-10
+"""... or within this."""
+
+LOST = 0.1
+"""Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+
+
+class Stability(Enum):
+    """What decides it: multipliers of an orbit on the unit circle, eigenvalues on the imaginary axis."""
+
+    MULTIPLIERS = "Floquet multipliers"
+    EIGENVALUES = "eigenvalues of the Jacobian"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A complex pair of multipliers: argument, modulus, distance from +1, and how far its solution w turns.
+
+    turned: the mean of the turns of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
+    that of a single component, which may pass through 0, it changes smoothly with the orbit.
+    """
+
+    argument: float
+    modulus: float
+    distance: float
+    turned: float
+
+    @property
+    def conjugate(self) -> Pair:
+        """The other member of the pair."""
+        return replace(self, argument=-self.argument, turned=-self.turned)
+
+    def turn(self, other: Pair) -> float:
+        """Return by how much the multiplier turns to that of another orbit, whole turns included."""
+        least = other.argument - self.argument
+        whole = round((other.turned - self.turned - least) / (2 * np.pi))
+        return least + 2 * np.pi * whole
+
+    def nearest(self, others: Sequence[Pair]) -> Pair:
+        """Return the member of another orbit's pairs to which this one leads."""
+        members = [member for other in others for member in (other, other.conjugate)]
+        return min(members, key=lambda other: abs(self.turn(other)) + abs(other.turned - self.turned))
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Multipliers and their solutions.
+
+    Parameters
+    ----------
+    fundamental : ndarray, shape (N+1, n, n)
+        Fundamental matrices at the mesh points, the last of which is the monodromy matrix; of an equilibrium
+        the Jacobian in 1/s, shape (1, n, n).
+    trivial : int
+        How many multipliers are 1 whatever the parameters.
+    """
+
+    fundamental: Array
+    trivial: int = 0
+
+    @property
+    def monodromy(self) -> Array:
+        """The monodromy matrix, shape (n, n)."""
+        return self.fundamental[-1]
+
+    @cached_property
+    def _eigen(self) -> tuple[Complex, Complex]:
+        values, vectors = np.linalg.eig(self.monodromy)
+        return values.astype(np.complex128), vectors.astype(np.complex128)
+
+    @property
+    def multipliers(self) -> Complex:
+        """Eigenvalues of the monodromy matrix, shape (n,), in no order."""
+        return self._eigen[0]
+
+    @property
+    def vectors(self) -> Complex:
+        """Their eigenvectors, shape (n, n), one a column."""
+        return self._eigen[1]
+
+    @cached_property
+    def nontrivial(self) -> Complex:
+        """The multipliers without those that are 1 whatever the parameters."""
+        return without_trivial(self.multipliers, self.trivial)
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        """A member of each complex pair of multipliers that is not 1 whatever the parameters."""
+        multipliers = self.multipliers
+        unit = np.abs(multipliers - 1).argsort()[: self.trivial]
+        chosen = np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit)
+        return [self._pair(complex(multipliers[k]), self.vectors[:, k]) for k in chosen]
+
+    def _pair(self, mu: complex, vector: Complex) -> Pair:
+        solution = self.fundamental @ vector
+        turned = float(np.angle((solution[:-1].conj() * solution[1:]).sum(axis=1)).sum())
+        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned)
+
+    @property
+    def radius(self) -> float:
+        """The largest modulus, at least 1: what errors of multipliers are compared with."""
+        return max(1.0, float(np.abs(self.multipliers).max()))
+
+    @property
+    def known(self) -> bool:
+        """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
+        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST)
+
+
+def without_trivial(multipliers: Complex, count: int) -> Complex:
+    """Return the multipliers without the `count` that are nearest 1."""
+    return np.delete(multipliers, np.abs(multipliers - 1).argsort(kind="stable")[:count])

@@ -1,0 +1,1 @@
+"""Pseudo-arclength continuation: step control, start, the loop, and the ways in."""

@@ -1,0 +1,390 @@
+"""Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
+
+Each step solves on an arclength constraint; special points inside it are located on further ones on the way.
+A step is rejected where Newton fails, where its end is not where its two tangents lead (a jump to another
+branch), where the tangent turns too much, where the multipliers pass a resonance unresolved, where an event
+node is past the end of its excursion, or where the error estimate exceeds the tolerance on a mesh made for
+the new orbit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.locate import Sought, special_points
+from periodic.bifurcations.stretch import RejectedError
+from periodic.bifurcations.turning import Found
+from periodic.correction.identity import closes, repeats, same
+from periodic.correction.predictor import tangent
+from periodic.correction.refinement import carried, is_refined, refined, remeshed
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver, SpentError
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.results.checkpoint import Checkpoint
+from periodic.results.point import Point, describe
+from periodic.results.stop import Stop
+from periodic.tracing.start import Start, collapsed
+from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.strain import strains
+from periodic.tracing.watch import Watch
+
+NEARLY = 1e-2
+"""How near to where the method's reach ends a branch is followed, in first steps."""
+
+
+class BeyondError(RejectedError):
+    """A step to an orbit that the method's finest mesh does not resolve."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step that was taken: its end, the length of the next one, the special points inside it."""
+
+    end: Solution
+    further: float
+    special: list[Found]
+
+
+@dataclass(frozen=True)
+class State:
+    """Where a run stands: its last solution, the first, the next step's size, and what it has counted.
+
+    kept: how many of its points belong to steps that were completed.
+    """
+
+    begun: Solution
+    last: Solution
+    sign: int
+    ds: float
+    steps: int
+    since_remesh: int
+    left: bool
+    met: dict[str, int]
+    kept: int
+
+
+@dataclass
+class Continuation:
+    """A continuation under way: iterate it for its points, `stop` then says why it ended.
+
+    Parameters
+    ----------
+    solver : Solver
+        The problem and how it is solved.
+    start : Orbit
+        The guess of the first orbit, in the discretisation's representation.
+    sign : int
+        The way it sets out: 1 or -1 times the parameter.
+    control : ArclengthControl
+        Step control.
+    watch : Watch
+        What is watched.
+    user : sequence of float
+        Values of the parameter that get a point (UZ).
+    search : bool
+        Whether a first orbit that Newton does not find may be approached from elsewhere.
+    stop : Stop, optional
+        Why it ended; None while it is under way.
+    collected : list of Point
+        Its points so far.
+    state : State, optional
+        Where it stands after the last completed step; None before the first orbit is found.
+    ended : Checkpoint, optional
+        Where it stood if it had come to its end before.
+    """
+
+    solver: Solver = field(repr=False)
+    start: Orbit
+    sign: int
+    control: ArclengthControl = field(default_factory=ArclengthControl, repr=False)
+    watch: Watch = field(default_factory=Watch, repr=False)
+    user: Sequence[float] = field(default=(), repr=False)
+    search: bool = field(default=True, repr=False)
+    stop: Stop | None = None
+    collected: list[Point] = field(default_factory=list, repr=False)
+    state: State | None = field(default=None, repr=False)
+    ended: Checkpoint | None = field(default=None, repr=False)
+    _running: Iterator[Point] | None = field(default=None, init=False, repr=False)
+    _since_remesh: int = field(default=0, init=False, repr=False)
+    _count: dict[str, int] = field(default_factory=dict, init=False, repr=False)
+
+    def __iter__(self) -> Continuation:
+        return self
+
+    def __next__(self) -> Point:
+        """Return the next point; `stop` says why there is none.
+
+        After an interrupt it goes on from the last completed step.
+        """
+        if self._running is None:
+            self._running = self._points()
+        try:
+            point = next(self._running)
+            if self.watch.progress is not None:
+                self.watch.progress(point)
+        except BaseException:
+            self._running = None
+            raise
+        return point
+
+    def _points(self) -> Iterator[Point]:
+        """Yield points, first towards `sign` times the parameter, until `stop` is set."""
+        if self.stop is not None and not self.stop.reason.resumable:
+            return
+        try:
+            yield from self._begun() if self.state is None else self._again(self.state)
+        except SpentError:
+            self.cut(Stop.max_newton(self.solver.work.most))
+
+    @property
+    def kept(self) -> int:
+        """How many of its points belong to steps that were completed."""
+        return len(self.collected) if self.state is None else self.state.kept
+
+    def cut(self, stop: Stop) -> None:
+        """End it: what its last step began is left out.
+
+        Parameters
+        ----------
+        stop : Stop
+            Why.
+        """
+        del self.collected[self.kept :]
+        self.stop = stop
+
+    def _begun(self) -> Iterator[Point]:
+        """Yield points from the first orbit on."""
+        solver, found = self.solver, Start(self.solver, self._follow, self.search)
+        base = found.found(self.start, float(self.sign))
+        if not base.ok:
+            beyond = found.shortfall
+            self.stop = Stop.inaccurate(beyond) if beyond else Stop.no_start(base.outcome.value)
+            return
+        if base.error.motion > solver.tolerance.orbit:
+            self.stop = Stop.inaccurate(base.refinement.shortfall)
+            return
+        if repeats(solver, base):
+            raise ValueError(
+                f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
+                f"it must be sampled over as many as it takes"
+            )
+        self.watch.check(solver.problem.system, base.orbit)
+        yield self._emitted(base, Label.END)
+        if base.value in self.user:
+            yield self._emitted(base, Label.USER)
+        self.state = State(base, base, self.sign, self.control.ds, 0, 0, False, {}, len(self.collected))
+        yield from self._onward(base)
+
+    def _again(self, state: State) -> Iterator[Point]:
+        """Yield the points that follow the last completed step."""
+        self.stop = None
+        del self.collected[state.kept :]
+        self._since_remesh, self._count = state.since_remesh, dict(state.met)
+        yield from self._onward(self._prepared(state.last) if state.steps else state.last)
+
+    def resumed(self, points: list[Point], checkpoint: Checkpoint) -> Iterator[Point]:
+        """Yield the points that follow those of an interrupted run with the same start.
+
+        Parameters
+        ----------
+        points : list of Point
+            The points of that run.
+        checkpoint : Checkpoint
+            Where it stood.
+
+        Yields
+        ------
+        Point
+            Those that follow.
+        """
+        c, last = checkpoint, points[-1].orbit
+        self.stop, self.collected = None, points
+        try:
+            begun = Start(self.solver, self._follow, self.search).found(self.start, float(c.sign))
+            again = self.solver.on(last, self.solver.constraint(last, c.tangent, 0.0))
+        except SpentError:
+            self.cut(Stop.max_newton(self.solver.work.most))
+            return
+        for found in (begun, again):
+            if not found.ok:
+                self.stop = Stop.no_start(found.outcome.value)
+                return
+        # Newton has moved it by rounding; what follows shall be just what would have followed.
+        correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
+        again = replace(again, correction=correction, tangent=c.tangent)
+        self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
+        yield from self
+
+    @property
+    def checkpoint(self) -> Checkpoint | None:
+        """What it takes to go on after the last completed step."""
+        s = self.state
+        if s is None:
+            return self.ended
+        done = self.stop is not None and not self.stop.reason.resumable
+        numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)
+        return Checkpoint(s.sign, s.last.tangent, s.last.correction.fundamental, *numbers)
+
+    def _follow(self, solver: Solver, start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
+        """Follow a branch; return its last orbit and why it ends."""
+        run = Continuation(solver, start, sign, self.control, search=False)
+        points = list(run)
+        assert run.stop is not None
+        return (points[-1].orbit if points else None), run.stop
+
+    def _onward(self, base: Solution) -> Iterator[Point]:
+        """Take steps from a base, which is the last solution on a mesh for the next one."""
+        assert self.state is not None
+        while self.state.steps + 1 < self.control.max_points:
+            step = self._taken(base)
+            if step is None:
+                yield self._emitted(base, Label.FAILED)
+                return
+            for special in step.special:
+                yield from self._met(special)
+                if self.stop is not None:
+                    return
+            self._completed(step.end, step.further)
+            yield self.collected[-1]
+            base = self._prepared(step.end)
+        self.stop = Stop.max_points(self.control.max_points)
+
+    def _taken(self, base: Solution) -> Step | None:
+        """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
+        assert self.state is not None
+        control, ds, begin = self.control, self.state.ds, self.state.begun.value
+        sought = Sought(self._values(begin), self.state.last.value, self.watch.tests())
+        longest = np.inf  # the next one is no longer where a longer one has just failed
+        while True:
+            try:
+                base, new, strain = self._step(base, ds)
+                found = special_points(self.solver, base, new, ds, sought)
+                further = min(control.next_size(ds, new.correction.iterations, strain), longest)
+                return Step(new, further, found)
+            except RejectedError as rejected:
+                longest = ds = ds * rejected.shorter
+                beyond = isinstance(rejected, BeyondError)
+                if not ds >= (max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min):
+                    self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
+                    return None
+
+    def _met(self, special: Found) -> Iterator[Point]:
+        """Yield a special point, and set `stop` where the branch ends there."""
+        assert self.state is not None
+        state, label, own = self.state, special.label, bool(special.name)
+        if label is Label.USER and not own:
+            if state.left and closes(self.solver, state.begun, special.solution):
+                self.stop = Stop.closed(state.steps + 1)
+                label = Label.END
+            elif special.solution.value not in self.user:
+                return
+        if label is Label.END and self.stop is None:
+            bounds = self.solver.problem.bounds
+            self.stop = Stop.limit(special.name) if own else Stop.bound(bounds, special.solution.value)
+        name = special.name if label is Label.USER and own else label.value
+        if special.shrunk:
+            self.stop = Stop.equilibrium(state.steps + 1)
+        self._count[name] = self._count.get(name, 0) + 1
+        if self.stop is None and self._count[name] == self.watch.stop.get(name):
+            self.stop = Stop.asked(name, self._count[name])
+        yield self._emitted(special.solution, label, special.name if own else "")
+
+    def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
+        columns = self.watch.measured(self.solver.problem.system, solution.orbit)
+        point = describe(solution, label, event, columns)
+        self.collected.append(point)
+        return point
+
+    def _completed(self, new: Solution, ds: float) -> None:
+        """Keep a step: its end becomes the last solution, from which the next goes ds."""
+        assert self.state is not None
+        self._emitted(new, Label.NONE)
+        self.state = replace(
+            self.state,
+            last=new,
+            ds=ds,
+            steps=self.state.steps + 1,
+            since_remesh=self._since_remesh,
+            left=self.state.left or not same(self.solver, self.state.begun, new),
+            met=dict(self._count),
+            kept=len(self.collected),
+        )
+
+    def _values(self, begin: float) -> Sequence[float]:
+        """Values at which the branch gets a point: the user's, and where it may meet its own start."""
+        low, high = self.solver.problem.bounds
+        return sorted({*self.user, begin}) if low < begin < high else self.user
+
+    def _step(self, base: Solution, ds: float) -> tuple[Solution, Solution, float]:
+        """Take one step; return base and new solution on one mesh, and the strain. Raises RejectedError.
+
+        The mesh is made anew up to `meshes` times, while it changes; where then only the multipliers' error
+        still exceeds its bound the point stands, and tells it.
+        """
+        tolerance = self.solver.tolerance.orbit
+        for left in reversed(range(self.control.meshes + 1)):
+            new, strain = self._attempt(base, ds)
+            if new.error.worst <= tolerance:
+                return base, new, strain
+            if collapsed(base.orbit, new):
+                raise RejectedError("the orbit shrinks to nothing in one step")
+            mesh = new.refinement.refined()
+            if left == 0 or mesh.matches(base.orbit.mesh):
+                break
+            base = self._on_mesh(base, mesh)
+        if new.error.motion > tolerance:
+            if new.refinement.exhausted:
+                raise BeyondError(new.refinement.shortfall)
+            raise RejectedError("the error estimate exceeds the tolerance")
+        return base, new, strain
+
+    def _attempt(self, base: Solution, ds: float) -> tuple[Solution, float]:
+        """Solve a step away; return the solution and the step's strain. Raises RejectedError."""
+        solver, control = self.solver, self.control
+        newton = solver.tolerance.newton
+        patient = replace(newton, max_iterations=min(control.patience, newton.max_iterations))
+        guess = tangent(solver.problem, base, ds)
+        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), patient)
+        if not new.ok:
+            raise RejectedError(new.outcome.value)
+        furthest = 0.0
+        for strain in strains(base, new, ds, control, solver.tolerance.orbit):
+            if not strain.size <= 1:
+                raise RejectedError(strain.why, control.shorter(strain.size))
+            furthest = max(furthest, strain.ahead)
+        return new, furthest
+
+    def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
+        """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""
+        moved = carried(self.solver, base, mesh, base.orbit.phases)
+        if not moved.ok:
+            raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
+        return moved
+
+    def _prepared(self, new: Solution) -> Solution:
+        """Give the next step its mesh: right event nodes, an error estimate inside its window."""
+        solver, control, tolerance = self.solver, self.control, self.solver.tolerance.orbit
+        self._since_remesh += 1
+        due = self._since_remesh >= control.remesh_every
+        due = due or new.error.worst >= control.remesh_above * tolerance
+        if new.refinement.fits and not due and not self._too_fine(new):
+            return new
+        better = remeshed(solver, new)
+        if better.ok and not is_refined(solver, better):
+            better = refined(solver, better)
+        if not better.ok or better.error.motion > tolerance:
+            return new
+        self._since_remesh = 0
+        return better
+
+    def _too_fine(self, new: Solution) -> bool:
+        """Whether a far smaller mesh would do."""
+        control = self.control
+        if new.error.worst >= control.remesh_below * self.solver.tolerance.orbit:
+            return False
+        return new.refinement.refined().ntst <= control.smaller * new.orbit.mesh.ntst

@@ -1,0 +1,117 @@
+"""The first orbit of a branch: from its guess, by other schemes, from elsewhere, at a turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from periodic.bifurcations.switching import away
+from periodic.correction.outcome import FAILURES, Outcome
+from periodic.correction.refinement import refined
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.orbit.orbit import Orbit
+from periodic.results.stop import Reason, Stop
+
+COLLAPSED = 0.1
+"""An orbit that is so much smaller than its guess is not what was guessed."""
+
+ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
+"""Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
+
+LOOSE = 1e-2
+"""Tolerance of the way to a first orbit that is beyond the method's reach."""
+
+Follow = Callable[[Solver, Orbit, int], tuple[Orbit | None, Stop]]
+"""What follows a branch from an orbit one way: its last orbit, and why it ends."""
+
+
+@dataclass
+class Start:
+    """The search for the first orbit.
+
+    search: whether one that Newton does not find may be approached from elsewhere, by `follow`. shortfall:
+    why the way there ended where the method's reach does.
+    """
+
+    solver: Solver
+    follow: Follow
+    search: bool = True
+    shortfall: str = field(default="", init=False)
+
+    def found(self, guess: Orbit, sign: float) -> Solution:
+        """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
+        solver = self.solver
+        first = self._fixed(guess, sign)
+        if first.ok and not collapsed(guess, first):
+            return first
+        if not self.search:
+            return self._at_turn(guess, sign, first)
+        other = self._by_others(guess, sign)
+        if other is not None and other.ok:
+            return other
+        for factor in ELSEWHERE:
+            orbit = self._approached(guess, factor)
+            if orbit is not None:
+                return refined(solver, solver.at_parameter(orbit, sign), fixed=True)
+            if self.shortfall:
+                break
+        return first
+
+    def _fixed(self, guess: Orbit, sign: float) -> Solution:
+        return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)
+
+    def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
+        """Find the first orbit by that of another discretisation; None where there is none."""
+        solver, system = self.solver, self.solver.problem.system
+        loose = self._loosely(solver)
+        for method in solver.discretisation.alternatives:
+            other = replace(loose, discretisation=method.at(loose.tolerance.orbit))
+            near = other.discretisation.guess(system, guess.parameter, guess)
+            found = refined(other, other.at_parameter(near, sign), fixed=True)
+            if found.ok:
+                own = solver.discretisation.guess(system, guess.parameter, found.orbit)
+                return self._fixed(own, sign)
+        return None
+
+    @staticmethod
+    def _loosely(solver: Solver) -> Solver:
+        """The same with orbits to a loose tolerance."""
+        tolerance = replace(solver.tolerance, orbit=max(LOOSE, solver.tolerance.orbit))
+        return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
+
+    def _at_turn(self, guess: Orbit, sign: float, first: Solution) -> Solution:
+        """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+        failed = first.failed(Outcome.COLLAPSED) if first.ok else first
+        problem = self.solver.problem
+        try:
+            across = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
+        except FAILURES:
+            return failed
+        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
+        return found if found.ok else failed
+
+    def _approached(self, guess: Orbit, factor: float) -> Orbit | None:
+        """Trace from `factor` times the wanted parameter to it; None where the branch does not get there."""
+        problem = self.solver.problem
+        wanted = problem.value(guess)
+        parameter = guess.parameter.copy()
+        parameter[problem.index] = far = factor * wanted
+        sign = int(np.sign(wanted - far))
+        first = self._fixed(replace(guess, parameter=parameter), float(sign))
+        if not first.ok or far == wanted:
+            return None
+        nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
+        solver = replace(self.solver, problem=nearer)
+        orbit, stop = self.follow(solver, first.orbit, sign)
+        if stop.reason is Reason.INACCURATE and orbit is not None:
+            self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
+            orbit, _ = self.follow(self._loosely(solver), orbit, sign)
+        return orbit if orbit is not None and problem.value(orbit) == wanted else None
+
+
+def collapsed(guess: Orbit, found: Solution) -> bool:
+    """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
+    return found.problem.autonomous and found.orbit.span() < COLLAPSED * guess.span()

@@ -1,0 +1,66 @@
+"""How far a step strains what makes it trustworthy: turning, bending, winding of multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.bifurcations import codim2
+from periodic.correction.predictor import difference
+from periodic.correction.solution import Solution
+from periodic.linear.unknowns import Increment
+from periodic.stability.spectrum import Stability
+from periodic.stability.winding import turned
+from periodic.tracing.stepsize import ArclengthControl
+
+
+@dataclass(frozen=True)
+class Strain:
+    """How far a step goes in one respect, where 1 is the most; about linear in its length.
+
+    ahead: how far one as long would go next. why: what is wrong with a step beyond 1.
+    """
+
+    size: float
+    ahead: float
+    why: str
+
+
+def strains(
+    base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
+) -> Iterator[Strain]:
+    """Yield the strains of a step between two solutions on one mesh, the cheapest first."""
+    problem = base.problem
+    cosine = base.tangent.dot(new.tangent, new.orbit, problem.scale)
+    angle = _angle(cosine, control.turn)
+    yield Strain(angle, angle, "the branch turns too sharply for the step")
+    noise = control.noise * tolerance * base.orbit.span()
+    bend = float(np.sqrt(max(_bend(base, new, ds) - noise, 0.0) / (control.bend * ds)))
+    yield Strain(bend, bend, "the step does not follow its tangents")
+    if new.discretisation.stability is Stability.MULTIPLIERS:
+        turn = turned(base.spectrum, new.spectrum, control.winding)
+        yield Strain(turn.strain, turn.ahead, "the multipliers turn too far past 1 for the step")
+    angle = _angle(codim2.alignment(base, new), control.turn)
+    yield Strain(angle, angle, "the critical motion turns too far for the step")
+
+
+def _angle(cosine: float, least: float) -> float:
+    return float(np.arccos(np.clip(cosine, -1, 1)) / np.arccos(least))
+
+
+def _bend(base: Solution, new: Solution, ds: float) -> float:
+    """How far the step's end lies from where the mean of the two tangents leads."""
+    problem = base.problem
+    mean = (base.tangent + new.tangent).scaled(-ds / 2)
+    way = difference(problem, base.orbit, new.orbit)
+    bend = Increment.of(
+        base.orbit,
+        way.nodes + mean.nodes,
+        way.stages,
+        way.algebraic,
+        way.phases + mean.phases,
+        way.parameters + mean.parameters,
+    )
+    return float(np.sqrt(bend.dot(bend, base.orbit, problem.scale)))

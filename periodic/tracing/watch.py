@@ -1,0 +1,168 @@
+"""What is watched along a branch besides its stability: columns, events, limits, and when to stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.testfunction import TestFunction
+from periodic.checks import named
+from periodic.conditions.functionals import Functional, Value, apart
+from periodic.conditions.levels import Level
+from periodic.correction.solution import Solution
+from periodic.orbit.orbit import Orbit
+from periodic.results.point import Point
+from periodic.system import System, index_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Watch:
+    """What is watched along a branch.
+
+    Parameters
+    ----------
+    columns : mapping of str to functional
+        Functionals of the orbit kept at each point, by the names of their columns.
+    events : mapping of str to Level
+        Levels of functionals, by name; where one is passed the branch gets a point (UZ).
+    limits : mapping of str to (float, float)
+        Ranges of further parameters (SI) that end the branch.
+    stop : mapping of str to int
+        After how many points of a label or event it ends, {"LP": 2}, counted from the start each way.
+    special : tuple of TestFunction
+        Further kinds of special points.
+    progress : callable, optional
+        Called with each point.
+    journal : str or Path, optional
+        A file that keeps every step as it is done, for `recovered` if the process is killed.
+
+    Raises
+    ------
+    ValueError
+        For names that are not known and values that make no sense.
+    """
+
+    columns: Mapping[str, Functional] = field(default_factory=dict)
+    events: Mapping[str, Level] = field(default_factory=dict)
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    stop: Mapping[str, int] = field(default_factory=dict)
+    special: tuple[TestFunction, ...] = ()
+    progress: Callable[[Point], None] | None = None
+    journal: str | Path | None = None
+
+    def __post_init__(self) -> None:
+        kinds = {"columns": "functionals", "events": "levels", "limits": "ranges", "stop": "counts"}
+        for name, what in kinds.items():
+            named(name, getattr(self, name), what)
+        known = [label.value for label in Label.known()]
+        for name, functional in self.columns.items():
+            if isinstance(functional, type) or not callable(functional):
+                raise ValueError(f"column {name} is {functional!r}; it must be a functional of an orbit")
+        for name, event in self.events.items():
+            if not isinstance(event, Level):
+                raise ValueError(f"event {name} is {event!r}; it must be a Level(functional, value)")
+            if name in known:
+                raise ValueError(f"events has {name!r}, which is a label; it must be another name")
+        for name, count in self.stop.items():
+            if name not in (*known, *self.events):
+                among = ", ".join((*known, *self.events))
+                raise ValueError(f"stop has {name!r}; it must name a label or an event: {among}")
+            if isinstance(count, bool) or not (isinstance(count, int) and count >= 1):
+                raise ValueError(f"stop of {name} is {count!r}; it must be a whole number of at least 1")
+        self._check_others()
+
+    def _check_others(self) -> None:
+        for test in self.special:
+            if not isinstance(test, TestFunction):
+                raise ValueError(f"special has {test!r}; it must be a TestFunction(label=, value=)")
+        for name, ends in self.limits.items():
+            if not _rising(ends):
+                raise ValueError(f"limits of {name} are {ends}; they must be two rising finite numbers")
+        if self.progress is not None and not callable(self.progress):
+            raise ValueError(f"progress is {self.progress!r}; it must be a function of a point")
+        if self.journal is not None and not (isinstance(self.journal, str | Path) and str(self.journal)):
+            raise ValueError(f"journal is {self.journal!r}; it must be the name of a file")
+
+    def tests(self) -> tuple[TestFunction, ...]:
+        """Return the test functions of further special points, of events and of limits.
+
+        Returns
+        -------
+        tuple of TestFunction
+            In this order.
+        """
+        events = [_passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
+        limits = [
+            _passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
+            for name, ends in self.limits.items()
+            for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
+        ]
+        return (*self.special, *events, *limits)
+
+    def measured(self, system: System, orbit: Orbit) -> dict[str, float]:
+        """Return the columns of an orbit.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            The orbit.
+
+        Returns
+        -------
+        dict of str to float
+            Values of the functionals, by the names of their columns.
+        """
+        found = {}
+        for name, functional in self.columns.items():
+            value = functional(system, orbit)
+            if not isinstance(value, int | float | np.number):
+                raise ValueError(f"column {name} gave {value!r}; it must give a number")
+            found[name] = float(value)
+        return found
+
+    def check(self, system: System, orbit: Orbit) -> None:
+        """Check that an orbit to start from lies within the limits.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            The first orbit.
+
+        Raises
+        ------
+        ValueError
+            If it lies outside.
+        """
+        for name, (low, high) in self.limits.items():
+            value = float(orbit.parameter[index_of(system, name)])
+            if not low - slack(low) <= value <= high + slack(high):
+                raise ValueError(f"{name} is {value} at the start; its limits are {low} to {high}")
+
+
+def _rising(ends: object) -> bool:
+    """Whether two values are finite numbers that rise."""
+    if not (isinstance(ends, Sequence | np.ndarray) and len(ends) == 2):
+        return False
+    numbers = all(isinstance(end, int | float | np.number) and math.isfinite(end) for end in ends)
+    return bool(numbers and ends[0] < ends[1])
+
+
+def slack(limit: float) -> float:
+    """How far beyond a limit a parameter may lie: by rounding."""
+    return 1e-12 * abs(limit)
+
+
+def _passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
+    def value(solution: Solution) -> float:
+        return apart(functional, functional(solution.problem.system, solution.orbit), level)
+
+    return TestFunction(label=label, value=value, name=name)

@@ -1,0 +1,77 @@
+"""The command `orbitrace linear`. What is imported here is small, so that --help is quick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.app.options import DONE, STOPPED_EARLY, Changes, Out, Source, folder_for, pairs, say
+
+if TYPE_CHECKING:
+    from reports.app.linear.study import Study
+
+Values = Annotated[
+    str | None,
+    typer.Option(
+        "--at",
+        metavar="RPM,RPM,...",
+        help="Values to linearise at (oscillator: rad/s). [default: the resonance]",
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print what linear.json holds, and nothing else.")]
+
+
+def linear(
+    scene: Source, at: Values = None, changes: Changes = None, out: Out = None, as_json: Json = False
+) -> int:
+    """Show the linear system about the rest of a scene: natural frequencies, damping, frequency response.
+
+    Writes linear.csv (the response over the scene's range), linear.json and linear.png. Exit code 0: done;
+    2: bad input; 3: no equilibrium was found.
+    """
+    from reports.app.linear import study, text
+    from reports.app.request import Request, validated
+    from symbolic.motion.linear import NoRestError
+    from symbolic.scenes.files import short_name
+
+    task = validated(Request(source=scene, at=at, overrides=pairs(changes)))
+    folder = folder_for(out, name := short_name(scene))
+    try:
+        found = study.study(task)
+    except NoRestError as error:
+        say(f"{error}; nothing was saved")
+        return STOPPED_EARLY
+    files = _saved(folder, name, found)
+    if as_json:
+        typer.echo(text.json_text(name, found), nl=False)
+    else:
+        _show(found, files)
+    return DONE
+
+
+def _saved(folder: Path, name: str, found: Study) -> list[Path]:
+    """Write linear.csv, linear.json and linear.png and return them. Raises InputError if one cannot be."""
+    from reports.app.files import write
+    from reports.app.linear.picture import draw
+    from reports.app.linear.text import csv_text, json_text
+
+    writers: dict[str, Callable[[Path], object]] = {
+        "linear.csv": lambda path: path.write_text(csv_text(found), "utf-8"),
+        "linear.json": lambda path: path.write_text(json_text(name, found), "utf-8"),
+        "linear.png": lambda path: draw(path, found),
+    }
+    return write(folder, writers)
+
+
+def _show(found: Study, files: list[Path]) -> None:
+    from reports.app import console
+    from reports.app.linear.text import table, verdict
+
+    headings, rows = table(found)
+    typer.echo(found.scene.title)
+    console.table(headings, rows, left=headings[0])
+    typer.echo("\n".join(verdict(found)))
+    typer.echo("written: " + ", ".join(str(file) for file in files))

@@ -1,0 +1,66 @@
+"""What commands have in common: options, exit codes, sentences on standard error.
+
+Imported for --help: nothing large is imported here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DONE, BAD_INPUT, STOPPED_EARLY, INTERRUPTED = 0, 2, 3, 130
+"""Exit codes; the last is a shell's own for a program that Ctrl-C ended."""
+
+Source = Annotated[str, typer.Argument(metavar="SCENE", help="A built-in scene or a TOML file.")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change the scene, as in --set film.beta=20."),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
+]
+
+
+def say(sentence: str) -> None:
+    """Say something on standard error."""
+    typer.echo(f"orbitrace: {sentence}", err=True)
+
+
+def pairs(changes: Sequence[str] | None) -> tuple[tuple[str, str], ...]:
+    """Return the keys and values of --set. Raises InputError."""
+    return tuple(map(_pair, changes or ()))
+
+
+def _pair(change: str) -> tuple[str, str]:
+    from symbolic.scenes.errors import refused
+
+    key, equals, value = change.partition("=")
+    if not (key and equals):
+        raise refused("--set", change, "KEY=VALUE, as in film.beta=20")
+    return key.strip(), value.strip()
+
+
+def count(option: str, text: str | None) -> int | None:
+    """Return the whole number of an option. Raises InputError."""
+    from symbolic.scenes.errors import refused
+
+    if text is None:
+        return None
+    try:
+        number = int(text)
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise refused(option, text, "a whole number of at least 1")
+    return number
+
+
+def folder_for(out: Path | None, name: str) -> Path:
+    """Return the directory for the files of a scene, which can be written to. Raises InputError."""
+    from reports.app.files import writable
+
+    return writable(out or Path("orbitrace-out", name))

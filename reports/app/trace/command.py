@@ -1,0 +1,197 @@
+"""The command `orbitrace trace`: options, sentences and exit codes around a trace.
+
+What is imported here is small, so that --help is quick.
+"""
+
+from __future__ import annotations
+
+import warnings
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reports.app.options import (
+    DONE,
+    INTERRUPTED,
+    STOPPED_EARLY,
+    Changes,
+    Out,
+    Source,
+    count,
+    folder_for,
+    pairs,
+    say,
+)
+
+if TYPE_CHECKING:
+    from periodic import Branch
+    from reports.app.request import Task
+    from reports.app.trace.picture import Settlements
+    from reports.app.trace.run import Effort
+
+
+class Accuracy(Enum):
+    """The names of `periodic.Accuracy`, which takes longer to import."""
+
+    DRAFT = "draft"
+    STANDARD = "standard"
+    FINE = "fine"
+
+
+class Method(Enum):
+    """Discretisations by the names that they have here."""
+
+    COLLOCATION = "collocation"
+    SHOOTING = "shooting"
+    HARMONIC_BALANCE = "harmonic-balance"
+
+
+From = Annotated[
+    str | None, typer.Option("--from", metavar="RPM", help="Where to start (oscillator: rad/s).")
+]
+To = Annotated[str | None, typer.Option("--to", metavar="RPM", help="Where to end.")]
+At = Annotated[
+    str | None,
+    typer.Option("--at", metavar="RPM,RPM,...", help="Values that get a point on every sheet."),
+]
+Dial = Annotated[Accuracy, typer.Option("--accuracy", help="How accurate every orbit is.")]
+How = Annotated[Method, typer.Option("--method", help="How orbits are represented and solved for.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on from an interrupted trace in DIR; all else as it was.")
+]
+MaxPoints = Annotated[str | None, typer.Option("--max-points", metavar="N", help="Stop after N steps.")]
+MaxNewton = Annotated[
+    str | None,
+    typer.Option("--max-newton", metavar="N", help="Stop after N Newton iterations, failed ones included."),
+]
+Sweep = Annotated[
+    bool,
+    typer.Option(
+        "--sweep", help="Also integrate in time, up and down; the picture shows where that settles."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
+
+
+def trace(
+    scene: Source,
+    begin: From = None,
+    end: To = None,
+    at: At = None,
+    changes: Changes = None,
+    accuracy: Dial = Accuracy.STANDARD,
+    method: How = Method.COLLOCATION,
+    out: Out = None,
+    resume: Resume = False,
+    max_points: MaxPoints = None,
+    max_newton: MaxNewton = None,
+    sweep: Sweep = False,
+    as_json: Json = False,
+) -> int:
+    """Trace the branch of periodic orbits of a scene and find its folds.
+
+    Writes branch.nc, branch.csv, branch.json and branch.png. Exit code 0: done; 2: bad input; 3: stopped
+    early for a numerical reason, with what was traced saved. Ctrl-C saves what is there.
+    """
+    from reports.app.request import Request, validated
+    from symbolic.scenes.files import short_name
+
+    task = validated(Request(source=scene, begin=begin, end=end, at=at, overrides=pairs(changes)))
+    points, newton = count("--max-points", max_points), count("--max-newton", max_newton)
+    folder = folder_for(out, name := short_name(scene))
+
+    from reports.app.trace.run import Effort
+
+    effort = Effort(accuracy=accuracy.name, method=method.value, max_points=points, max_newton=newton)
+    return _run(name, task, effort, folder, resume=resume, sweep=sweep, as_json=as_json)
+
+
+def _run(
+    name: str, task: Task, effort: Effort, folder: Path, *, resume: bool, sweep: bool, as_json: bool
+) -> int:
+    """Trace, integrate in time, save and tell; return the exit code."""
+    from reports.app.interrupts import heard_once
+    from reports.app.trace import run, shown, summary
+
+    before, journal = run.interrupted(task, folder) if resume else None, folder / run.JOURNAL
+    with heard_once():
+        try:
+            branch = _traced(name, task, effort, folder, before)
+            integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
+        except KeyboardInterrupt:
+            journal.unlink(missing_ok=True)
+            say("interrupted before the first point; nothing was saved")
+            return INTERRUPTED
+        folder = run.place(branch, folder)
+        files = _saved(name, task, branch, integrated, folder, journal)
+        journal.unlink(missing_ok=True)
+        if as_json:
+            typer.echo(summary.json_text(name, task.scene, branch), nl=False)
+        else:
+            shown.show(task.scene, branch, files)
+    return _verdict(branch, folder)
+
+
+def _traced(name: str, task: Task, effort: Effort, folder: Path, before: Branch | None) -> Branch:
+    """Trace; raise KeyboardInterrupt where that is interrupted before the first point."""
+    from reports.app.trace import run, shown
+
+    with shown.progress(name, task.scene) as progress, warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: say(str(message))
+        branch = run.trace(task, effort, folder, before, progress)
+    if _interrupted(branch) and not len(branch):
+        raise KeyboardInterrupt
+    return branch
+
+
+def _interrupted(branch: Branch) -> bool:
+    from periodic import Reason
+
+    return branch.stop.reason is Reason.INTERRUPTED
+
+
+def _swept(name: str, task: Task) -> Settlements | None:
+    """Integrate in time; None where that is interrupted, so that the branch is still saved."""
+    from reports.app import console
+    from reports.app.trace import run
+
+    wanted = 2 * run.SPEEDS
+    with console.counting(f"integrating {name} in time", wanted) as counted:
+        try:
+            found = run.swept(task, counted)
+        except KeyboardInterrupt:
+            say("the integration in time was interrupted; the picture goes without it")
+            return None
+    if left_out := wanted - sum(map(len, found)):
+        say(f"the motion did not settle in time at {left_out} of {wanted} values; they are not drawn")
+    return found
+
+
+def _saved(
+    name: str, task: Task, branch: Branch, integrated: Settlements | None, folder: Path, journal: Path
+) -> list[Path]:
+    """Write the files. Raises InputError that tells what is left of results that could not be written."""
+    from reports.app.trace import run
+    from symbolic.scenes.errors import InputError
+
+    try:
+        return run.save(folder, name, task.scene, branch, integrated)
+    except InputError as error:
+        if not (journal.is_file() and journal.stat().st_size):
+            raise
+        left = f"{error.allowed}; --resume goes on from {journal.name} there"
+        raise InputError(error.field, error.what, left) from error
+
+
+def _verdict(branch: Branch, folder: Path) -> int:
+    """Return the exit code of a branch and say on standard error why it is not done."""
+    kept = f"the {len(branch)} points so far are in {folder}" if len(branch) else "no point was found"
+    if _interrupted(branch):
+        say(f"interrupted; {kept}")
+        return INTERRUPTED
+    if branch.stop.reason.numerical:
+        say(f"stopped early ({branch.stop}); {kept}")
+        return STOPPED_EARLY
+    return DONE

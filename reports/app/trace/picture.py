@@ -1,0 +1,75 @@
+"""The picture of a branch: stable parts solid, unstable dashed, folds labelled."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reports.app.curve import draw_curve, solid
+from reports.app.drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
+from reports.app.view import View, view_of
+from symbolic.scenes.schema import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from periodic import Branch
+
+Settlements = tuple[list[tuple[float, float]], list[tuple[float, float]]]
+"""What time integration settles to coming from below, and from above: parameter and height as shown."""
+
+
+def draw(path: Path, scene: Scene, branch: Branch, integrated: Settlements | None = None) -> None:
+    """Write the picture of a branch as a PNG file, with what time integration settles to."""
+    drawn = figure(5.0)
+    axes, view = drawn.add_subplot(), view_of(scene)
+    draw_curve(axes, *_values(view, branch), solid(branch), color=BLUE)
+    if integrated is not None:
+        _integrated(axes, integrated)
+    _marks(axes, view, branch)
+    axes.set(xlabel=view.axes[0], ylabel=view.axes[1])
+    axes.grid(alpha=0.25)
+    axes.set_ylim(bottom=0)
+    axes.margins(x=0.02)
+    legend(axes)
+    write(path, drawn, axes, scene.title)
+
+
+def _values(view: View, branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+    """Return both coordinates of every point."""
+    across = [view.abscissa.value(point) for point in branch]
+    up = [view.height.value(point) for point in branch]
+    return np.array(across, dtype=float), np.array(up, dtype=float)
+
+
+def _integrated(axes: Axes, settled: Settlements) -> None:
+    """Draw what time integration settles to."""
+    looks = (("^", GREEN, "rising"), ("v", ORANGE, "falling"))
+    for points, (marker, color, way) in zip(settled, looks, strict=True):
+        if points:
+            x, y = np.array(points, dtype=float).T
+            name = f"time integration, speed {way}"
+            axes.plot(x, y, marker, color=color, markersize=5, markerfacecolor="none", label=name)
+
+
+def _marks(axes: Axes, view: View, branch: Branch) -> None:
+    """Mark and name folds, doublings and where a trace failed, on the side away from the branch."""
+    across, up = _values(view, branch)
+    for k, point in enumerate(branch):
+        if point.label.value not in ("LP", "PD", "MX"):
+            continue
+        neighbours = across[max(k - 1, 0) : k + 2]
+        side = 1 if across[k] >= neighbours.mean() else -1
+        axes.plot(across[k], up[k], "o", color=INK, markersize=5, zorder=5)
+        axes.annotate(
+            f"{point.label.value}\n{across[k]:.5g}",
+            (across[k], up[k]),
+            xytext=(7 * side, 0),
+            textcoords="offset points",
+            horizontalalignment="left" if side > 0 else "right",
+            verticalalignment="top",
+            fontsize="small",
+            color=INK,
+        )

@@ -1,0 +1,54 @@
+"""What a terminal shows of a trace: each new point, and at the end the special points."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from periodic import Branch, Point
+from reports.app.console import status, table
+from reports.app.trace.summary import special_table
+from reports.app.view import Column, view_of
+from symbolic.scenes.schema import Scene
+
+
+@contextmanager
+def progress(name: str, scene: Scene) -> Iterator[Callable[[Point], None] | None]:
+    """Give the callback that shows each new point, or None where standard error is no terminal."""
+    view = view_of(scene)
+    with status(f"tracing {name}") as update:
+        count = 0
+
+        def show(point: Point) -> None:
+            nonlocal count
+            count += 1
+            values = ", ".join(_reading(column, point) for column in (view.abscissa, view.height))
+            assert update is not None
+            update(f"tracing {name}: {count} points, {values}")
+
+        yield show if update else None
+
+
+def _reading(column: Column, point: Point) -> str:
+    value = column.value(point)
+    return f"{column.heading} {value:.5g}" if isinstance(value, float) else ""
+
+
+def show(scene: Scene, branch: Branch, files: Sequence[Path]) -> None:
+    """Print the special points, the reason of the stop and the files."""
+    headings, rows = special_table(scene, branch)
+    print(scene.title)
+    if rows:
+        table(headings, rows, left="label") if sys.stdout.isatty() else _plain(headings, rows)
+    count, steps = len(branch), branch.newton_iterations
+    print(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
+    print(f"stop: {branch.stop}")
+    print("written: " + ", ".join(str(file) for file in files))
+
+
+def _plain(headings: list[str], rows: list[list[str]]) -> None:
+    widths = [max(map(len, column)) for column in zip(headings, *rows, strict=True)]
+    for row in (headings, *rows):
+        print("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))

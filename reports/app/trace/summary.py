@@ -1,0 +1,84 @@
+"""A branch in words and numbers: the JSON object, the CSV text and the table of special points."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from importlib.metadata import version
+from platform import python_version
+from typing import TYPE_CHECKING, Any
+
+from reports.app.view import Cell, Column, View, view_of
+from symbolic.scenes.schema import Scene
+
+if TYPE_CHECKING:
+    from periodic import Branch, Point
+
+
+def json_text(name: str, scene: Scene, branch: Branch) -> str:
+    """Return the JSON object of a branch: `summary` written out, numbers that are not finite as null."""
+    return json.dumps(_finite(summary(name, scene, branch)), indent=2, allow_nan=False) + "\n"
+
+
+def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
+    """Return what a branch says in short; `points` is their number."""
+    view = view_of(scene)
+    return {
+        "scene": name,
+        "parameters": scene.model_dump(exclude={"title", "kind"}, exclude_none=True),
+        "special_points": [_told(view, point) for point in branch.special_points],
+        "points": len(branch),
+        "newton_iterations": branch.newton_iterations,
+        "elapsed_s": branch.elapsed,
+        "stop": branch.stop.reason.value,
+        "stop_detail": branch.stop.detail,
+        "versions": {**branch.versions, "casadi": version("casadi"), "python": python_version()},
+    }
+
+
+def _told(view: View, point: Point) -> dict[str, Any]:
+    told: dict[str, Any] = {column.name: column.value(point) for column in view.told}
+    told["multipliers"] = [[float(m.real), float(m.imag)] for m in point.multipliers]
+    return told
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def csv_text(scene: Scene, branch: Branch) -> str:
+    """Return all points of a branch, one a line, as CSV."""
+    columns = view_of(scene).columns
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([column.name for column in columns])
+    writer.writerows([[_csv_cell(column.value(point)) for column in columns] for point in branch])
+    return text.getvalue()
+
+
+def _csv_cell(cell: Cell) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, bool):
+        return str(cell).lower()
+    return f"{cell:.14g}" if isinstance(cell, float) else str(cell)
+
+
+def special_table(scene: Scene, branch: Branch) -> tuple[list[str], list[list[str]]]:
+    """Return headings and rows of the special points for people, without what the scene does not have."""
+    points = branch.special_points
+    columns = [c for c in view_of(scene).told if any(c.value(point) is not None for point in points)]
+    return [c.heading for c in columns], [[_read(c, point) for c in columns] for point in points]
+
+
+def _read(column: Column, point: Point) -> str:
+    cell = column.value(point)
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    return f"{cell:.8g}" if isinstance(cell, float) else str(cell or "")

@@ -1,5 +1,0 @@
-"""Duffing A from 0.3 to 3 rad/s by other tools: `python -m reports.bench.peers.NAME` prints what it took.
-
-These modules run in processes of their own, under a Python that may have nothing of this project installed;
-beside their tool they import NumPy and the clock at most.
-"""

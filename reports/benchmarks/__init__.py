@@ -1,0 +1,1 @@
+"""The benchmarks, run by pytest-benchmark: `make bench` measures, records, compares with the last record."""

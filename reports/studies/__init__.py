@@ -1,0 +1,1 @@
+"""Studies that regenerate their pages: run from a checkout."""

@@ -1,0 +1,40 @@
+"""The command line of a study: `python -m reports.studies.NAME`."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser
+from collections.abc import Sequence
+from pathlib import Path
+
+from reports.app.console import telling
+from reports.app.interrupts import Ended, heard_at_once
+from reports.studies.pages.page import Page
+from symbolic.scenes.errors import InputError
+
+DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
+"""Exit codes; the last is a shell's own for a program that Ctrl-C ended."""
+
+
+def command(page: Page, arguments: Sequence[str] | None = None) -> int:
+    """Compute a page, or one section of it, and return the exit code.
+
+    Each section is kept as soon as it is done, and Ctrl-C keeps those.
+    """
+    parser = ArgumentParser(prog=f"python -m reports.studies.{page.name}", description="Compute the page.")
+    parser.add_argument("--only", choices=tuple(page.sections), help="compute one section, keep the others")
+    parser.add_argument("--out", type=Path, default=page.folder, metavar="DIR", help="where the page goes")
+    given = parser.parse_args(arguments)
+    names = (given.only,) if given.only else tuple(page.sections)
+    try:
+        folder = page.ready(given.out, names)
+        with heard_at_once(), telling("computing") as tell:
+            written = page.make(folder, names, tell)
+    except InputError as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except (Ended, KeyboardInterrupt):
+        print(f"interrupted; the sections computed so far are in {given.out}", file=sys.stderr)
+        return INTERRUPTED
+    print(f"written: {written}")
+    return DONE

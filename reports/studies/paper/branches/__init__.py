@@ -1,0 +1,1 @@
+"""What branches and curves in two parameters tell: resonance, damping, films, doublings."""

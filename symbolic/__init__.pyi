@@ -1,0 +1,103 @@
+"""What the equations are: parts that add up to models, scenes of such models, and their compilation."""
+
+from . import functions
+from .equations.assembly import Assembly
+from .equations.model import Model, Part, combine
+from .equations.variables import Coordinate, Parameter, Variable, coordinate, parameter
+from .integration.cvodes import IntegrationError
+from .kernels.choice import Kernels
+from .kernels.native import CompilerError
+from .motion.linear import Modes, NoRestError, modes, resonance
+from .motion.response import FrequencyResponse, response
+from .motion.simulate import Simulation, simulate
+from .parts.contact.excitation import RampedWaviness, Waviness
+from .parts.contact.law import ContactLaw, HertzLaw
+from .parts.contact.loads import ContactDamping, ElasticContact, Hertz, Preload
+from .parts.contact.pair import ContactPair
+from .parts.contact.stop import Stop
+from .parts.equations import Equations
+from .parts.films.cavitating import CavitatingFilm
+from .parts.films.explicit import ExplicitSqueezeFilm
+from .parts.films.quasistatic import QuasistaticFilm
+from .parts.films.regressions import (
+    Compliance,
+    ConstantThickness,
+    HamrockDowsonThickness,
+    RegressionThickness,
+    Rolling,
+)
+from .parts.films.squeeze import SqueezeFilm
+from .parts.films.thickness import CalibratedThickness, GivenThickness, ThicknessLaw
+from .parts.films.thirdorder import ThirdOrder
+from .parts.mechanics.forces import HarmonicForce
+from .parts.mechanics.inertia import Mass, ReducedMass
+from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
+from .scenes.door import scene, scene_names
+from .scenes.errors import InputError
+from .scenes.laws import register_contact_law
+from .system.compile import compile
+from .system.compiled import CompiledSystem
+
+__all__ = [
+    "Assembly",
+    "CalibratedThickness",
+    "CavitatingFilm",
+    "CompiledSystem",
+    "CompilerError",
+    "Compliance",
+    "ConstantThickness",
+    "ContactDamping",
+    "ContactLaw",
+    "ContactPair",
+    "Coordinate",
+    "Coupling",
+    "CubicSpring",
+    "Damper",
+    "ElasticContact",
+    "Equations",
+    "ExplicitSqueezeFilm",
+    "FrequencyResponse",
+    "GivenThickness",
+    "HamrockDowsonThickness",
+    "HarmonicForce",
+    "Hertz",
+    "HertzLaw",
+    "InputError",
+    "IntegrationError",
+    "Kernels",
+    "Mass",
+    "Model",
+    "Modes",
+    "NoRestError",
+    "Parameter",
+    "Part",
+    "Preload",
+    "QuasistaticFilm",
+    "RampedWaviness",
+    "ReducedMass",
+    "RegressionThickness",
+    "Rolling",
+    "Simulation",
+    "Spring",
+    "SqueezeFilm",
+    "Stop",
+    "Support",
+    "ThicknessLaw",
+    "ThirdOrder",
+    "Variable",
+    "Waviness",
+    "combine",
+    "compile",
+    "coordinate",
+    "functions",
+    "modes",
+    "parameter",
+    "register_contact_law",
+    "resonance",
+    "response",
+    "scene",
+    "scene_names",
+    "simulate",
+]
+
+__version__: str

@@ -1,0 +1,119 @@
+"""The scaled expressions of a system: what its kernels are generated from.
+
+With x the scaled states, z the algebraic unknowns and ' = d/dtau, the residual has the rows
+
+    q_i' - v_i = 0,    m omega^2 v_i' - sum of forces = 0,    rows of the parts' own states,    0 = g
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import casadi as ca
+
+from symbolic.equations.assembly import Assembly
+
+
+@dataclass(frozen=True)
+class Expressions:
+    """The scaled symbolic system.
+
+    `waved` are residual and outputs in terms of the symbols `waves` (sin tau, cos tau) of the excitation;
+    `unexcited` is the residual without it. `moved` is where an `increment` takes the unknowns.
+    """
+
+    rate: ca.SX
+    state: ca.SX
+    algebraic: ca.SX
+    phase: ca.SX
+    parameter: ca.SX
+    residual: ca.SX
+    unexcited: ca.SX
+    waves: ca.SX
+    waved: ca.SX
+    frequency: ca.SX
+    outputs: ca.SX
+    switches: ca.SX
+    rest_state: ca.SX
+    rest_algebraic: ca.SX
+    increment: ca.SX
+    moved: ca.SX
+
+
+def expressed(assembly: Assembly) -> Expressions:
+    """Return the expressions of all that the parts have laid down.
+
+    Raises ValueError for a coordinate without mass and for an excitation without a positive frequency.
+    """
+    rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
+    _check_frequency(assembly)
+    packed = _Packed(assembly)
+    outputs = [expression for _, expression in assembly.described]
+    unknowns = assembly.unknowns
+    moved = packed.scaled([u.moved for u in unknowns])
+    return Expressions(
+        rate=packed.rate,
+        state=packed.state,
+        algebraic=packed.unknown,
+        phase=assembly.phase,
+        parameter=packed.parameter,
+        residual=packed.scaled(rows),
+        unexcited=packed.scaled(rows, ca.SX.zeros(2)),
+        waves=packed.waves,
+        waved=packed.scaled([*rows, *outputs], packed.waves),
+        frequency=packed.scaled([assembly.omega]),
+        outputs=packed.scaled(outputs),
+        switches=packed.scaled([expression for _, expression in assembly.switches]),
+        rest_state=packed.scaled([s.rest / s.scale for s in assembly.states]),
+        rest_algebraic=packed.scaled([u.rest for u in unknowns]),
+        increment=packed.increment,
+        moved=ca.substitute(moved, ca.vertcat(*[u.increment for u in unknowns]), packed.increment),
+    )
+
+
+class _Packed:
+    """The vectors that take the place of an assembly's single symbols."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+        states, unknowns, parameters = assembly.states, assembly.unknowns, assembly.parameters.values()
+        self.rate, self.state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
+        self.parameter = ca.SX.sym("parameter", len(parameters))
+        self.unknown = ca.SX.sym("algebraic", len(unknowns))
+        self.increment = ca.SX.sym("increment", len(unknowns))
+        self.waves = ca.vertcat(assembly.sine, assembly.cosine)
+        scales = ca.vertcat(*[s.scale for s in states])
+        old = [s.derivative for s in states] + [s.symbol for s in states]
+        old += [u.symbol for u in unknowns] + [p.symbol for p in parameters]
+        self.old = ca.vertcat(*old)
+        self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, self.parameter)
+
+    def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None) -> ca.SX:
+        """Stack expressions in SI as one in the vectors; `waved` stands for sin tau and cos tau."""
+        phase = self.assembly.phase
+        stacked = self.assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
+        given = ca.vertcat(ca.sin(phase), ca.cos(phase)) if waved is None else waved
+        return ca.substitute(ca.substitute(stacked, self.waves, given), self.old, self.new)
+
+
+def _motion_rows(assembly: Assembly) -> list[ca.SX]:
+    rows: list[ca.SX] = []
+    for coordinate, motion in assembly.motions.items():
+        inertia = motion.mass * assembly.omega**2
+        if motion.mass.is_zero() or not assembly.nominal(motion.mass) > 0:
+            raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
+        _check_frequency(assembly)
+        scale = assembly.nominal(inertia) * motion.position.scale
+        rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
+        rows.append((inertia * motion.velocity.derivative - motion.force) / scale)
+    return rows
+
+
+def _check_frequency(assembly: Assembly) -> None:
+    """Refuse a nominal omega that is not positive; a model without excitation gets omega as a parameter."""
+    omega = assembly.nominal(assembly.omega)
+    if not 0 < omega < math.inf:
+        raise ValueError(
+            f"the frequency of the excitation is {omega} rad/s; its nominal value must be greater than 0"
+        )

@@ -1,0 +1,44 @@
+"""What an assembly keeps of states, unknowns and the motions of coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+
+@dataclass
+class State:
+    """A differential state: its symbol (SI), the symbol of its tau-derivative, its scale and rest value."""
+
+    name: str
+    unit: str
+    symbol: ca.SX
+    derivative: ca.SX
+    scale: float
+    rest: ca.SX
+
+
+@dataclass
+class Unknown:
+    """An algebraic unknown: it exists at collocation points only and has no scale of its own.
+
+    `moved` is where a Newton increment takes it, an expression in `symbol` and `increment`; their sum where
+    the unknown has no better way.
+    """
+
+    name: str
+    symbol: ca.SX
+    increment: ca.SX
+    rest: ca.SX
+    moved: ca.SX
+
+
+@dataclass
+class Motion:
+    """What the parts have said of one coordinate: its mass and the sum of the forces on it."""
+
+    position: State
+    velocity: State
+    mass: ca.SX
+    force: ca.SX

@@ -1,0 +1,150 @@
+"""Names, units and values: the coordinates and parameters from which parts are built."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A named quantity of a compiled system: a state, an algebraic unknown, an output or a parameter.
+
+    Parameters
+    ----------
+    name, unit : str
+        Name, and SI unit. The state x' of a coordinate x is dx/dtau, in the unit of x: dx/dt = omega x'.
+    scale : float
+        SI value of one internal unit; 1 of parameters and outputs, which are kept in SI.
+    value : float
+        Nominal value (parameters only).
+    """
+
+    name: str
+    unit: str = ""
+    scale: float = 1.0
+    value: float = math.nan
+
+
+@dataclass(frozen=True)
+class SwitchInfo:
+    """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
+
+    `direction` is -1 where only a falling passage is a kink, +1 for a rising one, 0 for both. Levels fall:
+    each marks the same kink more sharply than the one before, as long as s goes that far below it.
+    """
+
+    name: str
+    direction: int
+    levels: tuple[float, ...] = (0.0,)
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A number of the model that can be changed or continued in after compilation.
+
+    Parameters
+    ----------
+    name : str
+        Its name, one in a model.
+    value : float
+        Nominal value in SI.
+    unit : str
+        SI unit.
+
+    Raises
+    ------
+    ValueError
+        For a value that is not finite.
+    """
+
+    name: str
+    value: float
+    unit: str = ""
+    symbol: ca.SX = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.value):
+            raise ValueError(f"parameter {self.name!r} is {self.value}; it must be a finite number")
+        object.__setattr__(self, "symbol", ca.SX.sym(self.name))
+
+
+Value = float | Parameter
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinate:
+    """A mechanical coordinate q; it brings the two states q and dq/dtau where it carries a mass.
+
+    Parameters
+    ----------
+    name, unit : str
+        Name, and SI unit.
+    scale : float, optional
+        Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+
+    Raises
+    ------
+    ValueError
+        For a scale that is not a positive number.
+    """
+
+    name: str
+    unit: str = "m"
+    scale: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.scale is not None and not (math.isfinite(self.scale) and self.scale > 0):
+            raise ValueError(
+                f"scale of coordinate {self.name!r} is {self.scale}; it must be a positive number"
+            )
+
+
+def parameter(name: str, value: float, unit: str = "") -> Parameter:
+    """Return a named parameter.
+
+    Parameters
+    ----------
+    name : str
+        Its name, one in a model.
+    value : float
+        Nominal value in SI.
+    unit : str
+        SI unit.
+
+    Returns
+    -------
+    Parameter
+        To be given to any number of parts.
+
+    Raises
+    ------
+    ValueError
+        For a value that is not finite.
+    """
+    return Parameter(name, float(value), unit)
+
+
+def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordinate:
+    """Return a mechanical coordinate.
+
+    Parameters
+    ----------
+    name, unit : str
+        Name, and SI unit.
+    scale : float, optional
+        Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+
+    Returns
+    -------
+    Coordinate
+        To be given to any number of parts.
+
+    Raises
+    ------
+    ValueError
+        For a scale that is not a positive number.
+    """
+    return Coordinate(name, unit, scale)

@@ -1,0 +1,1 @@
+"""Time integration of expressions by CVODES and LSODA, with and without sensitivities."""

@@ -1,0 +1,51 @@
+"""Ctrl-C inside CasADi: an exception that a signal's handler raises there is taken for a failed step.
+
+The handlers that are in force stay in force; what they raise is kept and raised again after the call, which
+ends early for it.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+Handler = Callable[[int, FrameType | None], object]
+
+
+@contextmanager
+def heard() -> Iterator[None]:
+    """Raise at the end of the block what a handler of SIGINT or SIGTERM raised inside.
+
+    Only the main thread is interrupted; elsewhere the block is as it is.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    raised: list[BaseException] = []
+    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    ours = {each: _kept(old, raised) for each, old in before.items() if callable(old)}
+    for each, handler in ours.items():
+        signal.signal(each, handler)
+    try:
+        yield
+    finally:
+        for each, handler in ours.items():
+            # A handler may have put another in its place, to be heard once only.
+            if signal.getsignal(each) is handler:
+                signal.signal(each, before[each])
+        if raised:
+            raise raised[0] from None
+
+
+def _kept(handler: Handler, raised: list[BaseException]) -> Handler:
+    def handle(number: int, frame: FrameType | None) -> None:
+        try:
+            handler(number, frame)
+        except BaseException as error:
+            raised.append(error)
+            raise
+
+    return handle

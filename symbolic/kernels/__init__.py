@@ -1,0 +1,1 @@
+"""Expressions become batch functions: NumPy source or compiled C, and contracted second derivatives."""

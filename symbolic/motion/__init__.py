@@ -1,0 +1,1 @@
+"""What a compiled system does: rest and modes, linear response, simulation, explicit rates."""

@@ -1,0 +1,112 @@
+"""Time integration of a compiled system with CVODES and LSODA, independent of collocation.
+
+CVODES is fast and gives up now and then where contact is lost; LSODA is slower and then takes its place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import scipy
+
+from symbolic.arrays import Array
+from symbolic.integration.cvodes import IntegrationError, integrated, integrator
+from symbolic.integration.interrupts import heard
+from symbolic.integration.rates import constraint_rows, ode
+from symbolic.system.compiled import CompiledSystem
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Phases (N,), scaled states (N, n) and unknowns (N, m)."""
+
+    phase: Array
+    state: Array
+    algebraic: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """Integrates `system` with relative and absolute tolerance `tolerance` (scaled variables)."""
+
+    system: CompiledSystem
+    tolerance: float = 1e-8
+    _integrators: dict[tuple[float, ...], ca.Function] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        if not 1e-13 <= self.tolerance <= 1e-2:
+            raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.01")
+
+    def run(self, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Trajectory:
+        """Integrate from phase[0] and return the solution at all of `phase`.
+
+        Raises IntegrationError where the integrator fails.
+        """
+        n = len(self.system.states)
+        start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
+        found = integrated(self._cvodes(tuple(phase)), start, parameter)
+        later = self._lsoda(start, parameter, phase) if found is None else found.T
+        values = np.concatenate([start[None, :], later])
+        return Trajectory(np.asarray(phase, dtype=float), values[:, :n], values[:, n:])
+
+    def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
+        """Return (x', z') along a trajectory, shape (N, n+m)."""
+        values = np.concatenate([trajectory.state, trajectory.algebraic], axis=1)
+        rates, _ = self._rates
+        found = [rates(y, tau, parameter) for y, tau in zip(values, trajectory.phase, strict=True)]
+        return np.array(found).reshape(values.shape)
+
+    def _lsoda(self, start: Array, parameter: Array, phase: Array) -> Array:
+        rates, jacobian = self._rates
+        with heard():
+            found = scipy.integrate.solve_ivp(
+                lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
+                (phase[0], phase[-1]),
+                start,
+                method="LSODA",
+                t_eval=phase[1:],
+                rtol=self.tolerance,
+                atol=self.tolerance,
+                jac=lambda tau, y: np.array(jacobian(y, tau, parameter)),
+            )
+        if not found.success or not np.isfinite(found.y).all():
+            where = f"between tau = {phase[0]:.6g} and {phase[-1]:.6g}"
+            raise IntegrationError(f"CVODES and LSODA both failed {where}")
+        return found.y.T
+
+    def _cvodes(self, phase: tuple[float, ...]) -> ca.Function:
+        if phase not in self._integrators:
+            self._integrators[phase] = integrator(self._problem, phase, self.tolerance)
+        return self._integrators[phase]
+
+    @cached_property
+    def _problem(self) -> dict[str, ca.SX]:
+        return ode(self.system.expressions)
+
+    @cached_property
+    def _rates(self) -> tuple[ca.Function, ca.Function]:
+        problem = self._problem
+        arguments = [problem["x"], problem["t"], problem["p"]]
+        jacobian = ca.jacobian(problem["ode"], problem["x"])
+        return ca.Function("rates", arguments, [problem["ode"]]), ca.Function(
+            "jacobian", arguments, [jacobian]
+        )
+
+    @cached_property
+    def _constraints(self) -> ca.Function:
+        e = self.system.expressions
+        rows = ca.vertcat(ca.SX(0, 1), *[e.residual[i] for i in constraint_rows(e)])
+        y = ca.vertcat(e.state, e.algebraic)
+        return ca.Function("constraints", [y, e.phase, e.parameter], [rows, ca.jacobian(rows, y)])
+
+    def _on_constraints(self, y: Array, parameter: Array, phase: float) -> Array:
+        """Return the nearest point that fulfils the constraints (Gauss-Newton)."""
+        for _ in range(20):
+            rows, jacobian = (np.array(a) for a in self._constraints(y, phase, parameter))
+            if len(rows) == 0 or np.abs(rows).max() < 1e-14:
+                break
+            y = y - np.linalg.pinv(jacobian) @ rows.ravel()
+        return y

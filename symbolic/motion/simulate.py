@@ -1,0 +1,160 @@
+"""Time integration from rest until the motion has settled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.motion.flow import Flow, Trajectory
+from symbolic.motion.linear import RestFinder
+from symbolic.system.compiled import CompiledSystem, with_values
+
+PERIOD = 2 * math.pi
+"""Of the excitation, in tau = omega t."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Simulation:
+    """A motion over a whole number of excitation periods, both ends included.
+
+    ``motion["x"]`` is an output or a state in SI over ``motion.time``, ``motion["x'"]`` the velocity dx/dt.
+
+    Parameters
+    ----------
+    system : CompiledSystem
+        What was integrated.
+    parameter : ndarray, shape (p,)
+        Values of all parameters, SI.
+    phase : ndarray, shape (N,)
+        tau, rising.
+    state : ndarray, shape (N, n)
+        States, scaled as in the system.
+    algebraic : ndarray, shape (N, m)
+        Algebraic unknowns.
+    """
+
+    system: CompiledSystem
+    parameter: Array
+    phase: Array
+    state: Array
+    algebraic: Array
+
+    @property
+    def time(self) -> Array:
+        """Time t = tau/omega in s, shape (N,)."""
+        return self.phase / _omega(self.system, self.parameter)
+
+    def __getitem__(self, name: str) -> Array:
+        """Return an output or a state by name, SI, shape (N,)."""
+        outputs, states = ([v.name for v in some] for some in (self.system.outputs, self.system.states))
+        if name in outputs:
+            n, trajectory = len(states), Trajectory(self.phase, self.state, self.algebraic)
+            rate = Flow(self.system).rates(trajectory, self.parameter)[:, :n]
+            at = (rate, self.state, self.algebraic, self.phase, self.parameter)
+            return self.system.output(*at)[:, outputs.index(name)]
+        if name in states:
+            i = states.index(name)
+            return _units(self.system, self.parameter)[i] * self.state[:, i]
+        names = dict.fromkeys((*outputs, *states))
+        raise KeyError(f"the simulation has no {name!r}; it has {', '.join(names)}")
+
+
+def simulate(
+    system: CompiledSystem,
+    values: Mapping[str, float] | None = None,
+    *,
+    knock: Mapping[str, float] | None = None,
+    start: Simulation | None = None,
+    settle: int = 100,
+    periods: int = 1,
+    samples: int = 400,
+    tolerance: float = 1e-8,
+) -> Simulation:
+    """Integrate a system in time until its motion has settled, and return the last periods of it.
+
+    CVODES integrates, LSODA where it gives up. The result starts a branch, wherever the motion settles to one
+    that repeats itself after `periods`:
+    ``per.sampled(motion.phase, motion.state, motion.algebraic, motion.parameter)``.
+
+    Parameters
+    ----------
+    system : CompiledSystem
+        The system.
+    values : mapping of str to float, optional
+        Parameters (SI) that differ from their nominal values.
+    knock : mapping of str to float, optional
+        What is added to states (SI) at the beginning, by name; x' is the velocity dx/dt.
+    start : Simulation, optional
+        Motion from whose end the new one begins; by default the system begins at rest.
+    settle : int
+        Excitation periods before those that are returned.
+    periods : int
+        Excitation periods that are returned.
+    samples : int
+        Points in each of them.
+    tolerance : float
+        Relative and absolute tolerance of the integrator, in scaled variables; 1e-13 to 0.01.
+
+    Returns
+    -------
+    Simulation
+        ``samples * periods + 1`` points.
+
+    Raises
+    ------
+    ValueError
+        For an unknown parameter or state, and for numbers out of range.
+    NoRestError
+        Where no rest is found to begin at.
+    IntegrationError
+        Where both integrators fail.
+    """
+    for name, number, least in (("settle", settle, 0), ("periods", periods, 1), ("samples", samples, 3)):
+        if number < least:
+            raise ValueError(f"{name} is {number}; it must be at least {least}")
+    flow, parameter = Flow(system, tolerance), with_values(system, values or {})
+    state, algebraic = _beginning(system, parameter, start)
+    state = state + _knocked(system, parameter, knock or {})
+    for _ in range(settle):
+        end = flow.run(state, algebraic, parameter, np.array([0.0, PERIOD]))
+        state, algebraic = end.state[-1], end.algebraic[-1]
+    phase = np.linspace(0, PERIOD * periods, samples * periods + 1)
+    found = flow.run(state, algebraic, parameter, phase)
+    return Simulation(
+        system=system, parameter=parameter, phase=phase, state=found.state, algebraic=found.algebraic
+    )
+
+
+def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | None) -> tuple[Array, Array]:
+    if start is not None:
+        return start.state[-1], start.algebraic[-1]
+    rest = RestFinder(system).modes(parameter)
+    return rest.state, rest.algebraic
+
+
+def _knocked(system: CompiledSystem, parameter: Array, knock: Mapping[str, float]) -> Array:
+    """What a knock adds to the scaled states."""
+    names, added = [state.name for state in system.states], np.zeros(len(system.states))
+    for name, change in knock.items():
+        if name not in names:
+            raise ValueError(f"knock has {name!r}; it must be one of {', '.join(names)}")
+        added[names.index(name)] = change
+    return added / _units(system, parameter)
+
+
+def _units(system: CompiledSystem, parameter: Array) -> Array:
+    """SI values of one internal unit of each state; x' is dx/dtau inside, dx/dt = omega dx/dtau outside."""
+    names, omega = [state.name for state in system.states], _omega(system, parameter)
+    stems = [name.rstrip("'") for name in names]
+    orders = [len(n) - len(stem) if stem in names else 0 for n, stem in zip(names, stems, strict=True)]
+    return np.array([v.scale * omega**k for v, k in zip(system.states, orders, strict=True)])
+
+
+def _omega(system: CompiledSystem, parameter: Array) -> float:
+    e = system.expressions
+    return float(ca.Function("frequency", [e.parameter], [e.frequency])(parameter))

@@ -1,0 +1,1 @@
+"""Inertia, springs, dampers and forces on coordinates."""

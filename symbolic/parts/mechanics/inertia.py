@@ -1,0 +1,52 @@
+"""Inertia of coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.variables import Coordinate, Value
+
+
+@dataclass(frozen=True)
+class Mass(Part):
+    """Inertia: m d2q/dt2 on the left of the equation of motion.
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    m : float or Parameter
+        m in kg.
+    """
+
+    q: Coordinate
+    m: Value
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add m to the coordinate's mass."""
+        assembly.motion(self.q).mass += assembly.parameter(self.m, "m", "kg")
+
+
+@dataclass(frozen=True)
+class ReducedMass(Part):
+    """Inertia of the relative motion of two free bodies, m1 m2 / (m1 + m2).
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    m1, m2 : float or Parameter
+        Masses of the bodies in kg.
+    """
+
+    q: Coordinate
+    m1: Value
+    m2: Value
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the reduced mass to the coordinate's mass."""
+        m1 = assembly.parameter(self.m1, "m1", "kg")
+        m2 = assembly.parameter(self.m2, "m2", "kg")
+        assembly.motion(self.q).mass += m1 * m2 / (m1 + m2)

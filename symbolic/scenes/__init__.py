@@ -1,0 +1,1 @@
+"""Scenes: TOML files, their schema, and the models that they describe."""

@@ -1,0 +1,1 @@
+"""The compiled system: what `periodic` is given."""

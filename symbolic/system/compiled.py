@@ -1,0 +1,276 @@
+"""A compiled model: residual, derivatives, outputs and switches at N points at a time, and its flow."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.equations.expressions import Expressions
+from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
+from symbolic.kernels.choice import Kernels, shared
+from symbolic.kernels.kernel import Argument, batch, build, points, vector
+from symbolic.kernels.second import Gradient, Symbols, contraction
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """Residual and derivatives at N points (n states, m unknowns, q free parameters).
+
+    residual (N, n+m); d_rate, d_state (N, n+m, n); d_algebraic (N, n+m, m); d_phase (N, n+m);
+    d_parameter (N, n+m, q). Rows n.. are the algebraic rows. Outputs are linearised in the same shapes.
+    """
+
+    residual: Array
+    d_rate: Array
+    d_state: Array
+    d_algebraic: Array
+    d_phase: Array
+    d_parameter: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSystem:
+    """A model ready for `periodic`: see `periodic.system.System` for the protocol it fulfils.
+
+    Parameters
+    ----------
+    states, algebraics, parameters, outputs : tuple of Variable
+        The n scaled states x, the m unknowns z, parameters p and outputs (SI).
+    switches : tuple of SwitchInfo
+        Functions that mark kinks in time.
+    expressions : Expressions
+        What the kernels are generated from.
+    kernels : Kernels
+        The back end.
+    """
+
+    states: tuple[Variable, ...]
+    algebraics: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    switches: tuple[SwitchInfo, ...]
+    expressions: Expressions = field(repr=False)
+    kernels: Kernels = Kernels.NUMPY
+    _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _gradients: dict[tuple[int, ...], Callable[..., None]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
+
+    @cached_property
+    def frequency(self) -> tuple[str, ...]:
+        """Names of the parameters whose product is omega (rad/s); none where it is no product."""
+        e = self.expressions
+        used = ca.jacobian(e.frequency, e.parameter).sparsity().get_col()
+        product = math.prod((e.parameter[k] for k in used), start=ca.SX(1))
+        equal = ca.is_equal(product, e.frequency, 10)
+        return tuple(self.parameters[k].name for k in used) if equal else ()
+
+    @property
+    def nominal(self) -> Array:
+        """The parameters' nominal values, shape (parameters,)."""
+        return np.array([p.value for p in self.parameters])
+
+    def residual(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
+        """Return the scaled residual R(x', x, z, tau, p).
+
+        Parameters
+        ----------
+        rate, state : ndarray, shape (N, n)
+            x' and x, scaled.
+        algebraic : ndarray, shape (N, m)
+            z.
+        phase : ndarray, shape (N,)
+            tau.
+        parameter : ndarray, shape (p,)
+            p in SI.
+
+        Returns
+        -------
+        ndarray, shape (N, n+m)
+            The algebraic rows come last.
+        """
+        result = np.zeros((len(phase), len(self.states) + len(self.algebraics)))
+        with np.errstate(all="ignore"):
+            self._residual_kernel(rate, state, algebraic, phase, parameter, result)
+        return result
+
+    def linearise(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        free: tuple[int, ...] = (),
+    ) -> Linearisation:
+        """Return residual and derivatives; `free` are the indices of the parameters to differentiate in."""
+        kernel = self._derivatives(self._jacobians, self.expressions.residual, free)
+        rows = len(self.states) + len(self.algebraics)
+        return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter))
+
+    def output_gradient(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        free: tuple[int, ...] = (),
+    ) -> Linearisation:
+        """Return the outputs (SI) as `residual`, and their derivatives."""
+        kernel = self._derivatives(self._gradients, self.expressions.outputs, free)
+        return self._linearised(kernel, len(self.outputs), free, (rate, state, algebraic, phase, parameter))
+
+    @cached_property
+    def curvature(self) -> Callable[..., Gradient]:
+        """Contracted second derivatives of the residual: see `symbolic.kernels.second.contraction`."""
+        e = self.expressions
+        return contraction(
+            Symbols(e.rate, e.state, e.algebraic, e.phase, e.parameter), e.residual, self.kernels
+        )
+
+    def move(self, algebraic: Array, increment: Array) -> Array:
+        """Return where Newton increments take the unknowns, both of shape (N, m)."""
+        result = np.zeros_like(algebraic)
+        with np.errstate(all="ignore"):
+            self._move_kernel(algebraic, increment, result)
+        return result
+
+    def output(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
+        """Return the outputs in SI units, shape (N, outputs)."""
+        result = np.zeros((len(phase), len(self.outputs)))
+        with np.errstate(all="ignore"):
+            self._output_kernel(rate, state, algebraic, phase, parameter, result)
+        return result
+
+    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
+        """Return the switch functions, shape (N, switches)."""
+        result = np.zeros((len(phase), len(self.switches)))
+        with np.errstate(all="ignore"):
+            self._switch_kernel(state, phase, parameter, result)
+        return result
+
+    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+        """Return derivatives in state (N, switches, n), phase (N, switches), parameters (N, switches, p)."""
+        count, k = len(phase), len(self.switches)
+        d_state = np.zeros((count, k, len(self.states)))
+        d_phase = np.zeros((count, k))
+        d_parameter = np.zeros((count, k, len(self.parameters)))
+        with np.errstate(all="ignore"):
+            self._switch_gradient_kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+        return d_state, d_phase, d_parameter
+
+    def flow(
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        free: tuple[int, ...],
+        tolerance: float,
+    ) -> Sensitivities:
+        """Integrate with sensitivities: see `periodic.system.Flowing`. Raises ArithmeticError."""
+        return self._flow.run(state, algebraic, parameter, phase, free, tolerance)
+
+    @cached_property
+    def _flow(self) -> SensitiveFlow:
+        return SensitiveFlow(self.expressions, self.move)
+
+    def rest(self, parameter: Array) -> tuple[Array, Array]:
+        """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""
+        e = self.expressions
+        state, algebraic = ca.Function("rest", [e.parameter], [e.rest_state, e.rest_algebraic])(parameter)
+        return np.array(state).ravel(), np.array(algebraic).ravel()
+
+    @cached_property
+    def _arguments(self) -> list[Argument]:
+        e = self.expressions
+        return [
+            batch(e.rate, "rate"),
+            batch(e.state, "state"),
+            batch(e.algebraic, "algebraic"),
+            points(e.phase, "phase"),
+            vector(e.parameter, "parameter"),
+        ]
+
+    def library(self, source: str) -> ctypes.CDLL | None:
+        """Return the loaded library of a C source that serves every system, or None: NumPy is to do."""
+        if source not in self._libraries:
+            self._libraries[source] = shared(source, self.kernels)
+        return self._libraries[source]
+
+    def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
+        return build(arguments, results, self.kernels)
+
+    @cached_property
+    def _residual_kernel(self) -> Callable[..., None]:
+        return self._build(self._arguments, [self.expressions.residual])
+
+    @cached_property
+    def _move_kernel(self) -> Callable[..., None]:
+        e = self.expressions
+        return self._build([batch(e.algebraic, "algebraic"), batch(e.increment, "increment")], [e.moved])
+
+    @cached_property
+    def _output_kernel(self) -> Callable[..., None]:
+        return self._build(self._arguments, [self.expressions.outputs])
+
+    @cached_property
+    def _switch_kernel(self) -> Callable[..., None]:
+        _, state, _, phase, parameter = self._arguments
+        return self._build([state, phase, parameter], [self.expressions.switches])
+
+    @cached_property
+    def _switch_gradient_kernel(self) -> Callable[..., None]:
+        _, state, _, phase, parameter = self._arguments
+        e = self.expressions
+        gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
+        return self._build([state, phase, parameter], gradients)
+
+    def _derivatives(
+        self, known: dict[tuple[int, ...], Callable[..., None]], rows: ca.SX, free: tuple[int, ...]
+    ) -> Callable[..., None]:
+        """The kernel of some rows and their derivatives, made once for each choice of free parameters."""
+        if free not in known:
+            e = self.expressions
+            chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
+            variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
+            known[free] = self._build(self._arguments, [rows, *(ca.jacobian(rows, v) for v in variables)])
+        return known[free]
+
+    def _linearised(
+        self, kernel: Callable[..., None], rows: int, free: tuple[int, ...], at: tuple[Array, ...]
+    ) -> Linearisation:
+        n, m = len(self.states), len(self.algebraics)
+        shapes = [(rows,), (rows, n), (rows, n), (rows, m), (rows,), (rows, len(free))]
+        arrays = [np.zeros((len(at[3]), *shape)) for shape in shapes]
+        with np.errstate(all="ignore"):
+            kernel(*at, *_columns(*arrays))
+        return Linearisation(*arrays)
+
+
+def _columns(*arrays: Array) -> list[Array]:
+    """The arrays as a kernel writes them: it takes a last axis of one for a column."""
+    return [a[:, :, 0] if a.ndim == 3 and a.shape[2] == 1 else a for a in arrays]
+
+
+def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:
+    """Return the nominal parameter vector with some values (SI) replaced, by name."""
+    parameter = system.nominal
+    names = [p.name for p in system.parameters]
+    for name, value in values.items():
+        if name not in names:
+            raise ValueError(f"parameter is {name!r}; it must be one of {', '.join(names)}")
+        parameter[names.index(name)] = value
+    return parameter

@@ -1,0 +1,179 @@
+"""Orbits with kinks: meshes tied to switches, against shooting and products of matrix exponentials."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from reference.shooting import Motion, in_order, oscillator, periodic_orbit
+from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, MeissnerOscillator
+
+import periodic as per
+from periodic.correction.newton import Correction, NewtonSettings, correct
+from periodic.correction.outcome import Outcome
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import Mesh, uniform
+
+DAMPING = 0.1
+CASES = {1.3: 2, 0.6: 4, 0.462: 6}
+"""Frequencies of the bilinear oscillator and how often x passes zero in a period there."""
+
+PHASES = np.linspace(0.0, 2 * np.pi, 1001)
+TIGHT = NewtonSettings(tolerance=1e-10)
+each_case = pytest.mark.parametrize("Omega, kinks", CASES.items())
+
+
+@cache
+def draft() -> per.Branch:
+    """The bilinear oscillator from high frequencies down, through many changes of its kinks."""
+    system = BilinearOscillator(zeta=DAMPING)
+    return per.trace(system, "Omega", (3.0, 0.3), at=tuple(CASES), tol=per.Accuracy.DRAFT)
+
+
+def rough(Omega: float) -> per.Point:
+    """The (first) point of the rough branch at a frequency."""
+    return next(p for p in draft().labelled(per.Label.USER) if p.parameter == Omega)
+
+
+@cache
+def standard(Omega: float) -> per.Point:
+    """A point at standard accuracy."""
+    system = BilinearOscillator(zeta=DAMPING)
+    bounds = (Omega, Omega * 1.001)
+    return per.trace(system, "Omega", bounds, guess=rough(Omega).orbit)[0]
+
+
+@cache
+def reference(Omega: float) -> Motion:
+    """The same orbit by shooting."""
+    omega, zeta, force = BilinearOscillator(Omega=Omega, zeta=DAMPING).nominal[[OMEGA, ZETA, FORCE]]
+
+    def stiffness(side: float) -> float:
+        return 1.0 if side > 0 else 4.0
+
+    field = oscillator(
+        acceleration=lambda t, x, v, side: (
+            (force * np.cos(t) - stiffness(side) * x) / omega**2 - 2 * zeta / omega * v
+        ),
+        by_x=lambda t, x, v, side: -stiffness(side) / omega**2,
+        by_v=lambda t, x, v, side: -2 * zeta / omega,
+        switch=lambda t, x: x,
+    )
+    return periodic_orbit(field, rough(Omega).orbit.state(np.zeros(1))[0])
+
+
+def on_even_segments(Omega: float, scheme: per.Scheme, count: int) -> Correction:
+    """The orbit on a mesh of as many equal intervals in each segment."""
+    tied = standard(Omega).orbit
+    breaks = tuple(np.linspace(0.0, 1.0, count + 1) for _ in tied.mesh.events)
+    start = transfer(tied, Mesh(scheme, breaks, tied.mesh.events), tied.phases)
+    result = correct(per.Collocation().linearise, BilinearOscillator(zeta=DAMPING), start, settings=TIGHT)
+    assert result.outcome is Outcome.CONVERGED
+    return result
+
+
+def order(counts: tuple[int, ...], errors: list[float]) -> float:
+    """Slope of a straight line through the logarithms of errors and widths."""
+    return float(-np.polyfit(np.log(counts), np.log(errors), 1)[0])
+
+
+@each_case
+def test_mesh_is_tied_to_every_kink(Omega: float, kinks: int) -> None:
+    """Assert that each passage of x through zero has an event node, at its phase by shooting."""
+    found = np.sort(np.mod(standard(Omega).orbit.phases, 2 * np.pi))
+    assert len(found) == kinks
+    assert found == pytest.approx(reference(Omega).kinks, abs=1e-7)
+
+
+@each_case
+def test_orbit_agrees_with_shooting(Omega: float, kinks: int) -> None:
+    """Assert that the orbit agrees with shooting all along."""
+    point = standard(Omega)
+    difference = np.abs(point.orbit.state(PHASES) - reference(Omega).state(PHASES)).max()
+    assert difference < 1e-6 * point.orbit.span()
+
+
+@each_case
+def test_multipliers_agree_with_shooting(Omega: float, kinks: int) -> None:
+    """Assert that both multipliers agree with shooting."""
+    found = in_order(standard(Omega).multipliers)
+    assert np.abs(found - reference(Omega).multipliers).max() < 1e-6
+
+
+@each_case
+def test_product_of_multipliers(Omega: float, kinks: int) -> None:
+    """Assert that the product of the multipliers is exp of the integral of the trace."""
+    exact = np.exp(-2 * DAMPING * 2 * np.pi / Omega)
+    assert np.prod(standard(Omega).multipliers) == pytest.approx(exact, abs=1e-7)
+
+
+@pytest.mark.parametrize("family", per.Family)
+@pytest.mark.parametrize("ncol", [2, 3])
+@pytest.mark.parametrize("Omega", [1.3, 0.6])
+def test_events_recover_the_order(family: per.Family, ncol: int, Omega: float) -> None:
+    """Assert that phases and velocities at the kinks converge as on a smooth problem."""
+    exact = reference(Omega)
+    phases = np.array(exact.kinks)
+    velocities = exact.state(phases)[:, 1]
+    counts, errors = (6, 8, 11, 15), []
+    for count in counts:
+        orbit = on_even_segments(Omega, per.Scheme(family, ncol), count).orbit
+        each = np.argsort(np.mod(orbit.phases, 2 * np.pi))
+        late = np.abs(np.mod(orbit.phases, 2 * np.pi)[each] - phases)
+        fast = np.abs(orbit.nodes[orbit.mesh.starts][each, 1] - velocities)
+        errors.append(max(late.max(), fast.max()))
+    wanted = 2 * ncol if family is per.Family.GAUSS else 2 * ncol - 1
+    assert order(counts, errors) == pytest.approx(wanted, abs=0.35)
+
+
+@pytest.mark.parametrize("family", per.Family)
+@pytest.mark.parametrize("ncol", [2, 3])
+@pytest.mark.parametrize("Omega", [1.3, 0.6])
+def test_events_recover_the_order_of_multipliers(family: per.Family, ncol: int, Omega: float) -> None:
+    """Assert that the multipliers converge as on a smooth problem, Radau's last point on the kink or not."""
+    exact = reference(Omega).multipliers
+    counts, errors = (6, 8, 11, 15), []
+    for count in counts:
+        result = on_even_segments(Omega, per.Scheme(family, ncol), count)
+        errors.append(float(np.abs(in_order(np.linalg.eigvals(result.monodromy)) - exact).max()))
+    wanted = 2 * ncol if family is per.Family.GAUSS else 2 * ncol - 1
+    assert order(counts, errors) == pytest.approx(wanted, abs=0.35)
+
+
+def test_order_is_lost_without_events() -> None:
+    """Assert that a system that does not tell of its switch converges no faster than order 3."""
+    system, exact = BilinearOscillator(Omega=1.3, zeta=DAMPING, declared=False), reference(1.3)
+    counts, errors = (20, 29, 42, 61, 88), []
+    for count in counts:
+        start = transfer(standard(1.3).orbit, uniform(per.Scheme(per.Family.GAUSS, 4), count), np.zeros(0))
+        result = correct(per.Collocation().linearise, system, start, settings=TIGHT)
+        assert result.outcome is Outcome.CONVERGED
+        errors.append(float(np.abs(result.orbit.nodes[0] - exact.start).max()))
+    assert order(counts, errors) < 3.5
+
+
+def test_kinks_come_and_go_along_a_branch() -> None:
+    """Assert that a rough branch gets through changes between two, four and six kinks to its bound."""
+    assert draft().stop.reason is per.Reason.BOUND
+    assert {len(point.orbit.phases) for point in draft()} == {2, 4, 6}
+
+
+def test_kinks_come_and_go_at_standard_accuracy() -> None:
+    """Assert that the same branch is traced to its bound at standard accuracy."""
+    branch = per.trace(BilinearOscillator(zeta=DAMPING), "Omega", (3.0, 0.5))
+    assert branch.stop.reason is per.Reason.BOUND
+    assert {2, 4} <= {len(point.orbit.phases) for point in branch}
+
+
+@pytest.mark.parametrize("family", per.Family)
+def test_meissner(family: per.Family) -> None:
+    """Assert that a jumping stiffness gives the multipliers of two matrix exponentials."""
+    values = (1.4, 1.6, 2.1)
+    method = per.Collocation(scheme=per.Scheme(family, 4), kinks=per.KinkSettings(deepest=0.0))
+    branch = per.trace(
+        MeissnerOscillator(), "Omega", (1.3, 2.5), at=values, tol=per.Tolerance(), method=method
+    )
+    for point, value in zip(branch.labelled(per.Label.USER), values, strict=True):
+        exact = in_order(MeissnerOscillator(Omega=value).exact_multipliers())
+        assert np.abs(in_order(point.multipliers) - exact).max() < 1e-8

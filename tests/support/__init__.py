@@ -1,0 +1,1 @@
+"""What tests share: models, branches traced once, generators of random input."""

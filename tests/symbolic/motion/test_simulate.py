@@ -1,0 +1,76 @@
+"""Simulation: from rest or another motion to a settled one, and what is read from it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import periodic as per
+import symbolic as sym
+
+RPM = 2 * np.pi / 60
+
+
+def oscillator() -> sym.CompiledSystem:
+    """x'' + 0.2 x' + x = 0.5 cos Omega t, x in units of 0.1 m inside."""
+    x = sym.coordinate("x", scale=0.1)
+    return sym.compile(sym.Mass(x, 1.0) + sym.Damper(x, 0.2) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 0.5))
+
+
+def test_settles_to_the_linear_response() -> None:
+    """Assert displacement and velocity of a linear oscillator over time, in SI."""
+    system = oscillator()
+    motion = sym.simulate(system, {"Omega": 0.8}, settle=40, samples=50, tolerance=1e-11)
+    amplitude = 0.5 / (1 - 0.8**2 + 0.2j * 0.8)
+    exact = (amplitude * np.exp(1j * motion.phase)).real
+    assert motion["x"] == pytest.approx(exact, abs=1e-9)
+    assert motion["x'"] == pytest.approx((0.8j * amplitude * np.exp(0.8j * motion.time)).real, abs=1e-9)
+    assert motion.phase[[0, -1]] == pytest.approx([0, 2 * np.pi])
+    assert dict(zip([p.name for p in system.parameters], motion.parameter, strict=True))["Omega"] == 0.8
+
+
+def test_knock_and_start() -> None:
+    """Assert that a knock is in SI, and that a second simulation goes on where the first ended."""
+    system = oscillator()
+    knock = {"x": 0.3, "x'": -0.2}
+    first = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, knock=knock, settle=0, periods=2, samples=10)
+    assert (first["x"][0], first["x'"][0]) == pytest.approx((0.3, -0.2))
+    second = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, start=first, settle=0, samples=10)
+    whole = sym.simulate(system, {"F": 0.0, "Omega": 0.7}, knock=knock, settle=0, periods=3, samples=10)
+    assert second["x"] == pytest.approx(whole["x"][20:], abs=1e-6)
+
+
+def test_outputs_and_branch_of_a_disc() -> None:
+    """Assert that a disc knocked hard settles to a motion of two periods, whose load balances the preload."""
+    disc = sym.scene("vitrea79-810N")
+    knock = {"x": -1e-5, "x'": -0.06}
+    motion = sym.simulate(disc, {"speed": 500 * RPM}, knock=knock, settle=120, periods=2)
+    assert np.trapezoid(motion["load"], motion.phase) / (4 * np.pi) == pytest.approx(810, rel=1e-4)
+    guess = per.sampled(motion.phase, motion.state, motion.algebraic, motion.parameter)
+    branch = per.trace(disc, "speed", (499 * RPM, 500 * RPM), start=500 * RPM, guess=guess)
+    assert branch.peak_to_peak("x")[0] == pytest.approx(np.ptp(motion["x"]), rel=1e-3)
+    half = len(motion.phase) // 2
+    assert np.abs(motion["x"][:half] - motion["x"][half:-1]).max() > 0.1 * np.ptp(motion["x"])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"knock": {"y": 1.0}}, "knock has 'y'; it must be one of x, x'"),
+        ({"values": {"omega": 1.0}}, "parameter is 'omega'; it must be one of m, c, k, F, Omega"),
+        ({"periods": 0}, "periods is 0; it must be at least 1"),
+        ({"settle": -1}, "settle is -1; it must be at least 0"),
+        ({"tolerance": 1.0}, "tolerance is 1.0; it must lie between 1e-13 and 0.01"),
+    ],
+)
+def test_refused(wrong: dict, said: str) -> None:
+    """Assert that what cannot be is refused in one sentence."""
+    with pytest.raises(ValueError, match=f"^{said}$"):
+        sym.simulate(oscillator(), **wrong)
+
+
+def test_unknown_quantity() -> None:
+    """Assert that a name that is none lists those that there are."""
+    motion = sym.simulate(oscillator(), settle=0, samples=5)
+    with pytest.raises(KeyError, match="the simulation has no 'y'; it has x, x'"):
+        motion["y"]
