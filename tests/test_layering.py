@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from importlinter.cli import lint_imports
 
 ROOT = Path(__file__).resolve().parent.parent
 FORBIDDEN = {"periodic": {"casadi", "symbolic", "reports"}, "symbolic": {"periodic", "reports"}}
@@ -77,6 +78,12 @@ print(*sys.modules)
     own = [path for owner, path in FILES if owner == layer]
     assert len({name for name in loaded if name.split(".")[0] == layer}) == len(own)
     assert {name.partition(".")[0] for name in loaded} & FORBIDDEN[layer] == set()
+
+
+def test_rooms_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that every import keeps the order declared in pyproject.toml, and that there is no circle."""
+    monkeypatch.chdir(ROOT)
+    assert lint_imports(no_cache=True) == 0
 
 
 def test_handwritten_system_is_traced_without_casadi() -> None:
