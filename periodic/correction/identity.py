@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from periodic.correction.error import LEAST_SPAN
 from periodic.correction.problem import Problem
@@ -71,4 +71,6 @@ def _ahead(problem: Problem, a: Orbit, b: Orbit) -> float:
     step = a.periods / SHIFTS
     nearest = min((step * k for k in range(SHIFTS)), key=apart)
     around = (nearest - step, nearest + step)
-    return float(optimize.minimize_scalar(apart, bounds=around, method="bounded", options={"xatol": 1e-10}).x)
+    return float(
+        scipy.optimize.minimize_scalar(apart, bounds=around, method="bounded", options={"xatol": 1e-10}).x
+    )
