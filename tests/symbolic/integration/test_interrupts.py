@@ -28,6 +28,7 @@ run = {
     "flow": lambda: Flow(system, 1e-12).run(state, none, values, phase),
     "sensitivities": lambda: system.flow(state, none, values, phase, (0,), 1e-12),
 }[how]
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have had it ignored
 before = signal.getsignal(signal.SIGINT)
 threading.Timer(0.3, os.kill, (os.getpid(), signal.Signals[number])).start()
 begin = time.monotonic()
