@@ -15,6 +15,7 @@ from typing import Protocol
 
 import casadi as ca
 
+from symbolic.checks import typed
 from symbolic.equations.terms import Motion, State, Unknown
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
 
@@ -121,9 +122,9 @@ class Assembly:
         Raises
         ------
         ValueError
-            Where the name is another parameter's already.
+            Where the name is another parameter's already, or the value no finite number.
         """
-        item = value if isinstance(value, Parameter) else Parameter(name, float(value), unit)
+        item = value if isinstance(value, Parameter) else Parameter(name, value, unit)
         known = self.parameters.setdefault(item.name, item)
         bare = item is not value
         same = known.value == item.value and (bare or self.owners.setdefault(item.name, item) is item)
@@ -250,7 +251,13 @@ class Assembly:
         -------
         Motion
             Its states, and the mass and force on it to which parts add (SI).
+
+        Raises
+        ------
+        ValueError
+            For what is no coordinate.
         """
+        typed("coordinate", coordinate, Coordinate, "a Coordinate, as symbolic.coordinate returns it")
         if coordinate not in self.motions:
             length = coordinate.scale or 1.0
             zero = ca.SX(0)

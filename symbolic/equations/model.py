@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from symbolic.checks import refusal, typed
 from symbolic.equations.assembly import Assembly
+
+PART = "Part, as symbolic.Mass(x, 1.0) is"
 
 
 class Part:
@@ -27,9 +30,18 @@ class Model:
     ----------
     parts : tuple of Part
         What the model is made of.
+
+    Raises
+    ------
+    ValueError
+        For what is no part.
     """
 
     parts: tuple[Part, ...]
+
+    def __post_init__(self) -> None:
+        for part in self.parts:
+            typed("part", part, Part, f"a {PART}")
 
     def __add__(self, other: Part | Model) -> Model:
         if isinstance(other, Model):
@@ -51,5 +63,12 @@ def combine(parts: Iterable[Part]) -> Model:
     -------
     Model
         Their sum.
+
+    Raises
+    ------
+    ValueError
+        For what is no part.
     """
+    if not isinstance(parts, Iterable):
+        raise refusal("parts", parts, f"a sequence, each a {PART}")
     return Model(tuple(parts))

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from symbolic.checks import finite, positive, refusal, text, typed
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -57,7 +59,7 @@ class Parameter:
     Raises
     ------
     ValueError
-        For a value that is not finite.
+        For a value that is not finite, and a name that is empty or no text.
     """
 
     name: str
@@ -66,8 +68,9 @@ class Parameter:
     symbol: ca.SX = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not math.isfinite(self.value):
-            raise ValueError(f"parameter {self.name!r} is {self.value}; it must be a finite number")
+        text("name of a parameter", self.name)
+        typed(f"unit of {self.name!r}", self.unit, str, "a text")
+        object.__setattr__(self, "value", finite(f"parameter {self.name!r}", self.value))
         object.__setattr__(self, "symbol", ca.SX.sym(self.name))
 
 
@@ -88,7 +91,7 @@ class Coordinate:
     Raises
     ------
     ValueError
-        For a scale that is not a positive number.
+        For a scale that is not a positive number, and a name that is empty, no text or has a '.
     """
 
     name: str
@@ -96,10 +99,11 @@ class Coordinate:
     scale: float | None = None
 
     def __post_init__(self) -> None:
-        if self.scale is not None and not (math.isfinite(self.scale) and self.scale > 0):
-            raise ValueError(
-                f"scale of coordinate {self.name!r} is {self.scale}; it must be a positive number"
-            )
+        if "'" in text("name of a coordinate", self.name):
+            raise refusal("name of a coordinate", self.name, "without ', which marks velocities")
+        typed(f"unit of {self.name!r}", self.unit, str, "a text")
+        if self.scale is not None:
+            positive(f"scale of coordinate {self.name!r}", self.scale)
 
 
 def parameter(name: str, value: float, unit: str = "") -> Parameter:
@@ -122,9 +126,9 @@ def parameter(name: str, value: float, unit: str = "") -> Parameter:
     Raises
     ------
     ValueError
-        For a value that is not finite.
+        For a value that is not finite, and a name that is empty or no text.
     """
-    return Parameter(name, float(value), unit)
+    return Parameter(name, value, unit)
 
 
 def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordinate:
@@ -145,6 +149,6 @@ def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordi
     Raises
     ------
     ValueError
-        For a scale that is not a positive number.
+        For a scale that is not a positive number, and a name that is empty, no text or has a '.
     """
     return Coordinate(name, unit, scale)

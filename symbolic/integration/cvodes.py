@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import casadi as ca
 import numpy as np
 
@@ -13,7 +15,11 @@ STEPS = 20_000
 
 
 class IntegrationError(ArithmeticError):
-    """The integrator gave up; the message says where."""
+    """The integrator gave up; the message says where, `phase` (tau) where that is known."""
+
+    def __init__(self, message: str, phase: float = math.nan) -> None:
+        super().__init__(message)
+        self.phase = phase
 
 
 def integrator(problem: dict[str, ca.SX], phase: tuple[float, ...], tolerance: float) -> ca.Function:

@@ -16,21 +16,22 @@ Handler = Callable[[int, FrameType | None], object]
 
 
 @contextmanager
-def heard() -> Iterator[None]:
+def heard() -> Iterator[list[BaseException]]:
     """Raise at the end of the block what a handler of SIGINT or SIGTERM raised inside.
 
-    Only the main thread is interrupted; elsewhere the block is as it is.
+    The block is given the list of it, to end where CasADi drops it. Only the main thread is interrupted;
+    elsewhere the block is as it is.
     """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
     raised: list[BaseException] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield raised
+        return
     before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
     ours = {each: _kept(old, raised) for each, old in before.items() if callable(old)}
     for each, handler in ours.items():
         signal.signal(each, handler)
     try:
-        yield
+        yield raised
     finally:
         for each, handler in ours.items():
             # A handler may have put another in its place, to be heard once only.

@@ -10,11 +10,11 @@ from functools import cached_property
 
 import casadi as ca
 import numpy as np
-import scipy
 
 from symbolic.arrays import Array
-from symbolic.integration.cvodes import IntegrationError, integrated, integrator
-from symbolic.integration.interrupts import heard
+from symbolic.checks import finite
+from symbolic.integration.cvodes import integrated, integrator
+from symbolic.integration.lsoda import failure, followed
 from symbolic.integration.rates import constraint_rows, ode
 from symbolic.system.compiled import CompiledSystem
 
@@ -37,7 +37,7 @@ class Flow:
     _integrators: dict[tuple[float, ...], ca.Function] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        if not 1e-13 <= self.tolerance <= 1e-2:
+        if not 1e-13 <= finite("tolerance", self.tolerance) <= 1e-2:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.01")
 
     def run(self, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Trajectory:
@@ -61,21 +61,13 @@ class Flow:
 
     def _lsoda(self, start: Array, parameter: Array, phase: Array) -> Array:
         rates, jacobian = self._rates
-        with heard():
-            found = scipy.integrate.solve_ivp(
-                lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
-                (phase[0], phase[-1]),
-                start,
-                method="LSODA",
-                t_eval=phase[1:],
-                rtol=self.tolerance,
-                atol=self.tolerance,
-                jac=lambda tau, y: np.array(jacobian(y, tau, parameter)),
-            )
-        if not found.success or not np.isfinite(found.y).all():
-            where = f"between tau = {phase[0]:.6g} and {phase[-1]:.6g}"
-            raise IntegrationError(f"CVODES and LSODA both failed {where}")
-        return found.y.T
+        return followed(
+            lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
+            lambda tau, y: np.array(jacobian(y, tau, parameter)),
+            start,
+            phase,
+            self.tolerance,
+        )
 
     def _cvodes(self, phase: tuple[float, ...]) -> ca.Function:
         if phase not in self._integrators:
@@ -106,6 +98,8 @@ class Flow:
         """Return the nearest point that fulfils the constraints (Gauss-Newton)."""
         for _ in range(20):
             rows, jacobian = (np.array(a) for a in self._constraints(y, phase, parameter))
+            if not np.isfinite(jacobian).all() or not np.isfinite(rows).all():
+                raise failure(phase)
             if len(rows) == 0 or np.abs(rows).max() < 1e-14:
                 break
             y = y - np.linalg.pinv(jacobian) @ rows.ravel()

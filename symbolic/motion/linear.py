@@ -11,7 +11,7 @@ eigenvalues.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,6 +20,7 @@ import numpy as np
 import scipy
 
 from symbolic.arrays import Array, Complex
+from symbolic.checks import one_of, refusal, sequence
 from symbolic.system.compiled import CompiledSystem, with_values
 
 BALANCED = 1e-12
@@ -164,11 +165,11 @@ def modes(system: CompiledSystem, values: Mapping[str, float] | None = None) -> 
     Raises
     ------
     ValueError
-        For a name that is no parameter.
+        For a name that is no parameter, and a value out of range.
     NoRestError
         Where no equilibrium is found.
     """
-    return RestFinder(system).modes(with_values(system, values or {}))
+    return RestFinder(system).modes(with_values(system, {} if values is None else values))
 
 
 def resonance(
@@ -199,19 +200,40 @@ def resonance(
     Raises
     ------
     ValueError
-        For a name that is no parameter.
+        For a name that is no parameter or is also in `values`, and a value out of range.
     NoRestError
         Where no equilibrium is found.
     """
-    finder, fixed = RestFinder(system), dict(values or {})
+    varied, ends = varying(system, parameter, values), _ends(parameter, bounds)
+    finder = RestFinder(system)
 
     def excess(value: float) -> float:
-        found = finder.modes(with_values(system, {**fixed, parameter: value}))
+        found = finder.modes(varied(value))
         return found.omega / float(found.frequencies[0]) - 1 if len(found.frequencies) else math.inf
 
-    ends = [excess(bound) for bound in bounds]
-    if not all(map(math.isfinite, ends)) or not ends[0] * ends[1] < 0:
+    excesses = [excess(bound) for bound in ends]
+    if not all(map(math.isfinite, excesses)) or not excesses[0] * excesses[1] < 0:
         return None
     # An infinite excess inside has a sign to bisect by; what is found then may be a jump.
-    root = float(scipy.optimize.brentq(excess, *bounds, xtol=1e-13 * max(map(abs, bounds)), rtol=1e-13))
+    root = float(scipy.optimize.brentq(excess, *ends, xtol=1e-13 * max(map(abs, ends)), rtol=1e-13))
     return root if abs(excess(root)) < MET else None
+
+
+def varying(
+    system: CompiledSystem, parameter: str, values: Mapping[str, float] | None
+) -> Callable[[float], Array]:
+    """Return from a value of one parameter to the vector of all of them (SI). Raises ValueError."""
+    fixed = {} if values is None else values
+    with_values(system, fixed)
+    one_of("parameter", parameter, [p.name for p in system.parameters])
+    if parameter in fixed:
+        raise ValueError(f"parameter is {parameter!r}, which is also in values; it must be one or the other")
+    return lambda value: with_values(system, {**fixed, parameter: value})
+
+
+def _ends(parameter: str, bounds: object) -> tuple[float, float]:
+    """The two bounds of a parameter. Raises ValueError."""
+    given = sequence(f"bounds of {parameter}", bounds)
+    if len(given) != 2:
+        raise refusal(f"bounds of {parameter}", bounds, "two finite numbers")
+    return given[0], given[1]

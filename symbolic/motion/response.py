@@ -17,7 +17,8 @@ import numpy as np
 import scipy
 
 from symbolic.arrays import Array, Complex
-from symbolic.motion.linear import Modes, RestFinder
+from symbolic.checks import one_of, sequence
+from symbolic.motion.linear import Modes, RestFinder, varying
 from symbolic.system.compiled import CompiledSystem, with_values
 
 SINGULAR = 1e14
@@ -64,7 +65,7 @@ class FrequencyResponse:
         ndarray, shape (N,)
             Complex amplitudes, SI.
         """
-        return self.amplitude[:, self.outputs.index(output)]
+        return self.amplitude[:, self._index(output)]
 
     def peak_to_peak(self, output: str) -> Array:
         """Return maximum minus minimum over a period, 2 |amplitude|.
@@ -109,7 +110,10 @@ class FrequencyResponse:
         ndarray, shape (N,)
             Its values at rest, SI.
         """
-        return self.rest[:, self.outputs.index(output)]
+        return self.rest[:, self._index(output)]
+
+    def _index(self, output: str) -> int:
+        return self.outputs.index(one_of("output", output, self.outputs))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,17 +186,18 @@ def response(
     Raises
     ------
     ValueError
-        For a name that is no parameter.
+        For a name that is no parameter or is also in `values`, and a value out of range.
     NoRestError
         Where no equilibrium is found.
     """
-    excited, fixed = Excited(system), dict(values or {})
-    found = [excited.finder.modes(with_values(system, {**fixed, parameter: float(v)})) for v in at]
+    varied, points = varying(system, parameter, values), sequence("at", at)
+    excited = Excited(system)
+    found = [excited.finder.modes(varied(value)) for value in points]
     answers = [excited.amplitudes(modes) for modes in found]
     return FrequencyResponse(
         parameter=parameter,
         outputs=tuple(output.name for output in system.outputs),
-        values=np.array(at, dtype=float),
+        values=np.array(points),
         omega=np.array([modes.omega for modes in found]),
         amplitude=np.array([amplitude for amplitude, _ in answers]),
         rest=np.array([rest for _, rest in answers]),

@@ -6,10 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
+from symbolic.checks import numbers, typed, whole
+from symbolic.integration.cvodes import IntegrationError
 from symbolic.motion.flow import Flow, Trajectory
 from symbolic.motion.linear import RestFinder
 from symbolic.system.compiled import CompiledSystem, with_values
@@ -47,7 +48,7 @@ class Simulation:
     @property
     def time(self) -> Array:
         """Time t = tau/omega in s, shape (N,)."""
-        return self.phase / _omega(self.system, self.parameter)
+        return self.phase / self.system.omega(self.parameter)
 
     def __getitem__(self, name: str) -> Array:
         """Return an output or a state by name, SI, shape (N,)."""
@@ -108,23 +109,28 @@ def simulate(
     Raises
     ------
     ValueError
-        For an unknown parameter or state, and for numbers out of range.
+        For an unknown parameter or state, numbers out of range, and a start of another system.
     NoRestError
         Where no rest is found to begin at.
     IntegrationError
-        Where both integrators fail.
+        Where both integrators fail; the message says how far the motion could be followed.
     """
     for name, number, least in (("settle", settle, 0), ("periods", periods, 1), ("samples", samples, 3)):
-        if number < least:
-            raise ValueError(f"{name} is {number}; it must be at least {least}")
-    flow, parameter = Flow(system, tolerance), with_values(system, values or {})
+        whole(name, number, least)
+    parameter = with_values(system, {} if values is None else values)
+    flow = Flow(system, tolerance)
     state, algebraic = _beginning(system, parameter, start)
-    state = state + _knocked(system, parameter, knock or {})
-    for _ in range(settle):
-        end = flow.run(state, algebraic, parameter, np.array([0.0, PERIOD]))
-        state, algebraic = end.state[-1], end.algebraic[-1]
-    phase = np.linspace(0, PERIOD * periods, samples * periods + 1)
-    found = flow.run(state, algebraic, parameter, phase)
+    state = state + _knocked(system, parameter, {} if knock is None else knock)
+    ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
+    done = 0
+    try:
+        while done < settle:
+            end = flow.run(state, algebraic, parameter, ends)
+            state, algebraic, done = end.state[-1], end.algebraic[-1], done + 1
+        found = flow.run(state, algebraic, parameter, phase)
+    except IntegrationError as error:
+        time = (PERIOD * done + error.phase) / system.omega(parameter)
+        raise IntegrationError(f"the motion could not be followed past {time:.6g} s; {error}") from None
     return Simulation(
         system=system, parameter=parameter, phase=phase, state=found.state, algebraic=found.algebraic
     )
@@ -132,15 +138,25 @@ def simulate(
 
 def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | None) -> tuple[Array, Array]:
     if start is not None:
-        return start.state[-1], start.algebraic[-1]
+        given = typed("start", start, Simulation, "a Simulation, as symbolic.simulate returns it")
+        return _in_scales(system, given), given.algebraic[-1]
     rest = RestFinder(system).modes(parameter)
     return rest.state, rest.algebraic
+
+
+def _in_scales(system: CompiledSystem, start: Simulation) -> Array:
+    """The end of a motion in the system's own scales. Raises ValueError for a motion of other variables."""
+    theirs, ours = ([v.name for v in (*s.states, *s.algebraics)] for s in (start.system, system))
+    if theirs != ours:
+        raise ValueError(f"start is a motion of {', '.join(theirs)}; it must be one of {', '.join(ours)}")
+    ratio = [a.scale / b.scale for a, b in zip(start.system.states, system.states, strict=True)]
+    return start.state[-1] * np.array(ratio)
 
 
 def _knocked(system: CompiledSystem, parameter: Array, knock: Mapping[str, float]) -> Array:
     """What a knock adds to the scaled states."""
     names, added = [state.name for state in system.states], np.zeros(len(system.states))
-    for name, change in knock.items():
+    for name, change in numbers("knock", knock, "knock").items():
         if name not in names:
             raise ValueError(f"knock has {name!r}; it must be one of {', '.join(names)}")
         added[names.index(name)] = change
@@ -149,12 +165,7 @@ def _knocked(system: CompiledSystem, parameter: Array, knock: Mapping[str, float
 
 def _units(system: CompiledSystem, parameter: Array) -> Array:
     """SI values of one internal unit of each state; x' is dx/dtau inside, dx/dt = omega dx/dtau outside."""
-    names, omega = [state.name for state in system.states], _omega(system, parameter)
+    names, omega = [state.name for state in system.states], system.omega(parameter)
     stems = [name.rstrip("'") for name in names]
     orders = [len(n) - len(stem) if stem in names else 0 for n, stem in zip(names, stems, strict=True)]
     return np.array([v.scale * omega**k for v, k in zip(system.states, orders, strict=True)])
-
-
-def _omega(system: CompiledSystem, parameter: Array) -> float:
-    e = system.expressions
-    return float(ca.Function("frequency", [e.parameter], [e.frequency])(parameter))

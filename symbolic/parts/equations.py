@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Any
 
 import casadi as ca
 
+from symbolic.checks import finite, mapping, numbers, positive, refusal, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Parameter, Value
+from symbolic.parts.calls import Function, called
 
 
 class Names:
@@ -31,10 +31,6 @@ class Names:
         if name.startswith("_"):
             raise AttributeError(name)
         return self[name]
-
-
-Function = Callable[..., Mapping[str, Any]]
-"""(x, p), or (x, p, wave) of a forced system, to expressions by name."""
 
 
 @dataclass(frozen=True)
@@ -82,19 +78,14 @@ class Equations(Part):
     outputs: Function | None = None
 
     def __post_init__(self) -> None:
-        groups = (self.states, self.unknowns, [c.name for c in self.coordinates])
+        self._check_types()
+        groups = (self.states, self.unknowns, [c.name for c in self.coordinates], self.parameters)
         names = [name for group in groups for name in group]
-        for name in (*names, *self.parameters):
-            if not name.isidentifier() or name.startswith("_"):
-                raise ValueError(f"name of a variable is {name!r}; it must be one that Python allows")
         for name in names:
+            if not isinstance(name, str) or not name.isidentifier() or name.startswith("_"):
+                raise ValueError(f"name of a variable is {name!r}; it must be one that Python allows")
             if names.count(name) > 1:
                 raise ValueError(f"{name!r} is the name of two variables; every one needs its own")
-        for kind, values in (("rest value", {**self.states, **self.unknowns}), ("scale", self.scales)):
-            for name, value in values.items():
-                if not math.isfinite(value) or (kind == "scale" and value <= 0):
-                    allowed = "a positive" if kind == "scale" else "a finite"
-                    raise ValueError(f"{kind} of {name} is {value}; it must be {allowed} number")
         _fitting("scales", self.scales, self.states, all_needed=False)
         if self.frequency is not None and self.frequency not in self.parameters:
             raise ValueError(
@@ -106,6 +97,22 @@ class Equations(Part):
                 "parameter 'omega' is 2 pi / period of the orbits of equations without excitation; "
                 "name yours otherwise"
             )
+
+    def _check_types(self) -> None:
+        for name, function in (("function", self.function), ("outputs", self.outputs or max)):
+            if not callable(function):
+                raise refusal(name, function, "a function of x and p")
+        numbers("states", self.states, "rest value")
+        numbers("unknowns", self.unknowns, "rest value")
+        for name, scale in mapping("scales", self.scales).items():
+            positive(f"scale of {name}", scale)
+        for name, value in mapping("parameters", self.parameters).items():
+            if not isinstance(value, Parameter):
+                finite(f"parameter {name!r}", value)
+        if isinstance(self.coordinates, Coordinate):
+            raise refusal("coordinates", self.coordinates, "a sequence of Coordinates")
+        for each in self.coordinates:
+            typed("one of coordinates", each, Coordinate, "a Coordinate, as symbolic.coordinate returns it")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the states with their rows, the unknowns with theirs, forces on coordinates, and outputs."""
@@ -120,11 +127,11 @@ class Equations(Part):
         symbols |= {name: assembly.algebraic(name, ca.SX(float(z))) for name, z in self.unknowns.items()}
         for q in self.coordinates:
             symbols |= {q.name: assembly.motion(q).position.symbol, f"{q.name}_dot": assembly.speed_of(q)}
-        arguments = [Names("x", symbols), Names("p", p)]
+        arguments: list[object] = [Names("x", symbols), Names("p", p)]
         if self.frequency is not None:
             arguments.append(Names("wave", {"sin": assembly.sine, "cos": assembly.cosine}))
 
-        found = _expressions("function", self.function(*arguments))
+        found = called("function", self.function, arguments)
         wanted = [*states, *self.unknowns]
         _fitting("the function's result", found, wanted, [q.name for q in self.coordinates])
         for name, state in states.items():
@@ -135,23 +142,8 @@ class Equations(Part):
         for q in self.coordinates:
             assembly.motion(q).force += found.get(q.name, ca.SX(0))
         if self.outputs is not None:
-            for name, expression in _expressions("outputs", self.outputs(*arguments)).items():
+            for name, expression in called("outputs", self.outputs, arguments).items():
                 assembly.output(name, "", expression)
-
-
-def _expressions(name: str, found: object) -> dict[str, ca.SX]:
-    """What a function returned, as expressions. Raises ValueError for anything else."""
-    if not isinstance(found, Mapping):
-        raise ValueError(
-            f"{name} returned a {type(found).__name__}; it must return a mapping of names to expressions"
-        )
-    for key, value in found.items():
-        scalar = isinstance(value, int | float) or (isinstance(value, ca.SX) and value.is_scalar())
-        if not scalar:
-            raise ValueError(
-                f"{name} returned {value!r} for {key!r}; it must be one number or one expression"
-            )
-    return {str(key): ca.SX(value) for key, value in found.items()}
 
 
 def _fitting(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from symbolic.scenes.errors import InputError
+from symbolic.scenes.errors import InputError, refused
 from symbolic.system.compiled import CompiledSystem
 
 
@@ -17,8 +17,8 @@ def scene(source: str | Path, changes: Mapping[str, str | float | None] | None =
     source : str or Path
         The name of a built-in scene (see `scene_names`) or the path of a TOML file.
     changes : mapping of str to str or float, optional
-        New values by key, dotted or its last component alone, as ``{"preload": 1200, "film.beta": 20}``; None
-        takes an entry or a table out.
+        New values by key, dotted or its last component alone, as ``{"preload": 1200, "film.beta": 20}``; a
+        number may be a text, as of a command line, and None takes an entry or a table out.
 
     Returns
     -------
@@ -34,8 +34,13 @@ def scene(source: str | Path, changes: Mapping[str, str | float | None] | None =
     from symbolic.scenes.building import build
     from symbolic.scenes.files import load
 
+    if not isinstance(source, str | Path):
+        raise refused("scene", source, f"one of {', '.join(scene_names())} or the path of a TOML file")
+    given = {} if changes is None else changes
+    if not isinstance(given, Mapping):
+        raise refused("changes", given, 'a mapping of keys to values, as {"preload": 1200}')
     try:
-        return build(load(str(source), tuple((changes or {}).items())))
+        return build(load(str(source), tuple(given.items())))
     except InputError as error:
         raise error.renamed({"--set key": "key"}) from None
 

@@ -64,7 +64,11 @@ def _text(source: str) -> str:
         return resources.files("symbolic.scenes").joinpath("data", f"{source}.toml").read_text("utf-8")
     names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
+    if not source.strip():
+        raise refused("scene", source, names)
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never come to an end
+            raise InputError("scene", f'file "{source}" is no regular file', f"it must be {names}")
         with path.open("rb") as file:
             content = file.read(LARGEST + 1)
         if len(content) > LARGEST:
@@ -85,7 +89,8 @@ def _parsed(source: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        found = f'file "{source}" is not TOML: {cut(str(error), 3 * LONGEST)}'
+        why = "its tables are too deep" if isinstance(error, RecursionError) else str(error)
+        found = f'file "{source}" is not TOML: {cut(why, 3 * LONGEST)}'
         raise InputError("scene", found, "it must hold lines like preload = 810") from error
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.expressions import expressed
 from symbolic.equations.model import Model, Part
@@ -29,15 +30,23 @@ def compile(model: Model | Part, kernels: Kernels | str | None = None) -> Compil
     Raises
     ------
     ValueError
-        In one sentence, for a model that lacks a part, defines a parameter twice or leaves a coordinate
-        without mass, and for an unknown back end.
+        In one sentence, for a model that lacks a part, gives two variables one name or leaves a coordinate
+        without mass, for what is no model, and for an unknown back end.
     CompilerError
         For "c" without a working compiler.
     """
     assembly, back_end = Assembly(), chosen(kernels)
+    if not isinstance(model, Model | Part):
+        raise refusal("model", model, "a Model or a Part, as the sum of symbolic.Mass(x, 1.0) and others is")
     assembly.lay(model.parts if isinstance(model, Model) else (model,))
     assembly.close()
-    return _system(assembly, back_end)
+    system = _system(assembly, back_end)
+    for variable in (*system.states, *system.algebraics):
+        if variable.name in [p.name for p in system.parameters]:
+            raise ValueError(
+                f"{variable.name!r} is the name of a state and of a parameter; every variable needs its own"
+            )
+    return system
 
 
 def _system(assembly: Assembly, kernels: Kernels) -> CompiledSystem:

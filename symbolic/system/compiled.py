@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
+from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
@@ -75,6 +76,25 @@ class CompiledSystem:
         product = math.prod((e.parameter[k] for k in used), start=ca.SX(1))
         equal = ca.is_equal(product, e.frequency, 10)
         return tuple(self.parameters[k].name for k in used) if equal else ()
+
+    @cached_property
+    def _omega(self) -> ca.Function:
+        return ca.Function("frequency", [self.expressions.parameter], [self.expressions.frequency])
+
+    def omega(self, parameter: Array) -> float:
+        """Return the frequency of the excitation.
+
+        Parameters
+        ----------
+        parameter : ndarray, shape (p,)
+            p in SI.
+
+        Returns
+        -------
+        float
+            omega in rad/s.
+        """
+        return float(self._omega(parameter))
 
     @property
     def nominal(self) -> Array:
@@ -266,11 +286,12 @@ def _columns(*arrays: Array) -> list[Array]:
 
 
 def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:
-    """Return the nominal parameter vector with some values (SI) replaced, by name."""
+    """Return the nominal parameter vector with some values (SI) replaced, by name. Raises ValueError."""
+    typed("system", system, CompiledSystem, "a CompiledSystem, as symbolic.compile returns it")
     parameter = system.nominal
     names = [p.name for p in system.parameters]
-    for name, value in values.items():
-        if name not in names:
-            raise ValueError(f"parameter is {name!r}; it must be one of {', '.join(names)}")
-        parameter[names.index(name)] = value
+    for name, value in numbers("values", values, "value").items():
+        parameter[names.index(one_of("parameter", name, names))] = value
+    if not (omega := system.omega(parameter)) > 0:
+        raise refusal("the frequency of the excitation in rad/s", omega, "greater than 0")
     return parameter

@@ -46,6 +46,9 @@ def test_scene_by_name_path_and_changes(tmp_path: Path) -> None:
             'scene is "nowhere"; it must be one of .*, vitrea79-2100N or the path of a TOML file',
         ),
         ("dry-810N", {"preload": -1}, "contact.preload is -1; it must be a number from 0.01 to 1e.08 .N."),
+        ("", {}, 'scene is ""; it must be one of '),
+        (3, {}, "scene is 3; it must be one of "),
+        ("duffing", "force=2", 'changes is "force=2"; it must be a mapping of keys to values, as '),
         ("dry-810N", {"load": 1}, 'key is "load"; it must be one of discs.mass, '),
     ],
 )

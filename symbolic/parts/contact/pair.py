@@ -13,6 +13,7 @@ from typing import Protocol
 
 import casadi as ca
 
+from symbolic.checks import typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.variables import Coordinate
 from symbolic.parts.contact.law import ContactLaw
@@ -144,6 +145,7 @@ def _dry(assembly: Assembly, contact: Loaded) -> ca.SX:
 
 def junction_of(assembly: Assembly, pair: ContactPair) -> Junction:
     """Return the junction of a pair, making it at the first call."""
+    typed("pair", pair, ContactPair, "a ContactPair, as symbolic.ContactPair(x) is")
     found = assembly.joints.setdefault(pair, Junction(pair))
     assert isinstance(found, Junction)
     return found

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Callable
 from functools import cache
 
 import casadi as ca
@@ -233,10 +235,9 @@ def test_dry_response() -> None:
 def test_response_is_the_limit_of_orbits() -> None:
     """Assert that orbits at a thousandth of the waviness have the linear response, in every output."""
     system = disc_system("vitrea79-810N")
-    speed = {"speed": 360 * RPM, "amplitude": 1e-3 * AMPLITUDE}
     small = Disc(amplitude=1e-3 * AMPLITUDE).compile()
     orbit = per.trace(small, "speed", (350 * RPM, 360 * RPM), start=360 * RPM)[0]
-    linear = response(system, "speed", [speed["speed"]], speed)
+    linear = response(system, "speed", [360 * RPM], {"amplitude": 1e-3 * AMPLITUDE})
     for name in ("x", "film", "deflection", "load"):
         assert orbit.peak_to_peak(name) == pytest.approx(linear.peak_to_peak(name)[0], rel=1e-6)
 
@@ -263,3 +264,36 @@ def test_waves() -> None:
     values = np.linspace(0.3, 0.9, known.size1())
     waved, direct = both(values, tau, [math.sin(tau), math.cos(tau)])
     np.testing.assert_allclose(np.array(waved), np.array(direct), rtol=1e-15)
+
+
+DUFFING = duffing_system(*DAMPING)
+REFUSED: list[tuple[Callable[[], object], str]] = [
+    (lambda: modes("a"), "system is 'a'; it must be a CompiledSystem, as symbolic.compile returns it"),  # type: ignore[arg-type]
+    (lambda: modes(DUFFING, 3), "values is 3; it must be a mapping of names to numbers"),  # type: ignore[arg-type]
+    (lambda: modes(DUFFING, {"k": math.nan}), "value of k is nan; it must be a finite number"),
+    (
+        lambda: modes(DUFFING, {"Omega": 0}),
+        "the frequency of the excitation in rad/s is 0.0; it must be greater than 0",
+    ),
+    (lambda: response(DUFFING, "Omega", 1.0), "at is 1.0; it must be a sequence of finite numbers"),  # type: ignore[arg-type]
+    (lambda: response(DUFFING, "Omega", [math.nan]), "at is nan; it must be a finite number"),
+    (
+        lambda: response(DUFFING, "Omega", [1.0], {"Omega": 3.0}),
+        "parameter is 'Omega', which is also in values; it must be one or the other",
+    ),
+    (
+        lambda: response(DUFFING, "Omega", [1.0]).at_rest("y"),
+        "output is 'y'; it must be one of x",
+    ),
+    (
+        lambda: resonance(DUFFING, "Omega", (1, 2, 3)),  # type: ignore[arg-type]
+        "bounds of Omega is (1, 2, 3); it must be two finite numbers",
+    ),
+]
+
+
+@pytest.mark.parametrize(("ask", "said"), REFUSED, ids=[said for _, said in REFUSED])
+def test_refused_in_one_sentence(ask: Callable[[], object], said: str) -> None:
+    """Assert that what cannot be is refused with its name, its value and what is allowed."""
+    with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
+        ask()

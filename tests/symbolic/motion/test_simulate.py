@@ -11,6 +11,10 @@ import symbolic as sym
 RPM = 2 * np.pi / 60
 
 
+X = sym.coordinate("x")
+PARTS = [sym.Mass(X, 1.0), sym.Damper(X, 0.2), sym.Spring(X, 1.0), sym.HarmonicForce(X, 0.5)]
+
+
 def oscillator() -> sym.CompiledSystem:
     """x'' + 0.2 x' + x = 0.5 cos Omega t, x in units of 0.1 m inside."""
     x = sym.coordinate("x", scale=0.1)
@@ -58,8 +62,23 @@ def test_outputs_and_branch_of_a_disc() -> None:
     [
         ({"knock": {"y": 1.0}}, "knock has 'y'; it must be one of x, x'"),
         ({"values": {"omega": 1.0}}, "parameter is 'omega'; it must be one of m, c, k, F, Omega"),
-        ({"periods": 0}, "periods is 0; it must be at least 1"),
-        ({"settle": -1}, "settle is -1; it must be at least 0"),
+        ({"periods": 0}, "periods is 0; it must be a whole number of at least 1"),
+        ({"settle": -1}, "settle is -1; it must be a whole number of at least 0"),
+        ({"periods": np.nan}, "periods is nan; it must be a whole number of at least 1"),
+        ({"settle": "a"}, "settle is 'a'; it must be a whole number of at least 0"),
+        ({"settle": 1.5}, "settle is 1.5; it must be a whole number of at least 0"),
+        ({"samples": 2.5}, "samples is 2.5; it must be a whole number of at least 3"),
+        ({"samples": True}, "samples is True; it must be a whole number of at least 3"),
+        ({"values": 3}, "values is 3; it must be a mapping of names to numbers"),
+        ({"values": {"k": np.nan}}, "value of k is nan; it must be a finite number"),
+        (
+            {"values": {"Omega": -1}},
+            "the frequency of the excitation in rad/s is -1.0; it must be greater than 0",
+        ),
+        ({"knock": 3}, "knock is 3; it must be a mapping of names to numbers"),
+        ({"knock": {"x": np.nan}}, "knock of x is nan; it must be a finite number"),
+        ({"start": 3}, "start is 3; it must be a Simulation, as symbolic.simulate returns it"),
+        ({"tolerance": "a"}, "tolerance is 'a'; it must be a finite number"),
         ({"tolerance": 1.0}, "tolerance is 1.0; it must lie between 1e-13 and 0.01"),
     ],
 )
@@ -67,6 +86,31 @@ def test_refused(wrong: dict, said: str) -> None:
     """Assert that what cannot be is refused in one sentence."""
     with pytest.raises(ValueError, match=f"^{said}$"):
         sym.simulate(oscillator(), **wrong)
+
+
+def test_start_of_another_system() -> None:
+    """Assert that the motion of a system with other variables is no start."""
+    other = sym.simulate(sym.scene("vitrea79-810N"), settle=0, samples=3)
+    with pytest.raises(ValueError, match="^start is a motion of x, x', h, xi; it must be one of x, x'$"):
+        sym.simulate(oscillator(), start=other)
+
+
+def test_start_in_other_scales() -> None:
+    """Assert that a start is taken in SI, whatever the scales inside."""
+    first = sym.simulate(oscillator(), settle=3, samples=5)
+    x = sym.coordinate("x", scale=0.7)
+    parts = [sym.Mass(x, 1.0), sym.Damper(x, 0.2), sym.Spring(x, 1.0), sym.HarmonicForce(x, 0.5)]
+    second = sym.simulate(sym.compile(sym.combine(parts)), start=first, settle=0, samples=5)
+    assert second["x"][0] == pytest.approx(first["x"][-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("knock", [1e100, 1e300])
+def test_motion_that_cannot_be_followed(knock: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that an absurd motion ends with how far it was followed, not after ever more work."""
+    monkeypatch.setattr("symbolic.integration.lsoda.EVALUATIONS", 1000)
+    hard = sym.compile(sym.combine([*PARTS, sym.CubicSpring(X, 1.0)]))
+    with pytest.raises(sym.IntegrationError, match="^the motion could not be followed past .* s; CVODES and"):
+        sym.simulate(hard, knock={"x": knock})
 
 
 def test_unknown_quantity() -> None:

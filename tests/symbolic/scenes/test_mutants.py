@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -101,6 +102,10 @@ def test_no_end_of_a_file(tmp_path: Path) -> None:
     """Assert that of a file without end, or one too large, no more is read than a scene may have."""
     large = tmp_path / "large.toml"
     large.write_text("# a comment\n" * 10_000, "utf-8")
-    for source in (str(large), "/dev/zero") if Path("/dev/zero").exists() else (str(large),):
-        with pytest.raises(InputError, match="is larger than 32768 bytes"):
+    with pytest.raises(InputError, match="is larger than 32768 bytes"):
+        load(str(large))
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    for source in (str(pipe), "/dev/zero") if Path("/dev/zero").exists() else (str(pipe),):
+        with pytest.raises(InputError, match="is no regular file; it must be one of"):
             load(source)

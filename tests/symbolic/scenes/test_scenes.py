@@ -315,6 +315,12 @@ def test_malformed_toml(tmp_path: Path, text: str) -> None:
     assert said.startswith(f'scene file "{source}" is not TOML: ') and "\n" not in said
 
 
+def test_deep_tables(tmp_path: Path) -> None:
+    """Assert that tables beyond what Python's reader takes are called so."""
+    said = sentence(written(tmp_path, "x = " + "[" * 5000))
+    assert said.endswith("is not TOML: its tables are too deep; it must hold lines like preload = 810")
+
+
 def test_binary_file(tmp_path: Path) -> None:
     """Assert that a file that is not text is refused."""
     file = tmp_path / "mine.toml"

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from support.models import Disc
 
@@ -142,3 +143,66 @@ def test_sum_with_something_else() -> None:
     """Assert that a part adds to parts and models only."""
     with pytest.raises(TypeError, match="unsupported operand"):
         sym.Mass(X, 1.0) + sym.Spring(X, 1.0) + 3.0  # type: ignore[operator]
+
+
+def equations(function: object, **given: object) -> Callable[[], object]:
+    """The compilation of equations of one state, to be called later."""
+    states, parameters = given.pop("states", {"x": 0.0}), given.pop("parameters", {"a": 1.0})
+    return lambda: sym.compile(sym.Equations(function, states, parameters, **given))  # type: ignore[arg-type]
+
+
+DECIDES = "decides by a symbol, as if, and, or, max and min do; it must use if_else, fmax or fmin of "
+NUMPY = "takes a function of NumPy's of a symbol; it must use that of symbolic.functions, as "
+NAN = "returned an expression with NaN in it for 'x'; it must use the functions of symbolic.functions, not "
+MODEL = "it must be a Model or a Part, as the sum of symbolic.Mass(x, 1.0) and others is"
+NAME = "it must be one line of text that is not empty"
+WRONG: list[tuple[Callable[[], object], str]] = [
+    (lambda: sym.compile("a"), f"model is 'a'; {MODEL}"),  # type: ignore[arg-type]
+    (lambda: sym.compile(sym.Mass), f"model is <class 'symbolic.parts.mechanics.inertia.Mass'>; {MODEL}"),  # type: ignore[arg-type]
+    (lambda: sym.combine(["a"]), "part is 'a'; it must be a Part, as symbolic.Mass(x, 1.0) is"),  # type: ignore[list-item]
+    (lambda: sym.combine(3), "parts is 3; it must be a sequence, each a Part, as symbolic.Mass(x, 1.0) is"),  # type: ignore[arg-type]
+    (
+        compiled(sym.Mass("x", 1.0)),  # type: ignore[arg-type]
+        "coordinate is 'x'; it must be a Coordinate, as symbolic.coordinate returns it",
+    ),
+    (compiled(sym.Mass(X, "a")), "parameter 'm' is 'a'; it must be a finite number"),  # type: ignore[arg-type]
+    (
+        compiled(sym.Preload("p", 1.0)),  # type: ignore[arg-type]
+        "pair is 'p'; it must be a ContactPair, as symbolic.ContactPair(x) is",
+    ),
+    (lambda: sym.coordinate(3), f"name of a coordinate is 3; {NAME}"),  # type: ignore[arg-type]
+    (lambda: sym.coordinate(""), f"name of a coordinate is ''; {NAME}"),
+    (
+        lambda: sym.coordinate("x'"),
+        "name of a coordinate is \"x'\"; it must be without ', which marks velocities",
+    ),
+    (lambda: sym.parameter("", 1.0), f"name of a parameter is ''; {NAME}"),
+    (lambda: sym.parameter("m", "a"), "parameter 'm' is 'a'; it must be a finite number"),  # type: ignore[arg-type]
+    (
+        compiled(sym.Mass(X, sym.parameter("x", 1.0)), sym.HarmonicForce(X, 1.0)),
+        "'x' is the name of a state and of a parameter; every variable needs its own",
+    ),
+    (
+        equations(lambda x, p: {"x": x.x}, parameters={"x": 1.0}),
+        "'x' is the name of two variables; every one needs its own",
+    ),
+    (equations(3), "function is 3; it must be a function of x and p"),
+    (equations(max, states=["x"]), "states is ['x']; it must be a mapping of names to numbers"),
+    (equations(max, states={"x": "a"}), "rest value of x is 'a'; it must be a finite number"),
+    (
+        equations(lambda x, p: {"x": x.x if x.x > 0 else 0}),
+        f"function {DECIDES}symbolic.functions",
+    ),
+    (
+        equations(lambda x, p: {"x": -x.x}, outputs=lambda x, p: {"y": max(x.x, 0)}),
+        f"outputs {DECIDES}symbolic.functions",
+    ),
+    (equations(lambda x, p: {"x": np.sin(x.x)}), f"function {NUMPY}symbolic.functions.sin"),
+    (equations(lambda x, p: {"x": 1 + math.sin(x.x)}), f"function {NAN}those of math"),
+]
+
+
+@pytest.mark.parametrize(("make", "said"), WRONG, ids=[said for _, said in WRONG])
+def test_refused_with_field_value_and_what_is_allowed(make: Callable[[], object], said: str) -> None:
+    """Assert the whole sentence of what is no model, no number, no name or no expression."""
+    assert sentence(make) == said

@@ -1,0 +1,64 @@
+"""One call of LSODA, which follows a motion where CVODES gives up; its work is bounded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from symbolic.arrays import Array
+from symbolic.integration.cvodes import IntegrationError
+from symbolic.integration.interrupts import heard
+
+EVALUATIONS = 100_000
+"""Most evaluations of the rates in each period of the excitation, 2 pi in tau."""
+
+Rates = Callable[[float, Array], Array]
+"""(tau, y) to y', or to its Jacobian."""
+
+
+@dataclass
+class _Counted:
+    """Rates that are evaluated `most` times, and not again after a signal: CasADi drops what that raises."""
+
+    rates: Rates
+    most: float
+    raised: list[BaseException]
+    count: int = 0
+
+    def __call__(self, tau: float, y: Array) -> Array:
+        if self.raised:
+            raise self.raised[0]
+        self.count += 1
+        if self.count > self.most:
+            raise failure(tau)
+        return self.rates(tau, y)
+
+
+def failure(phase: float) -> IntegrationError:
+    """Return the error of an integration that got as far as a phase."""
+    return IntegrationError(f"CVODES and LSODA both failed at tau = {phase:.6g}", phase)
+
+
+def followed(rates: Rates, jacobian: Rates, start: Array, phase: Array, tolerance: float) -> Array:
+    """Return the solution at the later phases, a row each. Raises IntegrationError."""
+    if not np.isfinite(rates(phase[0], start)).all():
+        raise failure(phase[0])
+    with heard() as raised:
+        found = scipy.integrate.solve_ivp(
+            _Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
+            (phase[0], phase[-1]),
+            start,
+            method="LSODA",
+            t_eval=phase[1:],
+            rtol=tolerance,
+            atol=tolerance,
+            jac=jacobian,
+        )
+    if not found.success or not np.isfinite(found.y).all():
+        good = [tau for tau, y in zip(found.t, np.transpose(found.y), strict=True) if np.isfinite(y).all()]
+        raise failure(max(good, default=phase[0]))
+    return found.y.T
