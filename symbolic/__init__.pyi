@@ -35,6 +35,9 @@ from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Supp
 from .scenes.door import scene, scene_names
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
+from .structures.beam import beam
+from .structures.files import read_matrices
+from .structures.matrices import Matrices
 from .system.compile import compile
 from .system.compiled import CompiledSystem
 
@@ -66,6 +69,7 @@ __all__ = [
     "IntegrationError",
     "Kernels",
     "Mass",
+    "Matrices",
     "Model",
     "Modes",
     "NoRestError",
@@ -86,12 +90,14 @@ __all__ = [
     "ThirdOrder",
     "Variable",
     "Waviness",
+    "beam",
     "combine",
     "compile",
     "coordinate",
     "functions",
     "modes",
     "parameter",
+    "read_matrices",
     "register_contact_law",
     "resonance",
     "response",

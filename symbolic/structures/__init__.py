@@ -1,0 +1,1 @@
+"""Linear structures as matrices: their checks, files and programs they come from, builders, reduction."""

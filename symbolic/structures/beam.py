@@ -1,0 +1,106 @@
+"""Euler-Bernoulli beams by finite elements: something to begin with, and for examples."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.checks import one_of, positive, whole
+from symbolic.structures.matrices import Matrices
+
+ENDS = ("free", "pinned", "clamped")
+
+End = Literal["free", "pinned", "clamped"]
+
+
+def beam(
+    *,
+    length: float,
+    bending: float,
+    mass_per_length: float,
+    elements: int = 10,
+    left: End = "clamped",
+    right: End = "free",
+) -> Matrices:
+    """Return a plane Euler-Bernoulli beam, undamped.
+
+    rho A w_tt + E I w_xxxx = 0 by cubic elements with deflection w and slope w_x at each node and the
+    consistent mass matrix.
+
+    Parameters
+    ----------
+    length : float
+        Length in m.
+    bending : float
+        Bending stiffness E I in N m^2.
+    mass_per_length : float
+        rho A in kg/m.
+    elements : int
+        Number of elements.
+    left, right : {"free", "pinned", "clamped"}
+        Its ends: pinned without deflection, clamped without slope either.
+
+    Returns
+    -------
+    Matrices
+        M, C = 0 and K. Places are ``w0``, ``w1``, ... and ``slope0``, ``slope1``, ... of the nodes where they
+        are free, and ``tip``, the last deflection.
+
+    Raises
+    ------
+    ValueError
+        For a number that is not positive, an end that is not known, or a beam with no freedom left.
+
+    References
+    ----------
+    .. [1] M. Petyt, Introduction to Finite Element Vibration Analysis, 2nd ed., sec. 3.5.
+    """
+    element = positive("length", length) / whole("elements", elements, 1)
+    stiffness, mass = bending_element(element, positive("bending", bending))
+    mass = mass * positive("mass_per_length", mass_per_length)
+    nodes = elements + 1
+    names = [f"{kind}{node}" for node in range(nodes) for kind in ("w", "slope")]
+    ends = one_of("left", left, ENDS), one_of("right", right, ENDS)
+    held = {"free": 0, "pinned": 1, "clamped": 2}
+    fixed = [*range(held[ends[0]]), *range(2 * elements, 2 * elements + held[ends[1]])]
+    kept = np.setdiff1d(np.arange(2 * nodes), fixed)
+    if not len(kept):
+        raise ValueError("a beam of one element with both ends clamped has no freedom; take more elements")
+    at = {names[dof]: k for k, dof in enumerate(kept)}
+    if f"w{elements}" in at:
+        at["tip"] = at[f"w{elements}"]
+    cut = np.ix_(kept, kept)
+    return Matrices(chained(mass, elements, 2)[cut], None, chained(stiffness, elements, 2)[cut], at=at)
+
+
+def bending_element(length: float, bending: float) -> tuple[Array, Array]:
+    """Return stiffness, and mass for unit mass per length, of a beam element in w, w_x at its two ends."""
+    h = length
+    stiffness = np.array(
+        [
+            [12, 6 * h, -12, 6 * h],
+            [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+            [-12, -6 * h, 12, -6 * h],
+            [6 * h, 2 * h**2, -6 * h, 4 * h**2],
+        ]
+    )
+    mass = np.array(
+        [
+            [156, 22 * h, 54, -13 * h],
+            [22 * h, 4 * h**2, 13 * h, -3 * h**2],
+            [54, 13 * h, 156, -22 * h],
+            [-13 * h, -3 * h**2, -22 * h, 4 * h**2],
+        ]
+    )
+    return stiffness * bending / h**3, mass * h / 420
+
+
+def chained(element: Array, count: int, freedoms: int) -> Array:
+    """Return the matrix of `count` equal elements in a row; neighbours share `freedoms` freedoms."""
+    row = np.zeros((freedoms * (count + 1), freedoms * (count + 1)))
+    for k in range(count):
+        here = slice(freedoms * k, freedoms * k + len(element))
+        row[here, here] += element
+    return row
