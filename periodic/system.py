@@ -296,12 +296,20 @@ class Timed(System, Protocol):
 
     @property
     def frequency(self) -> Sequence[str]:
-        """Names of the parameters whose product is the angular frequency Omega (rad/s)."""
+        """Names of the parameters whose product is the angular frequency Omega (rad/s).
+
+        A system may have `frequency_factor` too, by which that product is then multiplied.
+        """
 
 
 def frequency_of(system: System) -> tuple[str, ...]:
     """Return the names of the parameters whose product is Omega; none where the system does not tell."""
     return tuple(cast(Timed, system).frequency) if hasattr(system, "frequency") else ()
+
+
+def frequency_factor_of(system: System) -> float:
+    """Return what the product of the parameters `frequency_of` is multiplied by to be Omega."""
+    return float(getattr(system, "frequency_factor", 1.0))
 
 
 def compiling(system: System) -> Compiling | None:

@@ -29,7 +29,7 @@ from .parts.films.regressions import (
 from .parts.films.squeeze import SqueezeFilm
 from .parts.films.thickness import CalibratedThickness, GivenThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
-from .parts.mechanics.forces import HarmonicForce
+from .parts.mechanics.forces import ConstantForce, HarmonicForce
 from .parts.mechanics.inertia import Mass, ReducedMass
 from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
 from .scenes.door import scene, scene_names
@@ -48,6 +48,7 @@ __all__ = [
     "CompiledSystem",
     "CompilerError",
     "Compliance",
+    "ConstantForce",
     "ConstantThickness",
     "ContactDamping",
     "ContactLaw",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from periodic.orbit.scheme import Array
-from periodic.system import System, VariableLike, frequency_of
+from periodic.system import System, VariableLike, frequency_factor_of, frequency_of
 
 KINDS = {"states": "states", "algebraics": "unknowns", "parameters": "parameters"}
 """The groups that make an orbit's numbers, and what a sentence calls them."""
@@ -79,6 +79,8 @@ class Layout:
     frequency : tuple of str
         Names of the parameters whose product is Omega (rad/s), d/dt = Omega d/dtau; none where the system
         does not tell.
+    factor : float
+        What that product is multiplied by to be Omega.
     """
 
     states: tuple[Quantity, ...]
@@ -86,6 +88,7 @@ class Layout:
     outputs: tuple[Quantity, ...]
     parameters: tuple[Quantity, ...]
     frequency: tuple[str, ...] = ()
+    factor: float = 1.0
 
     def __post_init__(self) -> None:
         known = [q.name for q in self.parameters]
@@ -121,7 +124,7 @@ class Layout:
                 "times in s are not known; the system must name the parameters that make its frequency"
             )
         values = {q.name: q.scale * float(v) for q, v in zip(self.parameters, parameter, strict=True)}
-        found = math.prod(values[name] for name in self.frequency)
+        found = self.factor * math.prod(values[name] for name in self.frequency)
         if not 0 < found < math.inf:
             raise ValueError(f"frequency {' * '.join(self.frequency)} is {found}; it must be positive")
         return found
@@ -248,4 +251,5 @@ def layout_of(system: System) -> Layout:
         quantities(system.outputs),
         quantities(system.parameters),
         frequency_of(system),
+        frequency_factor_of(system),
     )

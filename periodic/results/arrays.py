@@ -100,7 +100,7 @@ def attributes(record: Record) -> dict[str, Any]:
     points = record.points
     quantities = {g: [[q.name, q.unit, q.scale] for q in getattr(record.layout, g)] for g in GROUPS}
     said = {
-        "layout": {**quantities, "frequency": record.layout.frequency},
+        "layout": {**quantities, "frequency": record.layout.frequency, "factor": record.layout.factor},
         "labels": {p.label.value: p.label.critical for p in points},
         "stop": _said(record.stop),
         "stop_backwards": record.stop_backwards and _said(record.stop_backwards),
@@ -179,8 +179,8 @@ def record_of(arrays: Arrays, attributes: Mapping[str, Any]) -> Record:
 
 
 def _layout(said: dict[str, Any]) -> Layout:
-    frequency = tuple(said.pop("frequency"))
-    return Layout(**{name: tuple(Quantity(*q) for q in said[name]) for name in GROUPS}, frequency=frequency)
+    groups = {name: tuple(Quantity(*q) for q in said[name]) for name in GROUPS}
+    return Layout(**groups, frequency=tuple(said["frequency"]), factor=float(said.get("factor", 1.0)))
 
 
 def _label(text: str, critical: bool) -> Label:

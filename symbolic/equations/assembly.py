@@ -1,27 +1,35 @@
 """The workbench on which parts lay their terms before a model is compiled.
 
-Parts write excitation with `sine` and `cosine`, which are sin tau and cos tau in the compiled system and zero
-in the unexcited one.
+Parts write excitation with `sine` and `cosine`, which are sin theta and cos theta, theta = Omega t, in the
+compiled system and zero in the unexcited one, and with `harmonic` of any rational order.
 
-Independent variable: the phase tau = omega t of the excitation. A coordinate q brings the states q and
+Independent variable: the phase tau = omega t, 2 pi of which are one period of all that the parts ask for:
+tau = theta and omega = Omega unless a part uses another order than 1. A coordinate q brings the states q and
 q' = dq/dtau, so that dq/dt = omega q' and the equation of motion reads m omega^2 q'' = sum of forces.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import casadi as ca
 
 from symbolic.checks import typed
+from symbolic.equations.excitation import Excitation, Order
+from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, State, Unknown
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
 
 
 class Contributor(Protocol):
     """What lays terms on the workbench: every part."""
+
+    @property
+    def owner(self) -> str:
+        """What its bare numbers belong to: names of coordinates or of a contact, or a name of its own."""
 
     def contribute(self, assembly: Assembly) -> None:
         """Add forces, states, unknowns, rows, outputs and switches.
@@ -56,21 +64,18 @@ class Assembly:
 
     Parameters
     ----------
-    phase : casadi.SX
-        tau.
-    sine, cosine : casadi.SX
-        Excitation: sin tau and cos tau in the compiled system, zero in the unexcited one.
+    excitation : Excitation
+        Its angle, harmonics and frequency.
+    numbers : Numbers
+        What becomes the parameters of the model.
     omega : casadi.SX
-        Placeholder of the angular frequency, so that dq/dt = omega dq/dtau.
+        Placeholder of the angular frequency of the phase, so that dq/dt = omega dq/dtau.
     """
 
-    phase: ca.SX = field(default_factory=lambda: ca.SX.sym("tau"))
-    sine: ca.SX = field(default_factory=lambda: ca.SX.sym("sin_tau"))
-    cosine: ca.SX = field(default_factory=lambda: ca.SX.sym("cos_tau"))
+    excitation: Excitation = field(default_factory=Excitation)
+    numbers: Numbers = field(default_factory=Numbers)
     omega: ca.SX = field(default_factory=lambda: ca.SX.sym("omega"))
-    frequency: ca.SX | None = field(default=None, init=False)
-    parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
-    owners: dict[str, Parameter] = field(default_factory=dict, init=False)
+    owner: str = field(default="", init=False)
     motions: dict[Coordinate, Motion] = field(default_factory=dict, init=False)
     states: list[State] = field(default_factory=list, init=False)
     unknowns: list[Unknown] = field(default_factory=list, init=False)
@@ -89,12 +94,94 @@ class Assembly:
             In any order.
         """
         for part in parts:
-            part.contribute(self)
+            with self.owned(part.owner):
+                part.contribute(self)
 
     def close(self) -> None:
         """Let what several parts have built together add its terms."""
-        for joint in self.joints.values():
-            joint.close(self)
+        for place, joint in self.joints.items():
+            with self.owned(str(getattr(place, "name", ""))):
+                joint.close(self)
+
+    @contextmanager
+    def owned(self, owner: str) -> Iterator[None]:
+        """Let bare numbers inside the block belong to an owner, by whose name they may be called.
+
+        Parameters
+        ----------
+        owner : str
+            Its name.
+
+        Yields
+        ------
+        None
+            Nothing.
+        """
+        before, self.owner = self.owner, owner
+        try:
+            yield
+        finally:
+            self.owner = before
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """The parameters of the model by name, as the numbers so far come to."""
+        return {name: parameter for name, (parameter, _) in self.numbers.named().items()}
+
+    @property
+    def sine(self) -> ca.SX:
+        """sin theta in the compiled system, zero in the unexcited one."""
+        return self.excitation.wave()[0]
+
+    @property
+    def cosine(self) -> ca.SX:
+        """cos theta in the compiled system, zero in the unexcited one."""
+        return self.excitation.wave()[1]
+
+    @property
+    def phase(self) -> ca.SX:
+        """theta = Omega t, for terms of period 2 pi in it; zero in the unexcited system."""
+        return self.excitation.theta()
+
+    def angle(self, order: Order = 1) -> ca.SX:
+        """Return theta = Omega t itself, for terms that repeat as cos(order theta) does.
+
+        Balls of a bearing at theta/n + 2 pi i/n with theta the angle of ball passage make a term of order 1.
+
+        Parameters
+        ----------
+        order : int, float, str or Fraction
+            A positive rational number.
+
+        Returns
+        -------
+        casadi.SX
+            theta in rad; zero in the unexcited system.
+        """
+        return self.excitation.theta(order)
+
+    def harmonic(self, order: Order = 1, phase: ca.SX | float = 0.0) -> ca.SX:
+        """Return cos(order theta + phase), theta = Omega t.
+
+        Parameters
+        ----------
+        order : int, float, str or Fraction
+            A positive rational number; text as "1/2".
+        phase : casadi.SX or float
+            In rad.
+
+        Returns
+        -------
+        casadi.SX
+            The harmonic; zero in the unexcited system.
+
+        Raises
+        ------
+        ValueError
+            For an order that is not positive, or not rational with a denominator up to 1000.
+        """
+        sine, cosine = self.excitation.wave(order)
+        return cosine * ca.cos(phase) - sine * ca.sin(phase)
 
     @property
     def described(self) -> list[tuple[Variable, ca.SX]]:
@@ -108,7 +195,8 @@ class Assembly:
         Parameters
         ----------
         value : float or Parameter
-            Bare numbers of one name and value are one parameter.
+            Bare numbers of one name and value are one parameter; where values differ they are named by
+            their owner, the coordinates of the part, as m_x and m_y.
         name : str
             What a bare number is called.
         unit : str
@@ -122,21 +210,12 @@ class Assembly:
         Raises
         ------
         ValueError
-            Where the name is another parameter's already, or the value no finite number.
+            For a value that is no finite number.
         """
-        item = value if isinstance(value, Parameter) else Parameter(name, value, unit)
-        known = self.parameters.setdefault(item.name, item)
-        bare = item is not value
-        same = known.value == item.value and (bare or self.owners.setdefault(item.name, item) is item)
-        if not same:
-            raise ValueError(
-                f"parameter {item.name!r} is defined twice ({known.value} and {item.value}); "
-                f"share one symbolic.parameter, or give the second a name of its own"
-            )
-        return known.symbol
+        return self.numbers.symbol(value, name, unit, self.owner)
 
     def excite(self, frequency: ca.SX) -> None:
-        """Set omega, the angular frequency of the excitation.
+        """Set Omega, the angular frequency of the excitation: theta = Omega t.
 
         Parameters
         ----------
@@ -148,9 +227,10 @@ class Assembly:
         ValueError
             Where another part excites the model at another frequency.
         """
-        if self.frequency is not None and not ca.is_equal(self.frequency, frequency, 10):
+        frequency, known = self.numbers.canonical(frequency), self.excitation.frequency
+        if known is not None and not ca.is_equal(known, frequency, 10):
             raise ValueError("two parts excite the model at different frequencies; all must share one")
-        self.frequency = frequency
+        self.excitation.frequency = frequency
 
     def nominal(self, expression: ca.SX) -> float:
         """Return the value of an expression at the parameters' nominal values.
@@ -166,13 +246,13 @@ class Assembly:
             Its value (SI).
         """
         expression = self.with_frequency(expression)
-        items = list(self.parameters.values())
+        items = [number.parameter for number in self.numbers.taken]
         symbols = ca.vertcat(*[item.symbol for item in items])
         values = [item.value for item in items]
         return float(ca.Function("nominal", [symbols], [expression])(values))
 
     def with_frequency(self, expression: ca.SX) -> ca.SX:
-        """Replace the placeholder omega by the frequency of the excitation.
+        """Replace the placeholder omega by the frequency of the phase: Omega times the common order.
 
         A model without excitation keeps omega = 2 pi / period as a parameter of its own.
 
@@ -186,9 +266,11 @@ class Assembly:
         casadi.SX
             The expression without the placeholder.
         """
-        if self.frequency is None:
-            self.frequency = self.parameter(Parameter("omega", 1.0, "rad/s"), "omega")
-        return ca.substitute(expression, self.omega, self.frequency)
+        if self.excitation.frequency is None:
+            self.excitation.frequency = self.parameter(Parameter("omega", 1.0, "rad/s"), "omega")
+        common = self.excitation.fundamental
+        frequency = self.excitation.frequency if common == 1 else float(common) * self.excitation.frequency
+        return ca.substitute(expression, self.omega, frequency)
 
     def state(self, name: str, unit: str, scale: float, rest: ca.SX) -> State:
         """Add a differential state.
@@ -260,9 +342,8 @@ class Assembly:
         typed("coordinate", coordinate, Coordinate, "a Coordinate, as symbolic.coordinate returns it")
         if coordinate not in self.motions:
             length = coordinate.scale or 1.0
-            zero = ca.SX(0)
-            position = self.state(coordinate.name, coordinate.unit, length, zero)
-            velocity = self.state(f"{coordinate.name}'", coordinate.unit, length, zero)
+            position = self.state(coordinate.name, coordinate.unit, length, ca.SX(coordinate.start))
+            velocity = self.state(f"{coordinate.name}'", coordinate.unit, length, ca.SX(0))
             self.motions[coordinate] = Motion(position, velocity, ca.SX(0), ca.SX(0))
         return self.motions[coordinate]
 

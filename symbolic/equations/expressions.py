@@ -19,8 +19,9 @@ from symbolic.equations.assembly import Assembly
 class Expressions:
     """The scaled symbolic system.
 
-    `waved` are residual and outputs in terms of the symbols `waves` (sin tau, cos tau) of the excitation;
-    `unexcited` is the residual without it. `moved` is where an `increment` takes the unknowns.
+    `waved` are residual and outputs in terms of the symbols `waves` of the excitation, sin(k tau) and
+    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `moved` is
+    where an `increment` takes the unknowns.
     """
 
     rate: ca.SX
@@ -30,6 +31,7 @@ class Expressions:
     parameter: ca.SX
     residual: ca.SX
     unexcited: ca.SX
+    harmonics: tuple[int, ...]
     waves: ca.SX
     waved: ca.SX
     frequency: ca.SX
@@ -50,16 +52,19 @@ def expressed(assembly: Assembly) -> Expressions:
     _check_frequency(assembly)
     packed = _Packed(assembly)
     outputs = [expression for _, expression in assembly.described]
-    unknowns = assembly.unknowns
+    unknowns, excitation = assembly.unknowns, assembly.excitation
     moved = packed.scaled([u.moved for u in unknowns])
     return Expressions(
         rate=packed.rate,
         state=packed.state,
         algebraic=packed.unknown,
-        phase=assembly.phase,
+        phase=packed.phase,
         parameter=packed.parameter,
         residual=packed.scaled(rows),
-        unexcited=packed.scaled(rows, ca.SX.zeros(2)),
+        unexcited=ca.substitute(
+            packed.scaled(rows, ca.SX.zeros(packed.waves.size1())), packed.phase, ca.SX(0)
+        ),
+        harmonics=tuple(int(order / excitation.fundamental) for order in excitation.orders),
         waves=packed.waves,
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
@@ -77,23 +82,27 @@ class _Packed:
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly = assembly
-        states, unknowns, parameters = assembly.states, assembly.unknowns, assembly.parameters.values()
+        states, unknowns = assembly.states, assembly.unknowns
+        parameters = [symbols for _, symbols in assembly.numbers.named().values()]
+        self.phase = ca.SX.sym("tau")
         self.rate, self.state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
         self.parameter = ca.SX.sym("parameter", len(parameters))
         self.unknown = ca.SX.sym("algebraic", len(unknowns))
         self.increment = ca.SX.sym("increment", len(unknowns))
-        self.waves = ca.vertcat(assembly.sine, assembly.cosine)
+        self.waves = assembly.excitation.symbols
         scales = ca.vertcat(*[s.scale for s in states])
         old = [s.derivative for s in states] + [s.symbol for s in states]
-        old += [u.symbol for u in unknowns] + [p.symbol for p in parameters]
+        old += [u.symbol for u in unknowns] + [symbol for symbols in parameters for symbol in symbols]
+        values = [self.parameter[k] for k, symbols in enumerate(parameters) for _ in symbols]
         self.old = ca.vertcat(*old)
-        self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, self.parameter)
+        self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, *values)
 
     def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None) -> ca.SX:
-        """Stack expressions in SI as one in the vectors; `waved` stands for sin tau and cos tau."""
-        phase = self.assembly.phase
+        """Stack expressions in SI as one in the vectors; `waved` stands for the waves."""
+        excitation = self.assembly.excitation
         stacked = self.assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
-        given = ca.vertcat(ca.sin(phase), ca.cos(phase)) if waved is None else waved
+        stacked = excitation.timed(stacked, self.phase)
+        given = excitation.values(self.phase) if waved is None else waved
         return ca.substitute(ca.substitute(stacked, self.waves, given), self.old, self.new)
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from symbolic.checks import refusal, typed
+from symbolic.checks import refusal, text, typed
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.variables import Parameter
 
 PART = "Part, as symbolic.Mass(x, 1.0) is"
 
@@ -14,12 +15,60 @@ PART = "Part, as symbolic.Mass(x, 1.0) is"
 class Part:
     """One term of the equations of motion; what it adds it says in `contribute`."""
 
+    @property
+    def owner(self) -> str:
+        """What its bare numbers belong to: the names of the coordinates, or of the contact, it is laid on."""
+        values = [getattr(self, name) for name in getattr(self, "__dataclass_fields__", {})]
+        places = [item for value in values for item in (value if isinstance(value, tuple) else (value,))]
+        named = [p for p in places if not isinstance(p, Parameter)]
+        return "_".join(p.name for p in named if isinstance(getattr(p, "name", None), str))
+
+    def named(self, name: str) -> Named:
+        """Return the part with a name by which its numbers are called where that is needed.
+
+        Parameters
+        ----------
+        name : str
+            As "left", for k_left.
+
+        Returns
+        -------
+        Named
+            The same part.
+        """
+        return Named(self, text("name of a part", name))
+
     def contribute(self, assembly: Assembly) -> None:
         """Add this part's forces, states, unknowns, outputs and switches to the assembly."""
         raise NotImplementedError
 
     def __add__(self, other: Part | Model) -> Model:
         return Model((self,)) + other
+
+
+@dataclass(frozen=True)
+class Named(Part):
+    """A part with a name, by which its bare numbers are called where several of a kind differ.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    name : str
+        Its name.
+    """
+
+    part: Part
+    name: str
+
+    @property
+    def owner(self) -> str:
+        """The name."""
+        return self.name
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add what the part adds."""
+        self.part.contribute(assembly)
 
 
 @dataclass(frozen=True)

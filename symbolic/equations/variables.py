@@ -87,16 +87,20 @@ class Coordinate:
         Name, and SI unit.
     scale : float, optional
         Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+    start : float
+        Where the search for a rest begins (SI): beyond a clearance, where the part's own force holds.
 
     Raises
     ------
     ValueError
-        For a scale that is not a positive number, and a name that is empty, no text or has a '.
+        For a scale that is not a positive number, a start that is not finite, and a name that is empty, no
+        text or has a '.
     """
 
     name: str
     unit: str = "m"
     scale: float | None = None
+    start: float = 0.0
 
     def __post_init__(self) -> None:
         if "'" in text("name of a coordinate", self.name):
@@ -104,6 +108,7 @@ class Coordinate:
         typed(f"unit of {self.name!r}", self.unit, str, "a text")
         if self.scale is not None:
             positive(f"scale of coordinate {self.name!r}", self.scale)
+        object.__setattr__(self, "start", finite(f"start of coordinate {self.name!r}", self.start))
 
 
 def parameter(name: str, value: float, unit: str = "") -> Parameter:
@@ -131,7 +136,7 @@ def parameter(name: str, value: float, unit: str = "") -> Parameter:
     return Parameter(name, value, unit)
 
 
-def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordinate:
+def coordinate(name: str, unit: str = "m", scale: float | None = None, start: float = 0.0) -> Coordinate:
     """Return a mechanical coordinate.
 
     Parameters
@@ -140,6 +145,8 @@ def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordi
         Name, and SI unit.
     scale : float, optional
         Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+    start : float
+        Where the search for a rest begins (SI): needed where the rest lies beyond a clearance.
 
     Returns
     -------
@@ -149,6 +156,7 @@ def coordinate(name: str, unit: str = "m", scale: float | None = None) -> Coordi
     Raises
     ------
     ValueError
-        For a scale that is not a positive number, and a name that is empty, no text or has a '.
+        For a scale that is not a positive number, a start that is not finite, and a name that is empty, no
+        text or has a '.
     """
-    return Coordinate(name, unit, scale)
+    return Coordinate(name, unit, scale, start)

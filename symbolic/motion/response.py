@@ -1,9 +1,11 @@
 """The linear frequency response of a model: complex amplitudes of its outputs under the excitation.
 
-Rows R and outputs Y are linearised at rest, in the excitation s = sin tau, c = cos tau as well. With
-dx = Re(X exp(i tau)), dz = Re(Z exp(i tau)), s = Re(-i exp(i tau)) and c = Re(exp(i tau)),
+Rows R and outputs Y are linearised at rest, in the excitation s = sin(k tau), c = cos(k tau) as well. With
+dx = Re(X exp(i k tau)), dz = Re(Z exp(i k tau)), s = Re(-i exp(i k tau)) and c = Re(exp(i k tau)),
 
-    (R_x + i R_x') X + R_z Z = i R_s - R_c,      A = (Y_x + i Y_x') X + Y_z Z - i Y_s + Y_c.
+    (R_x + i k R_x') X + R_z Z = i R_s - R_c,      A = (Y_x + i k Y_x') X + Y_z Z - i Y_s + Y_c
+
+for each harmonic k of the excitation: one, k = 1, unless parts ask for several orders.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ SINGULAR = 1e14
 
 @dataclass(frozen=True, kw_only=True)
 class FrequencyResponse:
-    """Response over N values of a parameter: output j is rest + Re(amplitude exp(i tau)).
+    """Response over N values of a parameter: output j is rest + Re sum_k amplitude_k exp(i k tau).
 
     Parameters
     ----------
@@ -39,10 +41,12 @@ class FrequencyResponse:
         The parameter, SI.
     omega : ndarray, shape (N,)
         Excitation frequency in rad/s.
-    amplitude : ndarray of complex, shape (N, outputs)
+    amplitude : ndarray of complex, shape (N, outputs, harmonics)
         In SI; infinite on an undamped resonance.
     rest : ndarray, shape (N, outputs)
         The outputs at rest, SI.
+    harmonics : tuple of int
+        The k.
     """
 
     parameter: str
@@ -51,9 +55,10 @@ class FrequencyResponse:
     omega: Array
     amplitude: Complex
     rest: Array
+    harmonics: tuple[int, ...] = (1,)
 
     def complex_amplitude(self, output: str) -> Complex:
-        """Return the complex amplitude of one output.
+        """Return the complex amplitude of one output, that of the lowest harmonic.
 
         Parameters
         ----------
@@ -65,10 +70,10 @@ class FrequencyResponse:
         ndarray, shape (N,)
             Complex amplitudes, SI.
         """
-        return self.amplitude[:, self._index(output)]
+        return self.amplitude[:, self._index(output), 0]
 
     def peak_to_peak(self, output: str) -> Array:
-        """Return maximum minus minimum over a period, 2 |amplitude|.
+        """Return maximum minus minimum over a period: 2 |amplitude| of a single harmonic.
 
         Parameters
         ----------
@@ -80,10 +85,11 @@ class FrequencyResponse:
         ndarray, shape (N,)
             Peaks to peak, SI.
         """
-        return 2 * np.abs(self.complex_amplitude(output))
+        found = self.amplitude[:, self._index(output)]
+        return np.array([swing(each, self.harmonics) for each in found])
 
     def phase(self, output: str) -> Array:
-        """Return the phase relative to cos tau.
+        """Return the phase relative to cos(k tau), k the lowest harmonic.
 
         Parameters
         ----------
@@ -133,22 +139,57 @@ class Excited:
         e = self.system.expressions
         variables = (e.rate, ca.vertcat(e.state, e.algebraic), e.waves)
         results = [e.waved, *(ca.jacobian(e.waved, v) for v in variables)]
-        results = [ca.substitute(result, e.waves, ca.SX.zeros(2)) for result in results]
+        still = ca.SX.zeros(e.waves.size1())
+        results = [ca.substitute(result, e.waves, still) for result in results]
         return ca.Function("linear", [e.rate, e.state, e.algebraic, e.parameter, e.phase], results)
 
+    @property
+    def harmonics(self) -> tuple[int, ...]:
+        """Those of the excitation, the lowest first; the first one where there is no excitation."""
+        return self.system.expressions.harmonics or (1,)
+
     def amplitudes(self, modes: Modes) -> tuple[Complex, Array]:
-        """Return complex amplitudes and rest values of the outputs, both (outputs,), SI."""
-        n, size = len(modes.state), len(modes.state) + len(modes.algebraic)
+        """Return amplitudes (outputs, harmonics) and rest values (outputs,) of the outputs, SI."""
         # The phase may stand in rows on its own, beside the excitation; at rest it is taken as 0.
-        arguments = (np.zeros(n), modes.state, modes.algebraic, modes.parameter, 0.0)
+        arguments = (np.zeros(len(modes.state)), modes.state, modes.algebraic, modes.parameter, 0.0)
         value, rate, unknown, waves = (np.array(result) for result in self._linear(*arguments))
-        dynamic = unknown.astype(np.complex128)
-        dynamic[:, :n] += 1j * rate
-        forced = waves @ np.array([-1j, 1])
-        if np.linalg.cond(equilibrated(dynamic[:size])) > SINGULAR:
-            return np.full(len(value) - size, complex(np.inf)), value[size:, 0]
-        motion = np.linalg.solve(dynamic[:size], -forced[:size])
-        return dynamic[size:] @ motion + forced[size:], value[size:, 0]
+        forced = np.zeros((len(value), 1), dtype=np.complex128)
+        if waves.size:
+            forced = waves.reshape(len(value), -1, 2) @ np.array([-1j, 1])
+        found = [
+            _answer(k, rate, unknown, forced[:, i], len(modes.algebraic))
+            for i, k in enumerate(self.harmonics)
+        ]
+        size = len(modes.state) + len(modes.algebraic)
+        return np.array(found).T, value[size:, 0]
+
+
+def _answer(k: int, rate: Array, unknown: Array, forced: Complex, unknowns: int) -> Complex:
+    """Amplitudes of the outputs at one harmonic, infinite where the rows are singular."""
+    n = rate.shape[1]
+    dynamic, size = unknown.astype(np.complex128), n + unknowns
+    dynamic[:, :n] += 1j * k * rate
+    if np.linalg.cond(equilibrated(dynamic[:size])) > SINGULAR:
+        return np.full(len(forced) - size, complex(np.inf))
+    motion = np.linalg.solve(dynamic[:size], -forced[:size])
+    return dynamic[size:] @ motion + forced[size:]
+
+
+def swing(amplitudes: Complex, harmonics: Sequence[int]) -> float:
+    """Return maximum minus minimum of Re sum_k amplitude_k exp(i k tau) over a period."""
+    if len(harmonics) == 1 or not np.isfinite(amplitudes).all():
+        return 2 * float(np.abs(amplitudes).max())
+    k = np.array(harmonics)
+
+    def value(tau: Array, order: int = 0) -> Array:
+        return ((1j * k) ** order * amplitudes * np.exp(1j * np.multiply.outer(tau, k))).real.sum(axis=-1)
+
+    tau = np.linspace(0, 2 * np.pi, 32 * int(k.max()), endpoint=False)
+    ends = tau[[value(tau).argmin(), value(tau).argmax()]]
+    for _ in range(4):
+        bent = value(ends, 2)
+        ends = ends - np.where(bent != 0, value(ends, 1) / np.where(bent != 0, bent, 1), 0)
+    return float(max(np.ptp(value(tau)), np.ptp(value(ends))))
 
 
 def equilibrated(matrix: Complex) -> Complex:
@@ -201,6 +242,7 @@ def response(
         omega=np.array([modes.omega for modes in found]),
         amplitude=np.array([amplitude for amplitude, _ in answers]),
         rest=np.array([rest for _, rest in answers]),
+        harmonics=excited.harmonics,
     )
 
 
@@ -213,12 +255,12 @@ def peak(
     """
     excited, index = Excited(system), [variable.name for variable in system.outputs].index(output)
 
-    def swing(value: float) -> float:
+    def height(value: float) -> float:
         found = excited.finder.modes(with_values(system, {parameter: float(value)}))
-        return 2 * abs(excited.amplitudes(found)[0][index])
+        return swing(excited.amplitudes(found)[0][index], excited.harmonics)
 
     width = abs(bounds[1] - bounds[0])
     best = scipy.optimize.minimize_scalar(
-        lambda value: -swing(value), bounds=bounds, method="bounded", options={"xatol": 1e-9 * width}
+        lambda value: -height(value), bounds=bounds, method="bounded", options={"xatol": 1e-9 * width}
     )
-    return float(best.x), swing(best.x)
+    return float(best.x), height(best.x)

@@ -38,8 +38,9 @@ class Equations(Part):
     """dx/dt = f(x, p), and 0 = g(x, z, p) with unknowns z.
 
     Functions are called once, with symbols as attributes: x.NAME of states and unknowns, p.NAME of the
-    parameters, and in an excited system wave.sin and wave.cos of tau = Omega t as a third argument. Of
-    coordinates of other parts they see the position x.NAME (SI) and the speed x.NAME_dot.
+    parameters, and in an excited system wave.sin and wave.cos of tau = Omega t as a third argument, and
+    wave.angle, tau itself: 0 where the system is not excited, for terms that repeat with tau. Of coordinates
+    of other parts they see the position x.NAME (SI) and the speed x.NAME_dot.
 
     Parameters
     ----------
@@ -129,7 +130,8 @@ class Equations(Part):
             symbols |= {q.name: assembly.motion(q).position.symbol, f"{q.name}_dot": assembly.speed_of(q)}
         arguments: list[object] = [Names("x", symbols), Names("p", p)]
         if self.frequency is not None:
-            arguments.append(Names("wave", {"sin": assembly.sine, "cos": assembly.cosine}))
+            wave = {"sin": assembly.sine, "cos": assembly.cosine, "angle": assembly.phase}
+            arguments.append(Names("wave", wave))
 
         found = called("function", self.function, arguments)
         wanted = [*states, *self.unknowns]

@@ -68,14 +68,26 @@ class CompiledSystem:
     )
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
 
-    @cached_property
+    @property
     def frequency(self) -> tuple[str, ...]:
-        """Names of the parameters whose product is omega (rad/s); none where it is no product."""
+        """Names of the parameters whose product is omega (rad/s) but for a factor; () if it is none."""
+        return self._product[0]
+
+    @property
+    def frequency_factor(self) -> float:
+        """What the product of the parameters `frequency` is multiplied by to be omega."""
+        return self._product[1]
+
+    @cached_property
+    def _product(self) -> tuple[tuple[str, ...], float]:
         e = self.expressions
         used = ca.jacobian(e.frequency, e.parameter).sparsity().get_col()
         product = math.prod((e.parameter[k] for k in used), start=ca.SX(1))
-        equal = ca.is_equal(product, e.frequency, 10)
-        return tuple(self.parameters[k].name for k in used) if equal else ()
+        ratio = ca.Function("ratio", [e.parameter], [e.frequency / product])
+        there = [np.full(len(self.parameters), 1.0), np.linspace(0.7, 2.3, len(self.parameters))]
+        factor, other = (float(ratio(values)) for values in there)
+        names = tuple(self.parameters[k].name for k in used)
+        return (names, factor) if abs(other - factor) <= 1e-13 * abs(factor) else ((), 1.0)
 
     @cached_property
     def _omega(self) -> ca.Function:

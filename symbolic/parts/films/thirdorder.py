@@ -48,18 +48,12 @@ class ThirdOrder(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Let the parts say what they have to say, then eliminate the coordinate."""
-        inner = Assembly(
-            phase=assembly.phase, sine=assembly.sine, cosine=assembly.cosine, omega=assembly.omega
-        )
+        inner = Assembly(assembly.excitation, assembly.numbers, assembly.omega)
         inner.lay(self.model.parts)
         coordinate, junction, film = _sole(inner)
         reduced = _Reduced(film, [])
         junction.film = reduced
-        junction.close(inner)
-        for item in inner.parameters.values():
-            assembly.parameter(item, item.name)
-        if inner.frequency is not None:
-            assembly.excite(inner.frequency)
+        inner.close()
         assembly.states.extend(reduced.states)
         _eliminate(assembly, inner, coordinate, reduced)
 
@@ -130,7 +124,11 @@ def _eliminate(assembly: Assembly, inner: Assembly, coordinate: Coordinate, redu
 
 def _along(inner: Assembly, states: list[State], expression: ca.SX) -> ca.SX:
     """Return the total derivative d/dtau of an expression in h, h', h'' and the phase."""
-    arguments = [state.symbol for state in states] + [inner.sine, inner.cosine, inner.phase]
+    excitation, turns = inner.excitation, [float(order) for order in inner.excitation.orders]
+    pairs = [excitation.waves[order] for order in excitation.orders]
+    arguments = [state.symbol for state in states] + [wave for pair in pairs for wave in pair]
     rates = [state.symbol for state in states[1:]] + [states[-1].derivative]
-    rates += [inner.cosine, -inner.sine, ca.SX(1)]
+    for turn, (sine, cosine) in zip(turns, pairs, strict=True):
+        rates += [turn * excitation.pace * cosine, -turn * excitation.pace * sine]
+    arguments, rates = [*arguments, excitation.angle], [*rates, excitation.pace]
     return ca.jtimes(expression, ca.vertcat(*arguments), ca.vertcat(*rates))

@@ -1,0 +1,100 @@
+"""The numbers of a model and their names: bare numbers are named by what they are, and by what they belong to
+where that is not enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from symbolic.equations.variables import Parameter, Value
+
+
+@dataclass(frozen=True, eq=False)
+class Number:
+    """A number of a part: a user's parameter, or a bare number of an owner ("" for the model itself)."""
+
+    parameter: Parameter
+    owner: str
+    bare: bool
+
+    @property
+    def kept(self) -> bool:
+        """Whether nothing but its own name is left to it."""
+        return not (self.bare and self.owner)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """All numbers of a model, each under a symbol of its own.
+
+    Numbers of one name and one value are one parameter. Where values differ, bare numbers take the name of
+    their owner behind their own, as m_x and m_y; where one owner has several, they are counted in the order
+    of the parts, as k_x_1 and k_x_2.
+    """
+
+    taken: list[Number] = field(default_factory=list)
+
+    def symbol(self, value: Value, name: str, unit: str, owner: str) -> ca.SX:
+        """Return the symbol of a part's number, one for all numbers of one owner, name and value."""
+        bare = not isinstance(value, Parameter)
+        wanted = value if isinstance(value, Parameter) else Parameter(name, value, unit)
+        for known in self.taken:
+            same = known.bare and bare and known.owner == owner and _alike(known.parameter, wanted)
+            if same or known.parameter is wanted:
+                return known.parameter.symbol
+        self.taken.append(Number(wanted, owner, bare))
+        return wanted.symbol
+
+    def named(self) -> dict[str, tuple[Parameter, list[ca.SX]]]:
+        """Return the parameters by name, in the order of the parts, with the symbols that stand for each.
+
+        Raises ValueError where two of them come to one name.
+        """
+        found: dict[str, tuple[Parameter, list[ca.SX]]] = {}
+        for number in self.taken:
+            name, own = self._name(number), number.parameter
+            if name not in found:
+                found[name] = (own if own.name == name else Parameter(name, own.value, own.unit), [])
+            first, symbols = found[name]
+            if not _fits(first, own) or (not number.bare and self._rival(number)):
+                raise ValueError(
+                    f"parameter {name!r} is defined twice ({first.value} and {own.value}); "
+                    f"share one symbolic.parameter, or give the second a name of its own"
+                )
+            symbols.append(own.symbol)
+        return found
+
+    def canonical(self, expression: ca.SX) -> ca.SX:
+        """Return an expression with one symbol for all numbers of one name and value."""
+        for k, number in enumerate(self.taken):
+            first = next(n for n in self.taken[: k + 1] if _alike(n.parameter, number.parameter))
+            expression = ca.substitute(expression, number.parameter.symbol, first.parameter.symbol)
+        return expression
+
+    def _rival(self, number: Number) -> bool:
+        """Whether an earlier parameter of the user's has the same name."""
+        same = [n for n in self.taken if not n.bare and n.parameter.name == number.parameter.name]
+        return same[0] is not number
+
+    def _name(self, number: Number) -> str:
+        own = number.parameter
+        group = [n for n in self.taken if n.parameter.name == own.name]
+        if number.kept or all(_fits(n.parameter, own) for n in group):
+            return own.name
+        fitting = [n for n in group if n.kept and _fits(n.parameter, own)]
+        if fitting:
+            return own.name
+        mine = [n for n in group if not n.kept and n.owner == number.owner]
+        behind = f"_{mine.index(number) + 1}" if len(mine) > 1 else ""
+        return f"{own.name}_{number.owner}{behind}"
+
+
+def _alike(a: Parameter, b: Parameter) -> bool:
+    return a.name == b.name and _fits(a, b)
+
+
+def _fits(a: Parameter, b: Parameter) -> bool:
+    """Whether two numbers of one name may be one parameter: of one value, and no two units."""
+    return a.value == b.value and (a.unit == b.unit or "" in (a.unit, b.unit))
