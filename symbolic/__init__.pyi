@@ -36,14 +36,20 @@ from .scenes.door import scene, scene_names
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
 from .structures.beam import beam
+from .structures.campbell import Campbell, campbell
 from .structures.files import read_matrices
+from .structures.flexibility import flexibility
 from .structures.matrices import Matrices
+from .structures.reduction import Reduction, craig_bampton, residual_modes
+from .structures.ross import ross_matrices
+from .structures.shaft import ShaftDisc, shaft
 from .system.compile import compile
 from .system.compiled import CompiledSystem
 
 __all__ = [
     "Assembly",
     "CalibratedThickness",
+    "Campbell",
     "CavitatingFilm",
     "CompiledSystem",
     "CompilerError",
@@ -80,8 +86,10 @@ __all__ = [
     "QuasistaticFilm",
     "RampedWaviness",
     "ReducedMass",
+    "Reduction",
     "RegressionThickness",
     "Rolling",
+    "ShaftDisc",
     "Simulation",
     "Spring",
     "SqueezeFilm",
@@ -92,18 +100,24 @@ __all__ = [
     "Variable",
     "Waviness",
     "beam",
+    "campbell",
     "combine",
     "compile",
     "coordinate",
+    "craig_bampton",
+    "flexibility",
     "functions",
     "modes",
     "parameter",
     "read_matrices",
     "register_contact_law",
+    "residual_modes",
     "resonance",
     "response",
+    "ross_matrices",
     "scene",
     "scene_names",
+    "shaft",
     "simulate",
 ]
 
