@@ -32,6 +32,7 @@ from .parts.films.thirdorder import ThirdOrder
 from .parts.mechanics.forces import ConstantForce, HarmonicForce
 from .parts.mechanics.inertia import Mass, ReducedMass
 from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
+from .parts.structure import Structure
 from .scenes.door import scene, scene_names
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
@@ -94,6 +95,7 @@ __all__ = [
     "Spring",
     "SqueezeFilm",
     "Stop",
+    "Structure",
     "Support",
     "ThicknessLaw",
     "ThirdOrder",

@@ -20,7 +20,7 @@ import casadi as ca
 from symbolic.checks import typed
 from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.numbers import Numbers
-from symbolic.equations.terms import Motion, State, Unknown
+from symbolic.equations.terms import Motion, Place, State, Unknown
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
 
 
@@ -46,6 +46,28 @@ class Joint(Protocol):
 
     def close(self, assembly: Assembly) -> None:
         """Add what the parts have said together.
+
+        Parameters
+        ----------
+        assembly : Assembly
+            The workbench of the model, all its parts laid.
+        """
+
+
+class Body(Protocol):
+    """A linear structure of many degrees of freedom, at some of which other parts act."""
+
+    def expand(self, assembly: Assembly) -> None:
+        """Add all its degrees of freedom, each with two states.
+
+        Parameters
+        ----------
+        assembly : Assembly
+            The workbench of the model, all its parts laid.
+        """
+
+    def condense(self, assembly: Assembly) -> None:
+        """Leave two states at each place where other parts act, and add the force there as an unknown.
 
         Parameters
         ----------
@@ -84,6 +106,8 @@ class Assembly:
     outputs: list[tuple[Variable, ca.SX]] = field(default_factory=list, init=False)
     switches: list[tuple[SwitchInfo, ca.SX]] = field(default_factory=list, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
+    structures: list[Body] = field(default_factory=list, init=False)
+    places: list[Place] = field(default_factory=list, init=False)
 
     def lay(self, parts: Iterable[Contributor]) -> None:
         """Let parts add their terms.
@@ -97,11 +121,19 @@ class Assembly:
             with self.owned(part.owner):
                 part.contribute(self)
 
-    def close(self) -> None:
-        """Let what several parts have built together add its terms."""
+    def close(self, condense: bool = True) -> None:
+        """Let what several parts have built together add its terms, structures last of all.
+
+        Parameters
+        ----------
+        condense : bool
+            Whether structures keep two states at their places alone.
+        """
         for place, joint in self.joints.items():
             with self.owned(str(getattr(place, "name", ""))):
                 joint.close(self)
+        for structure in self.structures:
+            (structure.condense if condense else structure.expand)(self)
 
     @contextmanager
     def owned(self, owner: str) -> Iterator[None]:
@@ -300,7 +332,14 @@ class Assembly:
         self.states.append(new)
         return new
 
-    def algebraic(self, name: str, rest: ca.SX, move: Callable[[ca.SX, ca.SX], ca.SX] = _added) -> ca.SX:
+    def algebraic(
+        self,
+        name: str,
+        rest: ca.SX,
+        move: Callable[[ca.SX, ca.SX], ca.SX] = _added,
+        unit: str = "",
+        scale: float = 1.0,
+    ) -> ca.SX:
         """Add an algebraic unknown.
 
         Parameters
@@ -311,6 +350,10 @@ class Assembly:
             Where the search for a rest begins.
         move : callable
             (unknown, Newton increment) to where the increment takes it.
+        unit : str
+            SI unit of `scale` times the unknown.
+        scale : float
+            SI value of one internal unit.
 
         Returns
         -------
@@ -318,7 +361,7 @@ class Assembly:
             Its symbol.
         """
         symbol, increment = ca.SX.sym(name), ca.SX.sym(f"d{name}")
-        self.unknowns.append(Unknown(name, symbol, increment, rest, move(symbol, increment)))
+        self.unknowns.append(Unknown(name, symbol, increment, rest, move(symbol, increment), unit, scale))
         return symbol
 
     def motion(self, coordinate: Coordinate) -> Motion:

@@ -3,6 +3,9 @@
 With x the scaled states, z the algebraic unknowns and ' = d/dtau, the residual has the rows
 
     q_i' - v_i = 0,    m omega^2 v_i' - sum of forces = 0,    rows of the parts' own states,    0 = g
+
+The two rows of a condensed structure's place are empty: its motion follows from the forces on the structure,
+which are unknowns, each with the row force - sum of forces = 0 in g.
 """
 
 from __future__ import annotations
@@ -49,6 +52,7 @@ def expressed(assembly: Assembly) -> Expressions:
     Raises ValueError for a coordinate without mass and for an excitation without a positive frequency.
     """
     rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
+    rows += [place.unknown - place.motion.force / place.unit_force for place in assembly.places]
     _check_frequency(assembly)
     packed = _Packed(assembly)
     outputs = [expression for _, expression in assembly.described]
@@ -108,7 +112,11 @@ class _Packed:
 
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:
     rows: list[ca.SX] = []
+    held = [id(place.motion) for place in assembly.places]
     for coordinate, motion in assembly.motions.items():
+        if id(motion) in held:
+            rows += [ca.SX(0), ca.SX(0)]
+            continue
         inertia = motion.mass * assembly.omega**2
         if motion.mass.is_zero() or not assembly.nominal(motion.mass) > 0:
             raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")

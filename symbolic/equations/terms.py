@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 
@@ -21,10 +22,10 @@ class State:
 
 @dataclass
 class Unknown:
-    """An algebraic unknown: it exists at collocation points only and has no scale of its own.
+    """An algebraic unknown: it exists at collocation points only, and enters the equations unscaled.
 
     `moved` is where a Newton increment takes it, an expression in `symbol` and `increment`; their sum where
-    the unknown has no better way.
+    the unknown has no better way. `scale` times it is a quantity in `unit`.
     """
 
     name: str
@@ -32,6 +33,8 @@ class Unknown:
     increment: ca.SX
     rest: ca.SX
     moved: ca.SX
+    unit: str = ""
+    scale: float = 1.0
 
 
 @dataclass
@@ -42,3 +45,14 @@ class Motion:
     velocity: State
     mass: ca.SX
     force: ca.SX
+
+
+@dataclass
+class Place:
+    """A degree of freedom of a condensed structure: its motion, and the force on it as an unknown."""
+
+    motion: Motion
+    structure: Any
+    freedom: int
+    unknown: ca.SX
+    unit_force: float

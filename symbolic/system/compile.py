@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from symbolic.checks import refusal
+from symbolic.checks import refusal, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.expressions import expressed
 from symbolic.equations.model import Model, Part
 from symbolic.equations.variables import Variable
 from symbolic.kernels.choice import Kernels, chosen
+from symbolic.structures.linearpart import Held
 from symbolic.system.compiled import CompiledSystem
 
 
-def compile(model: Model | Part, kernels: Kernels | str | None = None) -> CompiledSystem:  # noqa: A001
+def compile(  # noqa: A001
+    model: Model | Part, kernels: Kernels | str | None = None, *, condense: bool = True
+) -> CompiledSystem:
     """Return the System of a model: scaled residual, exact derivatives and outputs, evaluated in batch.
 
     Parameters
@@ -21,6 +24,9 @@ def compile(model: Model | Part, kernels: Kernels | str | None = None) -> Compil
     kernels : Kernels or str, optional
         The back end. "auto" takes C where there is a compiler and it pays, "numpy" needs none, "c" compiles
         at once. By default the environment's ORBITRACE_KERNELS, or else "auto".
+    condense : bool
+        Whether a `Structure` brings two states at each place where other parts act, its linear rest
+        condensed exactly; else each of its degrees of freedom brings two.
 
     Returns
     -------
@@ -39,7 +45,7 @@ def compile(model: Model | Part, kernels: Kernels | str | None = None) -> Compil
     if not isinstance(model, Model | Part):
         raise refusal("model", model, "a Model or a Part, as the sum of symbolic.Mass(x, 1.0) and others is")
     assembly.lay(model.parts if isinstance(model, Model) else (model,))
-    assembly.close()
+    assembly.close(typed("condense", condense, bool, "True or False"))
     system = _system(assembly, back_end)
     for variable in (*system.states, *system.algebraics):
         if variable.name in [p.name for p in system.parameters]:
@@ -53,10 +59,29 @@ def _system(assembly: Assembly, kernels: Kernels) -> CompiledSystem:
     expressions = expressed(assembly)  # first: a model without excitation gets its parameter omega here
     return CompiledSystem(
         states=tuple(Variable(s.name, s.unit, s.scale) for s in assembly.states),
-        algebraics=tuple(Variable(u.name) for u in assembly.unknowns),
+        algebraics=tuple(Variable(u.name, u.unit, u.scale) for u in assembly.unknowns),
         parameters=tuple(Variable(p.name, p.unit, 1.0, p.value) for p in assembly.parameters.values()),
         outputs=tuple(variable for variable, _ in assembly.described),
         switches=tuple(info for info, _ in assembly.switches),
         expressions=expressions,
         kernels=kernels,
+        held=_held(assembly),
+    )
+
+
+def _held(assembly: Assembly) -> tuple[Held, ...]:
+    """The places of condensed structures."""
+    states = [id(s) for s in assembly.states]
+    unknowns = [u.name for u in assembly.unknowns]
+    return tuple(
+        Held(
+            structure=place.structure,
+            freedom=place.freedom,
+            position=states.index(id(place.motion.position)),
+            velocity=states.index(id(place.motion.velocity)),
+            force=unknowns.index(place.unknown.name()),
+            scale=place.motion.position.scale,
+            unit_force=place.unit_force,
+        )
+        for place in assembly.places
     )

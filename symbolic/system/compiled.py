@@ -19,6 +19,7 @@ from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.kernels.choice import Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 from symbolic.kernels.second import Gradient, Symbols, contraction
+from symbolic.structures.linearpart import Held, LinearPart
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,8 @@ class CompiledSystem:
         What the kernels are generated from.
     kernels : Kernels
         The back end.
+    held : tuple of Held
+        Places of condensed structures.
     """
 
     states: tuple[Variable, ...]
@@ -60,6 +63,7 @@ class CompiledSystem:
     switches: tuple[SwitchInfo, ...]
     expressions: Expressions = field(repr=False)
     kernels: Kernels = Kernels.NUMPY
+    held: tuple[Held, ...] = ()
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
         default_factory=dict, init=False, repr=False
     )
@@ -107,6 +111,17 @@ class CompiledSystem:
             omega in rad/s.
         """
         return float(self._omega(parameter))
+
+    @cached_property
+    def linear(self) -> LinearPart | None:
+        """The structures condensed at their places; None of a model without any."""
+        e = self.expressions
+        slope = ca.Function("slope", [e.parameter], [ca.jacobian(e.frequency, e.parameter)])
+
+        def gradient(parameter: Array) -> Array:
+            return np.array(ca.DM(slope(parameter)).full()).ravel()
+
+        return LinearPart(self.held, self.omega, gradient) if self.held else None
 
     @property
     def nominal(self) -> Array:

@@ -1,0 +1,286 @@
+"""A linear structure of any size in a model: M q'' + (C + Omega G) q' + K q = forces at its places."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from symbolic.checks import mapping, positive, refusal, text, whole
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.terms import Place
+from symbolic.equations.variables import Coordinate
+from symbolic.structures.damping import ModalDamping
+from symbolic.structures.matrices import Matrices, dense
+from symbolic.structures.modal import ModalForm, modal_form
+
+Freedoms = int | Sequence[int]
+Given = Any
+"""A matrix, a function of the speed Omega (rad/s) that returns one, or None."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure(Part):
+    """A linear structure M q'' + (C + Omega G) q' + K q = f of n degrees of freedom, from any program.
+
+    `structure["tip"]` is the coordinate of a place, to which springs, stops, films and forces attach as to
+    any other. A model is compiled with its places alone, the rest of the structure condensed exactly
+    (`symbolic.compile`); with ``condense=False`` every degree of freedom brings its two states.
+
+    Parameters
+    ----------
+    M, C, K : array_like, scipy.sparse or callable
+        Mass (kg), damping (N s/m; None for none) and stiffness (N/m), shape (n, n); or a function of the
+        speed Omega in rad/s that returns one. The speed is the frequency of the excitation. In the place of
+        M a `Matrices` may be given, and nothing else then.
+    G : array_like, scipy.sparse or callable, optional
+        Gyroscopic matrix; it is multiplied by Omega.
+    at : mapping of str to int or sequence of int
+        Places by the index of a degree of freedom, counted from 0; a sequence makes a tuple of coordinates.
+    damping : float or sequence of float
+        Damping ratio of all modes, or of the lowest ones, the last counting for all above. Structural
+        damping eta, which has no meaning in time but in a harmonic motion, is that of a ratio eta/2 there.
+    rayleigh : tuple of float
+        (a, b) of C = a M + b K in 1/s and s.
+    modes : int, optional
+        How many of the lowest modes are integrated in time; the others follow with their static
+        flexibility. By default all up to 500 degrees of freedom, else 200.
+    name : str
+        What its degrees of freedom are called by.
+    scale : float
+        Length (m) taken as one inside.
+
+    Raises
+    ------
+    ValueError
+        For matrices that are not square, of different sizes or not finite, a mass that is singular or not
+        positive definite, places out of range, and damping that is negative.
+    """
+
+    M: Given
+    C: Given = None
+    K: Given = None
+    G: Given = None
+    at: Mapping[str, Freedoms] = field(default_factory=dict)
+    damping: float | Sequence[float] = 0.0
+    rayleigh: tuple[float, float] = (0.0, 0.0)
+    modes: int | None = None
+    name: str = "structure"
+    scale: float = 1.0
+    coordinates: dict[int, Coordinate] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        text("name of a structure", self.name)
+        positive(f"scale of {self.name!r}", self.scale)
+        if isinstance(self.M, Matrices):
+            self._unpack(self.M)
+        if self.K is None:
+            raise refusal(
+                "K", self.K, "a square matrix of numbers, or a function of the speed that returns one"
+            )
+        first = self.matrices(0.0)
+        for place, where in mapping("at", self.at).items():
+            self._checked(text("a place", place), where, first.size)
+        if self.modes is not None and whole("modes", self.modes, 1) > first.size:
+            raise refusal("modes", self.modes, f"a whole number from 1 to {first.size}")
+        _ = self.modal_damping
+
+    def _unpack(self, given: Matrices) -> None:
+        if any(value is not None for value in (self.C, self.K, self.G)):
+            raise refusal("M", given, "a matrix where C, K or G are given too; Matrices hold all of them")
+        for name in ("M", "C", "K", "G"):
+            object.__setattr__(self, name, getattr(given, name))
+        object.__setattr__(self, "at", {**given.at, **mapping("at", self.at)})
+
+    @property
+    def size(self) -> int:
+        """Number n of degrees of freedom."""
+        return self.matrices(0.0).size
+
+    @property
+    def varying(self) -> bool:
+        """Whether a matrix depends on the speed."""
+        return self.G is not None or any(callable(given) for given in (self.M, self.C, self.K))
+
+    @cached_property
+    def modal_damping(self) -> ModalDamping:
+        """What is damped mode by mode."""
+        ratio = self.damping if isinstance(self.damping, int | float) else tuple(self.damping)
+        try:
+            mass, stiffness = self.rayleigh
+        except (TypeError, ValueError):
+            raise refusal("rayleigh", self.rayleigh, "two numbers (a, b)") from None
+        return ModalDamping(ratio, mass, stiffness)
+
+    @cached_property
+    def _known(self) -> dict[float, Matrices]:
+        return {}
+
+    def matrices(self, speed: float) -> Matrices:
+        """Return M, C, K and G at a speed Omega (rad/s).
+
+        Parameters
+        ----------
+        speed : float
+            Omega.
+
+        Returns
+        -------
+        Matrices
+            The matrices, without what is damped mode by mode.
+        """
+        key = float(speed) if self.varying else 0.0
+        if key not in self._known:
+            self._known.clear()
+            given = [_at(g, key) for g in (self.M, self.C, self.K, self.G)]
+            self._known[key] = Matrices(*given)
+        return self._known[key]
+
+    def __getitem__(self, place: str) -> Any:
+        """Return the coordinate of a place; a tuple of them of one with several degrees of freedom."""
+        if place not in self.at:
+            raise refusal(
+                "place", place, f"one of {', '.join(self.at) or 'none: the structure names no place'}"
+            )
+        where = self.at[place]
+        if isinstance(where, int | np.integer):
+            return self._coordinate(int(where), place)
+        return tuple(self._coordinate(int(k), f"{place} {i + 1}") for i, k in enumerate(where))
+
+    def freedom(self, index: int) -> Coordinate:
+        """Return the coordinate of a degree of freedom.
+
+        Parameters
+        ----------
+        index : int
+            Its index, counted from 0.
+
+        Returns
+        -------
+        Coordinate
+            That of its place, where it has one.
+
+        Raises
+        ------
+        ValueError
+            For an index out of range.
+        """
+        self._checked(f"freedom {index}", index, self.size)
+        return self._coordinate(index, self._place_of(index) or f"{self.name} {index + 1}")
+
+    def _place_of(self, index: int) -> str | None:
+        return next(
+            (place for place, k in self.at.items() if isinstance(k, int | np.integer) and k == index), None
+        )
+
+    def _coordinate(self, index: int, name: str) -> Coordinate:
+        return self.coordinates.setdefault(index, Coordinate(name, "m", self.scale))
+
+    @staticmethod
+    def _checked(place: str, where: Any, size: int) -> None:
+        try:
+            indices = [operator.index(k) for k in ([where] if np.ndim(where) == 0 else where)]
+        except TypeError:
+            indices = []
+        if isinstance(where, bool) or not indices or not all(0 <= k < size for k in indices):
+            raise refusal(f"the index of place {place!r}", where, f"a whole number from 0 to {size - 1}")
+
+    def _used(self, assembly: Assembly) -> Iterator[tuple[int, Coordinate]]:
+        """Yield the degrees of freedom at which other parts act, with their coordinates."""
+        for index, coordinate in sorted(self.coordinates.items()):
+            if coordinate in assembly.motions:
+                yield index, coordinate
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Take part in the model; what it adds follows when all parts have spoken."""
+        assembly.structures.append(self)
+
+    def modal(self, speed: float) -> ModalForm:
+        """Return the modes at a speed.
+
+        Parameters
+        ----------
+        speed : float
+            Omega in rad/s.
+
+        Returns
+        -------
+        ModalForm
+            The modes, in SI.
+
+        Raises
+        ------
+        ValueError
+            Where modes do not span the motion of the structure.
+        """
+        key = float(speed) if self.varying else 0.0
+        if key not in self._forms:
+            if len(self._forms) > 8:
+                self._forms.clear()
+            given = self.matrices(speed), self.modal_damping, speed, self.modes
+            self._forms[key] = modal_form(self.name, *given)
+        return self._forms[key]
+
+    @cached_property
+    def _forms(self) -> dict[float, ModalForm]:
+        return {}
+
+    def condense(self, assembly: Assembly) -> None:
+        """Leave two states at each place in use, the force there an unknown of its own."""
+        used = list(self._used(assembly))
+        if not used:
+            raise ValueError(f"structure {self.name!r} has no place where another part acts; it needs one")
+        form = self.modal(assembly.nominal(assembly.omega))
+        flexibility = np.diag(form.static([k for k, _ in used])[[k for k, _ in used]])
+        for (index, coordinate), softness in zip(used, flexibility, strict=True):
+            motion = assembly.motion(coordinate)
+            if not motion.mass.is_zero():
+                raise ValueError(
+                    f"coordinate {coordinate.name!r} of structure {self.name!r} has a Mass; add it to the "
+                    f"structure's M, or compile with condense=False"
+                )
+            unit = self.scale / softness if softness > 0 else 1.0
+            name = f"force on {coordinate.name}"
+            unknown = assembly.algebraic(name, ca.SX(0), unit="N", scale=unit)
+            assembly.output(name, "N", unit * unknown)
+            assembly.places.append(Place(motion, self, index, unknown, unit))
+
+    def expand(self, assembly: Assembly) -> None:
+        """Add the two states of every degree of freedom, inertia and internal forces."""
+        speed = assembly.nominal(assembly.omega)
+        if any(callable(given) for given in (self.M, self.C, self.K)):
+            raise ValueError(
+                f"structure {self.name!r} has matrices that are functions of the speed; "
+                f"it can be condensed only, condense=True"
+            )
+        matrices = self.matrices(speed)
+        motions = [assembly.motion(self.freedom(k)) for k in range(matrices.size)]
+        position = ca.vertcat(*[m.position.symbol for m in motions])
+        velocity = assembly.omega * ca.vertcat(*[m.velocity.symbol for m in motions])
+        rates = assembly.omega**2 * ca.vertcat(*[m.velocity.derivative for m in motions])
+        mass, damping = _constant(matrices.M), dense(matrices.C)
+        if not self.modal_damping.none:
+            damping = damping + self.modal_damping.matrix(matrices)
+        internal = _constant(matrices.K) @ position + _constant(damping) @ velocity
+        if matrices.G is not None:
+            internal += assembly.omega * (_constant(matrices.G) @ velocity)
+        diagonal = matrices.M.diagonal()
+        inertia = mass @ rates
+        for k, motion in enumerate(motions):
+            motion.mass += float(diagonal[k])
+            motion.force -= internal[k] + inertia[k] - float(diagonal[k]) * rates[k]
+
+
+def _at(given: Given, speed: float) -> Given:
+    return given(speed) if callable(given) else given
+
+
+def _constant(matrix: Any) -> ca.DM:
+    """A matrix as CasADi takes it, zeros left out."""
+    return ca.sparsify(ca.DM(dense(matrix)))

@@ -1,0 +1,188 @@
+"""The linear part of a condensed system: what `periodic.system.LinearPart` asks for, from modes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from symbolic.arrays import Array, Complex
+from symbolic.structures.modal import ModalForm
+
+STEP = 1e-5
+"""Relative step of differences in the speed."""
+
+
+class Modal(Protocol):
+    """A structure that tells its modes."""
+
+    name: str
+
+    @property
+    def varying(self) -> bool:
+        """Whether they depend on the speed."""
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom."""
+
+    def modal(self, speed: float) -> ModalForm:
+        """Return the modes at a speed in rad/s."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """A place of a structure: its degree of freedom, its two states, its force, and their units in SI."""
+
+    structure: Modal
+    freedom: int
+    position: int
+    velocity: int
+    force: int
+    scale: float
+    unit_force: float
+
+
+@dataclass(frozen=True)
+class Modes:
+    """dz/dtau = exponents z + inputs f, x = Re outputs z + direct f + direct_rate df/dtau; all scaled.
+
+    Parameters
+    ----------
+    exponents : ndarray of complex, shape (J,)
+        Per rad.
+    inputs : ndarray of complex, shape (J, k)
+        How the k forces drive z.
+    outputs : ndarray of complex, shape (2k, J)
+        The 2k states in `LinearPart.states`.
+    direct, direct_rate : ndarray, shape (2k, k)
+        What forces do to them at once.
+    """
+
+    exponents: Complex
+    inputs: Complex
+    outputs: Complex
+    direct: Array
+    direct_rate: Array
+
+
+@dataclass(frozen=True)
+class LinearPart:
+    """The structures of a model, condensed at their places.
+
+    Parameters
+    ----------
+    places : sequence of Held
+        The places, those of one structure together.
+    omega : callable
+        Parameters (p,) to the speed Omega in rad/s.
+    frequency : callable
+        Parameters (p,) to the derivative of Omega in them, (p,).
+    """
+
+    places: Sequence[Held]
+    omega: Callable[[Array], float]
+    frequency: Callable[[Array], Array]
+    _known: dict[float, Modes] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def states(self) -> tuple[int, ...]:
+        """Indices of the states that the structures give: position and velocity of each place."""
+        return tuple(k for place in self.places for k in (place.position, place.velocity))
+
+    @property
+    def forces(self) -> tuple[int, ...]:
+        """Indices of the unknowns that are the forces on the structures."""
+        return tuple(place.force for place in self.places)
+
+    @property
+    def size(self) -> int:
+        """Number of states of the structures."""
+        return sum(2 * structure.size for structure in self.structures)
+
+    @property
+    def structures(self) -> list[Modal]:
+        """The structures, in order."""
+        return list({id(place.structure): place.structure for place in self.places}.values())
+
+    def modes(self, parameter: Array) -> Modes:
+        """Return the modes at parameters (p,)."""
+        return self._at(self.omega(parameter))
+
+    def slope(self, parameter: Array, index: int) -> Modes | None:
+        """Return the derivative of the modes in a parameter, None where they do not depend on it."""
+        rate, omega = float(self.frequency(parameter)[index]), self.omega(parameter)
+        if rate == 0.0:
+            return None
+        at = self._at(omega)
+        scale = -rate / omega
+        if any(structure.varying for structure in self.structures):
+            return self._difference(omega, rate)
+        velocity = np.zeros((len(self.states), 1))
+        velocity[1::2] = scale
+        zero = np.zeros_like(at.direct)
+        return Modes(scale * at.exponents, scale * at.inputs, velocity * at.outputs, zero, zero)
+
+    def _difference(self, omega: float, rate: float) -> Modes:
+        """The same by differences, the modes of the two sides matched and normalised alike."""
+        middle = self._at(omega)
+        step = STEP * omega
+        ends = [_like(middle, self._at(omega + sign * step)) for sign in (-1, 1)]
+        parts = [
+            rate * (getattr(ends[1], name) - getattr(ends[0], name)) / (2 * step)
+            for name in ("exponents", "inputs", "outputs", "direct", "direct_rate")
+        ]
+        return Modes(*parts)
+
+    def _at(self, omega: float) -> Modes:
+        if omega not in self._known:
+            if len(self._known) > 8:
+                self._known.clear()
+            self._known[omega] = self._made(omega)
+        return self._known[omega]
+
+    def _made(self, omega: float) -> Modes:
+        exponents, inputs, outputs = [], [], []
+        k = len(self.places)
+        direct, direct_rate = np.zeros((2 * k, k)), np.zeros((2 * k, k))
+        for structure in self.structures:
+            mine = [i for i, place in enumerate(self.places) if place.structure is structure]
+            form = structure.modal(omega)
+            at = [self.places[i].freedom for i in mine]
+            forces = np.array([self.places[i].unit_force for i in mine])
+            lengths = np.array([self.places[i].scale for i in mine])
+            drive = np.zeros((len(form.exponents), k), dtype=complex)
+            drive[:, mine] = form.inputs[:, at] * forces / omega
+            shape = np.zeros((2 * k, len(form.exponents)), dtype=complex)
+            shape[[2 * i for i in mine]] = form.shapes[at] / lengths[:, None]
+            shape[[2 * i + 1 for i in mine]] = form.shapes[at] * form.exponents / (lengths[:, None] * omega)
+            residual = form.residual(at)[at] * forces / lengths[:, None]
+            direct[np.ix_([2 * i for i in mine], mine)] = residual
+            direct_rate[np.ix_([2 * i + 1 for i in mine], mine)] = residual
+            exponents.append(form.exponents / omega)
+            inputs.append(drive)
+            outputs.append(shape)
+        return Modes(
+            np.concatenate(exponents),
+            np.concatenate(inputs),
+            np.concatenate(outputs, axis=1),
+            direct,
+            direct_rate,
+        )
+
+
+def _like(given: Modes, other: Modes) -> Modes:
+    """Modes near to others in their order and with their factors: of each, the largest input is alike."""
+    order = [int(np.abs(other.exponents - value).argmin()) for value in given.exponents]
+    if len(set(order)) < len(order):
+        raise ArithmeticError("modes of the structure cannot be followed in the speed: two of them meet")
+    largest = np.abs(given.inputs).argmax(axis=1)
+    each = np.arange(len(order))
+    inputs, outputs = other.inputs[order], other.outputs[:, order]
+    here, there = given.inputs[each, largest], inputs[each, largest]
+    factor = np.where(there == 0, 1.0, here / np.where(there == 0, 1.0, there))
+    return Modes(
+        other.exponents[order], inputs * factor[:, None], outputs / factor, other.direct, other.direct_rate
+    )

@@ -1,0 +1,153 @@
+"""A linear structure as uncoupled complex modes: what integrates it exactly in time.
+
+    dz_j/dt = lambda_j z_j + sum_d input_jd f_d,   q_d = Re sum_j shape_dj z_j + sum_e residual_de f_e
+
+One of each conjugate pair stands for both. The rest of the modes, if they are not all kept, follow with
+their static flexibility.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from scipy.sparse.linalg import splu
+
+from symbolic.arrays import Array, Complex
+from symbolic.structures.damping import ModalDamping
+from symbolic.structures.matrices import DENSE, Matrices, dense, modes, sparse
+
+MODES = 200
+"""How many modes of a structure of more than DENSE degrees of freedom are kept by default."""
+
+RIGID = 1e-10
+"""Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
+
+DEFECTIVE = 1e-6
+"""Relative distance of two exponents of a mode, or reciprocal condition of the eigenvectors, below which the
+modes are not enough to span the motion."""
+
+
+@dataclass(frozen=True)
+class ModalForm:
+    """The modes of a structure of n degrees of freedom.
+
+    Parameters
+    ----------
+    exponents : ndarray of complex, shape (J,)
+        lambda_j in 1/s.
+    shapes : ndarray of complex, shape (n, J)
+        Displacements q of z.
+    inputs : ndarray of complex, shape (J, n)
+        How forces drive z.
+    matrices : Matrices
+        The matrices that they are of.
+    complete : bool
+        Whether they are all.
+    """
+
+    exponents: Complex
+    shapes: Complex
+    inputs: Complex
+    matrices: Matrices
+    complete: bool = True
+
+    def residual(self, freedoms: Sequence[int]) -> Array:
+        """Return the static flexibility (n, k) in m/N of the modes that are left out."""
+        n, k = len(self.shapes), len(freedoms)
+        if self.complete:
+            return np.zeros((n, k))
+        loads = np.zeros((n, k))
+        loads[list(freedoms), np.arange(k)] = 1.0
+        stiffness = self.matrices.K
+        if sparse.issparse(stiffness):
+            whole: Array = np.array(splu(sparse.csc_array(stiffness)).solve(loads), dtype=float)
+        else:
+            whole = np.linalg.solve(stiffness, loads).astype(float)
+        return np.asarray(whole - self.static(freedoms))
+
+    def static(self, freedoms: Sequence[int]) -> Array:
+        """Return the static flexibility (n, k) in m/N of the modes."""
+        return np.asarray(-(self.shapes @ (self.inputs[:, list(freedoms)] / self.exponents[:, None])).real)
+
+
+def modal_form(
+    name: str, matrices: Matrices, damping: ModalDamping, speed: float, count: int | None
+) -> ModalForm:
+    """Return the modes of a structure at a speed Omega (rad/s), `count` of them where it is given.
+
+    Raises ValueError for a structure whose modes do not span its motion: rigid-body modes and critically
+    damped ones, and for one that is not stable.
+    """
+    n = matrices.size
+    own = matrices.C if matrices.G is None else matrices.C + speed * matrices.G
+    symmetric = abs(matrices.K - matrices.K.T).max() <= 1e-10 * abs(matrices.K).max()
+    wanted = count or (n if n <= DENSE else min(MODES, n // 2))
+    if symmetric:
+        squares, shapes = modes(matrices.K, matrices.M, wanted)
+        coupled = shapes.T @ (own @ shapes)
+        rates = np.diag(coupled)
+        size = np.abs(coupled).max(initial=0.0)
+        if size == 0 or np.abs(coupled - np.diag(rates)).max() < 1e-10 * size:
+            rates = rates + damping.rates(np.sqrt(np.maximum(squares, 0.0)))
+            return _uncoupled(name, matrices, squares, rates, shapes)
+    if n > DENSE or wanted < n:
+        raise ValueError(
+            f"structure {name!r} has {n} degrees of freedom and damping or gyroscopic terms that couple its "
+            f"modes; it must be reduced to {DENSE} at the most"
+        )
+    if not damping.none:
+        own = dense(own) + damping.matrix(matrices)
+    return _coupled(name, matrices, dense(own))
+
+
+def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shapes: Array) -> ModalForm:
+    """From real modes phi with q'' + rate q' + omega^2 q = phi' f."""
+    rigid = np.abs(squares) <= RIGID * max(np.abs(squares).max(), 1e-300)
+    if rigid.any() or (squares < 0).any():
+        kind = "rigid-body modes" if rigid.any() else "modes of negative stiffness"
+        raise ValueError(
+            f"structure {name!r} has {int((rigid | (squares < 0)).sum())} {kind}; condensation needs it "
+            f"held: add a stiffness to K, or compile it with condense=False"
+        )
+    root = np.sqrt((rates / 2) ** 2 - squares + 0j)
+    if (np.abs(root) < DEFECTIVE * np.sqrt(squares)).any():
+        raise ValueError(
+            f"structure {name!r} has a critically damped mode, whose two exponents are one; "
+            f"condensation needs them apart: change its damping a little"
+        )
+    first, second = -rates / 2 + root, -rates / 2 - root
+    oscillates = root.imag != 0
+    single = np.flatnonzero(~oscillates)
+    exponents = np.concatenate([first, second[single]])
+    drive = np.concatenate([1 / (2 * root), -1 / (2 * root[single])])
+    every = np.concatenate([shapes, shapes[:, single]], axis=1)
+    twice = np.concatenate([np.where(oscillates, 2.0, 1.0), np.ones(len(single))])
+    return ModalForm(
+        exponents, every * twice + 0j, drive[:, None] * every.T, matrices, shapes.shape[1] == matrices.size
+    )
+
+
+def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
+    """From the eigenvectors of the state matrix of (q, q')."""
+    n = matrices.size
+    mass = scipy.linalg.cho_factor(dense(matrices.M))
+    state = np.zeros((2 * n, 2 * n))
+    state[:n, n:] = np.eye(n)
+    state[n:, :n] = -scipy.linalg.cho_solve(mass, dense(matrices.K))
+    state[n:, n:] = -scipy.linalg.cho_solve(mass, damping)
+    scale = np.sqrt(np.abs(state[n:, :n]).max())
+    balance = np.repeat([1.0, 1 / scale], n)
+    values, vectors = np.linalg.eig(balance[:, None] * state / balance)
+    if np.linalg.cond(vectors) > 1 / DEFECTIVE**2 or np.abs(values).min() <= RIGID * scale:
+        raise ValueError(
+            f"structure {name!r} has modes that do not span its motion (rigid-body modes without damping, or "
+            f"critically damped ones); condensation needs them apart: change its matrices a little"
+        )
+    drive = np.linalg.inv(vectors)[:, n:] * balance[n:] @ scipy.linalg.cho_solve(mass, np.eye(n))
+    shapes = vectors[:n]
+    kept = values.imag >= 0
+    twice = np.where(values[kept].imag > 0, 2.0, 1.0)
+    return ModalForm(values[kept] + 0j, shapes[:, kept] * twice + 0j, drive[kept] + 0j, matrices)
