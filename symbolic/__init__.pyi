@@ -3,7 +3,7 @@
 from . import functions
 from .equations.assembly import Assembly
 from .equations.model import Model, Part, combine
-from .equations.variables import Coordinate, Parameter, Variable, coordinate, parameter
+from .equations.variables import Coordinate, Parameter, Variable, coordinate, coordinates, parameter
 from .integration.cvodes import IntegrationError
 from .kernels.choice import Kernels
 from .kernels.native import CompilerError
@@ -29,8 +29,12 @@ from .parts.films.regressions import (
 from .parts.films.squeeze import SqueezeFilm
 from .parts.films.thickness import CalibratedThickness, GivenThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
+from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
+from .parts.mechanics.driven import BaseMotion, PeriodicForce, VaryingSpring
 from .parts.mechanics.forces import ConstantForce, HarmonicForce
 from .parts.mechanics.inertia import Mass, ReducedMass
+from .parts.mechanics.piecewise import PiecewiseLinearSpring
+from .parts.mechanics.profiles import FourierSeries, Harmonic, Profile, Samples
 from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
 from .parts.structure import Structure
 from .scenes.door import scene, scene_names
@@ -49,6 +53,8 @@ from .system.compiled import CompiledSystem
 
 __all__ = [
     "Assembly",
+    "Backlash",
+    "BaseMotion",
     "CalibratedThickness",
     "Campbell",
     "CavitatingFilm",
@@ -67,9 +73,12 @@ __all__ = [
     "ElasticContact",
     "Equations",
     "ExplicitSqueezeFilm",
+    "FourierSeries",
     "FrequencyResponse",
+    "Gap",
     "GivenThickness",
     "HamrockDowsonThickness",
+    "Harmonic",
     "HarmonicForce",
     "Hertz",
     "HertzLaw",
@@ -81,15 +90,20 @@ __all__ = [
     "Model",
     "Modes",
     "NoRestError",
+    "OneSidedSpring",
     "Parameter",
     "Part",
+    "PeriodicForce",
+    "PiecewiseLinearSpring",
     "Preload",
+    "Profile",
     "QuasistaticFilm",
     "RampedWaviness",
     "ReducedMass",
     "Reduction",
     "RegressionThickness",
     "Rolling",
+    "Samples",
     "ShaftDisc",
     "Simulation",
     "Spring",
@@ -100,12 +114,14 @@ __all__ = [
     "ThicknessLaw",
     "ThirdOrder",
     "Variable",
+    "VaryingSpring",
     "Waviness",
     "beam",
     "campbell",
     "combine",
     "compile",
     "coordinate",
+    "coordinates",
     "craig_bampton",
     "flexibility",
     "functions",

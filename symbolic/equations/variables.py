@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from symbolic.checks import finite, positive, refusal, text, typed
+from symbolic.checks import finite, positive, refusal, text, typed, whole
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,13 @@ class Parameter:
 
 
 Value = float | Parameter
+
+
+def not_negative(field: str, value: Value) -> None:
+    """Refuse a part's number that is negative or not finite. Raises ValueError."""
+    number = finite(field, value.value if isinstance(value, Parameter) else value)
+    if number < 0:
+        raise refusal(field, number, "a number of at least 0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,3 +167,35 @@ def coordinate(name: str, unit: str = "m", scale: float | None = None, start: fl
         text or has a '.
     """
     return Coordinate(name, unit, scale, start)
+
+
+def coordinates(
+    name: str, count: int, unit: str = "m", scale: float | None = None, start: float = 0.0
+) -> tuple[Coordinate, ...]:
+    """Return a vector of coordinates, called by the name and a number from 1.
+
+    Parameters
+    ----------
+    name : str
+        As "x", for x1, x2, ...
+    count : int
+        How many.
+    unit : str
+        SI unit of each.
+    scale, start : float, optional
+        As of `coordinate`.
+
+    Returns
+    -------
+    tuple of Coordinate
+        One part is laid on each: ``sym.combine(sym.Mass(q, 1.0) for q in x)``.
+
+    Raises
+    ------
+    ValueError
+        For a count that is no positive whole number, and as `coordinate`.
+    """
+    return tuple(
+        Coordinate(f"{text('name of coordinates', name)}{k + 1}", unit, scale, start)
+        for k in range(whole("count of coordinates", count, 1))
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, not_negative
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,18 @@ class Mass(Part):
         The coordinate.
     m : float or Parameter
         m in kg.
+
+    Raises
+    ------
+    ValueError
+        For a negative mass.
     """
 
     q: Coordinate
     m: Value
+
+    def __post_init__(self) -> None:
+        not_negative("mass m", self.m)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add m to the coordinate's mass."""

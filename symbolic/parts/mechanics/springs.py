@@ -1,4 +1,4 @@
-"""Springs and dampers on a coordinate q, and between two."""
+"""Springs and dampers on a coordinate q, to ground or to another coordinate."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value
+from symbolic.parts.mechanics.ends import deflection, resist, speed
 
 
 @dataclass(frozen=True)
 class Spring(Part):
-    """Linear spring to ground: force -k q.
+    """Linear spring: force -k (q - r).
 
     Parameters
     ----------
@@ -19,20 +20,23 @@ class Spring(Part):
         The coordinate.
     k : float or Parameter
         k in N/m.
+    to : Coordinate, optional
+        The coordinate r at the other end; the ground, r = 0, where there is none.
     """
 
     q: Coordinate
     k: Value
+    to: Coordinate | None = None
 
     def contribute(self, assembly: Assembly) -> None:
-        """Add -k q."""
-        motion = assembly.motion(self.q)
-        motion.force -= assembly.parameter(self.k, "k", "N/m") * motion.position.symbol
+        """Add -k (q - r)."""
+        k = assembly.parameter(self.k, "k", "N/m")
+        resist(assembly, self.q, self.to, k * deflection(assembly, self.q, self.to))
 
 
 @dataclass(frozen=True)
 class CubicSpring(Part):
-    """Cubic spring to ground: force -k3 q^3.
+    """Cubic spring: force -k3 (q - r)^3.
 
     Parameters
     ----------
@@ -40,20 +44,23 @@ class CubicSpring(Part):
         The coordinate.
     k3 : float or Parameter
         k3 in N/m^3.
+    to : Coordinate, optional
+        The coordinate r at the other end; the ground, r = 0, where there is none.
     """
 
     q: Coordinate
     k3: Value
+    to: Coordinate | None = None
 
     def contribute(self, assembly: Assembly) -> None:
-        """Add -k3 q^3."""
-        motion = assembly.motion(self.q)
-        motion.force -= assembly.parameter(self.k3, "k3", "N/m^3") * motion.position.symbol**3
+        """Add -k3 (q - r)^3."""
+        k3 = assembly.parameter(self.k3, "k3", "N/m^3")
+        resist(assembly, self.q, self.to, k3 * deflection(assembly, self.q, self.to) ** 3)
 
 
 @dataclass(frozen=True)
 class Damper(Part):
-    """Viscous damper to ground: force -c dq/dt.
+    """Viscous damper: force -c d(q - r)/dt.
 
     Parameters
     ----------
@@ -61,15 +68,18 @@ class Damper(Part):
         The coordinate.
     c : float or Parameter
         c in N s/m.
+    to : Coordinate, optional
+        The coordinate r at the other end; the ground, r = 0, where there is none.
     """
 
     q: Coordinate
     c: Value
+    to: Coordinate | None = None
 
     def contribute(self, assembly: Assembly) -> None:
-        """Add -c dq/dt."""
-        damping = assembly.parameter(self.c, "c", "N s/m")
-        assembly.motion(self.q).force -= damping * assembly.speed_of(self.q)
+        """Add -c d(q - r)/dt."""
+        c = assembly.parameter(self.c, "c", "N s/m")
+        resist(assembly, self.q, self.to, c * speed(assembly, self.q, self.to))
 
 
 @dataclass(frozen=True)
