@@ -78,9 +78,9 @@ Value = float | Parameter
 
 
 def not_negative(field: str, value: Value) -> None:
-    """Refuse a part's number that is negative or not finite. Raises ValueError."""
-    number = finite(field, value.value if isinstance(value, Parameter) else value)
-    if number < 0:
+    """Refuse a part's number that is negative; what is none is refused on compilation. Raises ValueError."""
+    number = value.value if isinstance(value, Parameter) else value
+    if isinstance(number, int | float) and -math.inf < number < 0:
         raise refusal(field, number, "a number of at least 0")
 
 
