@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.bifurcations.doubling import known, passing
+from periodic.bifurcations.doubling import known, nearest, passing
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import noise
 from periodic.correction.solution import Solution
-from periodic.stability.winding import passes
+from periodic.stability.winding import passages
 
 TOUCHED = 0.01
 """What a touch leaves of prod (mu - 1), as a part of that at the step's ends."""
@@ -33,9 +33,15 @@ def touches(turn: Solution, base: Solution, new: Solution) -> bool:
 
 def branches_twice(base: Solution, new: Solution) -> bool:
     """Whether a pair of multipliers turns past +1 between two orbits."""
-    return passes(base.spectrum, new.spectrum, 1)
+    return bool(passages(base.spectrum, new.spectrum, 1))
 
 
 BRANCHING = TestFunction(
-    label=Label.BRANCH, value=branching, genuine=known, twice=branches_twice, touches=touches
+    label=Label.BRANCH,
+    value=branching,
+    genuine=known,
+    twice=branches_twice,
+    dips=lambda base, new: passages(base.spectrum, new.spectrum, 1),
+    local=lambda solution: nearest(solution.spectrum.nontrivial, 1),
+    touches=touches,
 )

@@ -8,7 +8,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.stability.spectrum import Complex
-from periodic.stability.winding import passes
+from periodic.stability.winding import passages
 
 NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
@@ -17,6 +17,15 @@ NEGATIVE = 1e-3
 def passing(found: Complex, at: int) -> float:
     """prod (mu - at) / (1 + |mu|) of given multipliers; each factor over its size, so that none overflows."""
     return float(np.prod((found - at) / (1 + np.abs(found))).real)
+
+
+def nearest(found: Complex, at: int) -> float:
+    """The two factors of `passing` that are nearest 0, with its sign: a pair about to pass.
+
+    The product of all dips wherever one of many pairs passes.
+    """
+    factors = np.abs((found - at) / (1 + np.abs(found)))
+    return float(np.sign(passing(found, at)) * np.prod(np.sort(factors)[:2]))
 
 
 def doubling(solution: Solution) -> float:
@@ -43,7 +52,14 @@ def doubles_twice(base: Solution, new: Solution) -> bool:
     """
     ends = [end.spectrum.multipliers for end in (base, new)]
     negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
-    return max(negative) > 1 or passes(base.spectrum, new.spectrum, -1)
+    return max(negative) > 1 or bool(passages(base.spectrum, new.spectrum, -1))
 
 
-DOUBLING = TestFunction(label=Label.DOUBLING, value=doubling, genuine=known, twice=doubles_twice)
+DOUBLING = TestFunction(
+    label=Label.DOUBLING,
+    value=doubling,
+    genuine=known,
+    twice=doubles_twice,
+    dips=lambda base, new: passages(base.spectrum, new.spectrum, -1),
+    local=lambda solution: nearest(solution.spectrum.nontrivial, -1),
+)

@@ -110,13 +110,25 @@ def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> li
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not test.twice(base, new):
         return []
-    sign = np.sign(ends[0])
-    between = second_change(
-        lambda distance: sign * value(stretch.at(distance)), ds, abs(ends[0]), abs(ends[1])
-    )
+    between = _between(stretch, new, ds, test)
     if between is None:
         return []
     return [found for span in ((0.0, between), (between, ds)) for found in _located(stretch, span, ds, test)]
+
+
+def _between(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> float | None:
+    """Return a distance at which a test function has another sign than at both ends of a step, if any."""
+    local = test.local or test.value
+    sign = np.sign(local(stretch.base))
+
+    def value(distance: float) -> float:
+        return float(sign * local(stretch.at(distance)))
+
+    ends = {0.0: value(0.0), ds: value(ds)}
+    touching = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
+    places = test.dips(stretch.base, new) or [touching]
+    found = (second_change(value, ends, place * ds) for place in places)
+    return next((place for place in found if place is not None), None)
 
 
 def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:

@@ -127,13 +127,12 @@ DISTINCT = 0.1
 """A place to look at lies at least so far on the way from the least value to the next place known."""
 
 
-def second_change(value: Callable[[float], float], ds: float, begin: float, end: float) -> float | None:
-    """Return a distance within a step at which a function, positive at both ends, is negative, if any.
+def second_change(value: Callable[[float], float], known: dict[float, float], place: float) -> float | None:
+    """Return a distance within a step at which a function, positive where it is known, is negative, if any.
 
-    Parabolas lead to its minimum until one has predicted it.
+    It is first looked for at `place`; then parabolas lead to the minimum until one has predicted it.
     """
-    known = {0.0: begin, ds: end}
-    place, expected = ds / (1 + np.sqrt(end / begin)), np.nan  # where a parabola touches zero
+    known, expected = dict(known), np.nan
     for _ in range(TRIALS):
         least = min(known.values())
         known[place] = found = value(place)
@@ -153,7 +152,7 @@ def _lowest(known: dict[float, float]) -> tuple[float, float]:
     at = sorted(known)
     least = at.index(min(at, key=lambda distance: known[distance]))
     near = at[max(0, min(least - 1, len(at) - 3)) :][:3]
-    parabola = np.polynomial.Polynomial.fit(near, [known[distance] for distance in near], 2)
+    parabola = _through(near, [known[distance] for distance in near])
     if 0 < least < len(at) - 1:
         vertex, middle = float(parabola.deriv().roots()[0]), near[1]
         gap = (near[2] if vertex > middle else near[0]) - middle
@@ -161,3 +160,12 @@ def _lowest(known: dict[float, float]) -> tuple[float, float]:
     else:
         place = (at[least] + at[1 if least == 0 else -2]) / 2
     return place, float(parabola(place))
+
+
+def _through(at: list[float], values: list[float]) -> np.polynomial.Polynomial:
+    """The parabola through three points."""
+    a, b, c = at
+    first = [(values[1] - values[0]) / (b - a), (values[2] - values[1]) / (c - b)]
+    second = (first[1] - first[0]) / (c - a)
+    start = np.polynomial.Polynomial([values[0] - first[0] * a, first[0]])
+    return start + second * np.polynomial.Polynomial([a * b, -(a + b), 1.0])

@@ -37,12 +37,15 @@ class Pair:
 
     turned: the mean of the turns of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
     that of a single component, which may pass through 0, it changes smoothly with the orbit.
+    left: left eigenvector (n,), of such a length that 2 |left x| is the most that the pair's part of a
+    disturbance, x at the beginning of the period, becomes within it; none where eigenvectors coincide.
     """
 
     argument: float
     modulus: float
     distance: float
     turned: float
+    left: Complex | None = None
 
     @property
     def conjugate(self) -> Pair:
@@ -108,12 +111,21 @@ class Spectrum:
         multipliers = self.multipliers
         unit = np.abs(multipliers - 1).argsort()[: self.trivial]
         chosen = np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit)
-        return [self._pair(complex(multipliers[k]), self.vectors[:, k]) for k in chosen]
+        return [self._pair(k) for k in chosen]
 
-    def _pair(self, mu: complex, vector: Complex) -> Pair:
-        solution = self.fundamental @ vector
+    def _pair(self, k: int) -> Pair:
+        mu, solution = complex(self.multipliers[k]), self.fundamental @ self.vectors[:, k]
         turned = float(np.angle((solution[:-1].conj() * solution[1:]).sum(axis=1)).sum())
-        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned)
+        left = None if self._left is None else self._left[k] * np.abs(solution).max()
+        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned, left)
+
+    @cached_property
+    def _left(self) -> Complex | None:
+        """Left eigenvectors, one a row, whose products with the right ones are 1."""
+        try:
+            return np.linalg.inv(self.vectors).astype(np.complex128)
+        except np.linalg.LinAlgError:
+            return None
 
     @property
     def radius(self) -> float:

@@ -2,9 +2,11 @@
 
 Where a complex pair of multipliers passes near +1 the free vibration is in tune with a harmonic of the
 excitation (a superharmonic resonance): the branch may leave its course for a peak far narrower than a step
-and return to it. The response to the parameter goes with (I - M)^-1, so the pair may not turn by more than
-a part of its distance from +1. Where it passes -1 or +1 it may also leave the unit circle and come back. Its
-solution is followed over the whole period, so that full turns count.
+and return to it. Along the branch the pair's part of the motion is about f/(1 - mu), f its excitation, which
+follows from how fast that part changes at the step's ends; what of it the cubic through the ends, with their
+tangents, does not show has passed unseen. However near +1 a pair comes that nothing excites, it is of no
+matter. Where a pair passes -1 or +1 it may also leave the unit circle and come back. Its solution is
+followed over the whole period, so that full turns count.
 """
 
 from __future__ import annotations
@@ -14,7 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.checks import positive
+from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Pair, Spectrum
+
+ORDER = 4
+"""What a cubic does not show goes with this power of the step."""
+
+TINY = 1e-9
+"""Least distance of a multiplier from +1."""
+
+PLACES = 9
+"""Places in a step at which it is looked at, and those where the multiplier is nearest +1."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,68 +35,89 @@ class WindingLimits:
 
     Parameters
     ----------
-    part : float
-        Largest turn of a multiplier (rad), as a part of its distance from +1.
-    least : float
-        Turns (rad) as small as this are always allowed.
+    visible : float
+        The largest part of a motion that may pass unseen, in peaks to peak.
+    most, least : float
+        Largest turn of a multiplier (rad), and one that is always allowed.
     light : float
         Pairs of smaller modulus are damped too well for a narrow peak.
     """
 
-    part: float = 0.7
+    visible: float = 0.02
+    most: float = 1.4
     least: float = 0.002
     light: float = 0.8
 
     def __post_init__(self) -> None:
-        for name in ("part", "least", "light"):
+        for name in ("visible", "most", "least", "light"):
             positive(name, getattr(self, name))
 
 
 @dataclass(frozen=True)
-class Turn:
-    """How far multipliers turn in a step, where 1 is the most that they may, and whether towards +1.
+class Motion:
+    """An orbit's spectrum, and how its states at the beginning of the period (n,) change along the branch.
 
-    On the way towards +1 the most shrinks with the distance, of which it is the part `most`.
+    change: over a whole step, in peaks to peak of the orbit.
     """
 
-    part: float
-    nearing: bool = False
-    most: float = 0.7
-
-    @property
-    def strain(self) -> float:
-        """The same, about linear in the step's length."""
-        return self.part * (1 + self.most) / self._nearer if self.nearing else self.part
-
-    @property
-    def ahead(self) -> float:
-        """What the strain of a step as long would be next."""
-        return self.strain * self._nearer if self.nearing else self.part
-
-    @property
-    def _nearer(self) -> float:
-        return 1 + self.most * self.part
+    spectrum: Spectrum
+    change: Array
 
 
-def turned(before: Spectrum, after: Spectrum, limits: WindingLimits) -> Turn:
-    """How far lightly damped pairs of multipliers turn between two orbits."""
+@dataclass(frozen=True)
+class Turn:
+    """How far multipliers turn in a step and would in the next one as long, where 1 is the most."""
 
-    def turn(a: Pair, b: Pair) -> Turn:
-        allowed = max(limits.part * min(a.distance, b.distance), limits.least)
-        return Turn(abs(a.turn(b)) / allowed, b.distance < a.distance, limits.part)
-
-    pairs = [(a, b) for a, b in _matched(before, after) if min(a.modulus, b.modulus) > limits.light]
-    return max((turn(*pair) for pair in pairs), key=lambda turn: turn.part, default=Turn(0.0))
+    strain: float
+    ahead: float
 
 
-def passes(before: Spectrum, after: Spectrum, sign: int) -> bool:
-    """Whether a pair turns past `sign` (+1 or -1) between two orbits."""
-    offset = 0.0 if sign > 0 else np.pi
+def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
+    """How far lightly damped pairs of multipliers turn between two orbits.
 
-    def turns(angle: float) -> int:
-        return int(np.floor((angle - offset) / (2 * np.pi)))
+    Those that the motion excites the less the nearer they are to +1, and none so far that it is lost.
+    """
+    strain = ahead = turn = 0.0
+    for a, b in _matched(before.spectrum, after.spectrum):
+        way = complex(np.log(b.modulus / a.modulus), a.turn(b))
+        if min(a.modulus, b.modulus) > limits.light and abs(way.imag) > limits.least:
+            excitation = min(_excitation(a, way, before.change), _excitation(b, way, after.change))
+            strain = max(strain, excitation * _unseen(complex(np.log(a.modulus), a.argument), way))
+            ahead = max(ahead, excitation * _unseen(complex(np.log(b.modulus), b.argument), way))
+            turn = max(turn, abs(way.imag) / limits.most)
+    return Turn(*(max(turn, (unseen / limits.visible) ** (1 / ORDER)) for unseen in (strain, ahead)))
 
-    return any(turns(a.argument) != turns(a.argument + a.turn(b)) for a, b in _matched(before, after))
+
+def _excitation(pair: Pair, way: complex, change: Array) -> float:
+    """The size of f, from the change of the pair's part f/(1 - mu) over a step in which log mu goes `way`."""
+    if pair.left is None:
+        return np.inf
+    return 2 * abs(complex(pair.left @ change)) * pair.distance**2 / (pair.modulus * abs(way))
+
+
+def _unseen(begin: complex, way: complex) -> float:
+    """The largest distance of 1/(1 - mu) from the cubic through its ends while log mu goes from `begin`."""
+    angles = np.sort([begin.imag, begin.imag + way.imag])
+    nearest = 2 * np.pi * np.arange(*np.ceil(angles / (2 * np.pi)))
+    place = np.concatenate([[0.0, 1.0], np.linspace(0, 1, PLACES)[1:-1], (nearest - begin.imag) / way.imag])
+    mu = np.exp(begin + way * place)
+    value = 1 / np.where(np.abs(1 - mu) > TINY, 1 - mu, TINY)
+    (first, last), (out, back) = value[:2], (way * mu * value**2)[:2]
+    rest = 1 - place
+    cubic = (1 + 2 * place) * rest**2 * first + place**2 * (3 - 2 * place) * last
+    cubic = cubic + place * rest * (rest * out - place * back)
+    return float(np.abs(value - cubic).max())
+
+
+def passages(before: Spectrum, after: Spectrum, sign: int) -> list[float]:
+    """Return where, as parts of the way, pairs turn past `sign` (+1 or -1) between two orbits."""
+    offset, found = 0.0 if sign > 0 else np.pi, []
+    for a, b in _matched(before, after):
+        turn = a.turn(b)
+        low, high = sorted((a.argument, a.argument + turn))
+        past = np.arange(np.floor((low - offset) / (2 * np.pi)), np.floor((high - offset) / (2 * np.pi))) + 1
+        found += [float(place) for place in (offset + 2 * np.pi * past - a.argument) / turn]
+    return found
 
 
 def _matched(before: Spectrum, after: Spectrum) -> list[tuple[Pair, Pair]]:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.bifurcations import codim2
+from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment
 from periodic.stability.spectrum import Stability
-from periodic.stability.winding import turned
+from periodic.stability.winding import Motion, turned
 from periodic.tracing.stepsize import ArclengthControl
 
 
@@ -40,10 +41,16 @@ def strains(
     bend = float(np.sqrt(max(_bend(base, new, ds) - noise, 0.0) / (control.bend * ds)))
     yield Strain(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
-        turn = turned(base.spectrum, new.spectrum, control.winding)
-        yield Strain(turn.strain, turn.ahead, "the multipliers turn too far past 1 for the step")
+        turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
+        yield Strain(turn.strain, turn.ahead, "a resonance may pass unseen in the step")
     angle = _angle(codim2.alignment(base, new), control.turn)
     yield Strain(angle, angle, "the critical motion turns too far for the step")
+
+
+def _motion(solution: Solution, ds: float) -> Motion:
+    return Motion(
+        solution.spectrum, ds * solution.tangent.profile[0] / max(solution.orbit.span(), LEAST_SPAN)
+    )
 
 
 def _angle(cosine: float, least: float) -> float:
