@@ -2,7 +2,24 @@
 
 from __future__ import annotations
 
-from casadi import atan, atan2, cos, cosh, exp, fabs, fmax, fmin, if_else, log, sin, sinh, sqrt, tan, tanh
+from casadi import (
+    atan,
+    atan2,
+    cos,
+    cosh,
+    exp,
+    fabs,
+    fmax,
+    fmin,
+    if_else,
+    log,
+    sign,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 
 __all__ = [
     "atan",
@@ -15,6 +32,7 @@ __all__ = [
     "fmin",
     "if_else",
     "log",
+    "sign",
     "sin",
     "sinh",
     "sqrt",

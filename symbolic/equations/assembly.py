@@ -105,6 +105,7 @@ class Assembly:
     algebraic_rows: list[ca.SX] = field(default_factory=list, init=False)
     outputs: list[tuple[Variable, ca.SX]] = field(default_factory=list, init=False)
     switches: list[tuple[SwitchInfo, ca.SX]] = field(default_factory=list, init=False)
+    smooth: list[ca.SX] = field(default_factory=list, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
     structures: list[Body] = field(default_factory=list, init=False)
     places: list[Place] = field(default_factory=list, init=False)
@@ -455,3 +456,13 @@ class Assembly:
             Falling values; each marks the same kink more sharply than the one before.
         """
         self.switches.append((SwitchInfo(name, direction, levels), expression))
+
+    def smooth_at(self, expression: ca.SX) -> None:
+        """Say that the equations have no kink where an expression vanishes, though branches meet there.
+
+        Parameters
+        ----------
+        expression : casadi.SX
+            The switching argument of an fmax, fmin or if_else that only guards against overflow.
+        """
+        self.smooth.append(expression)

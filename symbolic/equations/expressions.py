@@ -54,7 +54,7 @@ def expressed(assembly: Assembly) -> Expressions:
     rows = _motion_rows(assembly) + assembly.differential_rows + assembly.algebraic_rows
     rows += [place.unknown - place.motion.force / place.unit_force for place in assembly.places]
     _check_frequency(assembly)
-    packed = _Packed(assembly)
+    packed = Packed(assembly)
     outputs = [expression for _, expression in assembly.described]
     unknowns, excitation = assembly.unknowns, assembly.excitation
     moved = packed.scaled([u.moved for u in unknowns])
@@ -81,8 +81,14 @@ def expressed(assembly: Assembly) -> Expressions:
     )
 
 
-class _Packed:
-    """The vectors that take the place of an assembly's single symbols."""
+class Packed:
+    """The vectors that take the place of an assembly's single symbols.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The workbench of a model, all its parts laid and closed.
+    """
 
     def __init__(self, assembly: Assembly) -> None:
         self.assembly = assembly
@@ -102,7 +108,20 @@ class _Packed:
         self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, *values)
 
     def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None) -> ca.SX:
-        """Stack expressions in SI as one in the vectors; `waved` stands for the waves."""
+        """Stack expressions in SI as one in the vectors.
+
+        Parameters
+        ----------
+        expressions : list of casadi.SX
+            In the assembly's symbols.
+        waved : casadi.SX, optional
+            What stands for the waves of the excitation; by default their values at the phase.
+
+        Returns
+        -------
+        casadi.SX
+            A column in the vectors.
+        """
         excitation = self.assembly.excitation
         stacked = self.assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
         stacked = excitation.timed(stacked, self.phase)

@@ -61,6 +61,10 @@ class Equations(Part):
         Sizes (SI) of states taken as one inside.
     outputs : callable, optional
         Returns further outputs by name; each state is one.
+    switches : callable, optional
+        Returns by name functions of states, phase and parameters that vanish where the equations have a kink
+        or a jump. Those that fmax, fmin, fabs, sign and if_else bring are found without it; a kink in an
+        unknown cannot be one, and is left to the mesh and its error estimate.
 
     Raises
     ------
@@ -77,6 +81,7 @@ class Equations(Part):
     frequency: str | None = None
     scales: Mapping[str, float] = field(default_factory=dict)
     outputs: Function | None = None
+    switches: Function | None = None
 
     def __post_init__(self) -> None:
         self._check_types()
@@ -100,8 +105,9 @@ class Equations(Part):
             )
 
     def _check_types(self) -> None:
-        for name, function in (("function", self.function), ("outputs", self.outputs or max)):
-            if not callable(function):
+        optional = {"outputs": self.outputs, "switches": self.switches}
+        for name, function in {"function": self.function, **optional}.items():
+            if not callable(function) and (function is not None or name not in optional):
                 raise refusal(name, function, "a function of x and p")
         numbers("states", self.states, "rest value")
         numbers("unknowns", self.unknowns, "rest value")
@@ -146,6 +152,19 @@ class Equations(Part):
         if self.outputs is not None:
             for name, expression in called("outputs", self.outputs, arguments).items():
                 assembly.output(name, "", expression)
+        if self.switches is not None:
+            for name, expression in called("switches", self.switches, arguments).items():
+                self._check_switch(name, expression, symbols)
+                assembly.switch(name, expression, 0)
+
+    def _check_switch(self, name: str, expression: ca.SX, symbols: Mapping[str, ca.SX]) -> None:
+        used = {symbol.element_hash() for symbol in ca.symvar(expression)}
+        for unknown in self.unknowns:
+            if symbols[unknown].element_hash() in used:
+                raise ValueError(
+                    f"switch {name!r} depends on the unknown {unknown}; "
+                    f"it must be a function of states, phase and parameters"
+                )
 
 
 def _fitting(

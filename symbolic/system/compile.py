@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symbolic.checks import refusal, typed
+from symbolic.equations import kinks
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.expressions import expressed
 from symbolic.equations.model import Model, Part
@@ -46,6 +47,7 @@ def compile(  # noqa: A001
         raise refusal("model", model, "a Model or a Part, as the sum of symbolic.Mass(x, 1.0) and others is")
     assembly.lay(model.parts if isinstance(model, Model) else (model,))
     assembly.close(typed("condense", condense, bool, "True or False"))
+    kinks.find(assembly)
     system = _system(assembly, back_end)
     for variable in (*system.states, *system.algebraics):
         if variable.name in [p.name for p in system.parameters]:

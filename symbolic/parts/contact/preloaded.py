@@ -74,6 +74,7 @@ class SolvedLaw:
     force: Callable[[ca.SX], ca.SX]
     preload: ca.SX
     delta0: ca.SX
+    assembly: Assembly
 
     @property
     def exponent(self) -> ca.SX:
@@ -86,6 +87,7 @@ class SolvedLaw:
 
     def log_load(self, log_s: ca.SX) -> ca.SX:
         """Return ln(W/Q), continued as a power below LEAST."""
+        self.assembly.smooth_at(log_s - LEAST)
         below = _slope(self._log_load, ca.SX(LEAST)) * ca.fmin(log_s - LEAST, 0)
         return self._log_load(ca.fmax(log_s, LEAST)) + below
 
@@ -108,7 +110,7 @@ def solved(force: Callable[[ca.SX], ca.SX], assembly: Assembly, preload: ca.SX) 
 
     bracketed = excess(BRACKET[0]) < 0 < excess(BRACKET[1])
     nominal = scipy.optimize.brentq(excess, *BRACKET) if bracketed else math.nan
-    return SolvedLaw(force, preload, ca.exp(_inverse(log_force, ca.log(preload), ca.SX(nominal))))
+    return SolvedLaw(force, preload, ca.exp(_inverse(log_force, ca.log(preload), ca.SX(nominal))), assembly)
 
 
 def _inverse(function: Callable[[ca.SX], ca.SX], value: ca.SX, guess: ca.SX) -> ca.SX:

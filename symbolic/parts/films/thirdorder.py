@@ -120,6 +120,7 @@ def _eliminate(assembly: Assembly, inner: Assembly, coordinate: Coordinate, redu
         assembly.output(variable.name, variable.unit, reduced_to_h(expression))
     for info, expression in inner.switches:
         assembly.switch(info.name, expression, info.direction, info.levels)
+    assembly.smooth.extend(inner.smooth)
 
 
 def _along(inner: Assembly, states: list[State], expression: ca.SX) -> ca.SX:

@@ -1,0 +1,110 @@
+"""The graph of expressions: where its operations pass from one branch to the other, at a zero of
+
+    fmax(a, b), fmin(a, b), a < b, a <= b:  s = a - b;    fabs(a), sign(a):  s = a
+
+A comparison for equality holds at single points, where it mends a value; it is no branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Flag, auto
+
+import casadi as ca
+
+COMPARED = (ca.OP_FMAX, ca.OP_FMIN, ca.OP_LT, ca.OP_LE)
+"""Operations of two arguments that switch where these are equal."""
+
+SIGNED = (ca.OP_FABS, ca.OP_SIGN)
+"""Operations of one argument that switch where it vanishes."""
+
+KEEP_POSITIVE = (ca.OP_ADD, ca.OP_MUL, ca.OP_DIV, ca.OP_FMIN, ca.OP_TWICE, ca.OP_INV, ca.OP_SQRT, ca.OP_SQ)
+POSITIVE = (ca.OP_EXP, ca.OP_COSH)
+"""Operations that are positive where all their arguments are, and always."""
+
+NOTHING = 1e-200
+"""A constant below this stands for 0, as in max(delta, 1e-300)^n."""
+
+
+class Traits(Flag):
+    """What an expression is made of, and its sign.
+
+    MOVING: states or the phase; OTHER: rates or unknowns, which a switch is no function of; POSITIVE: greater
+    than 0 by its form.
+    """
+
+    NONE = 0
+    MOVING = auto()
+    OTHER = auto()
+    POSITIVE = auto()
+
+
+@dataclass(frozen=True)
+class _Known:
+    """Traits of the nodes of a graph by their hashes; `given` has those of symbols."""
+
+    given: Callable[[ca.SX], Traits]
+    found: dict[int, Traits]
+
+    def of(self, node: ca.SX) -> Traits:
+        if node.is_constant():
+            return Traits.POSITIVE if float(node) > 0 else Traits.NONE
+        return self.given(node) if node.is_symbolic() else self.found[node.element_hash()]
+
+    def add(self, node: ca.SX) -> None:
+        parts = [self.of(node.dep(i)) for i in range(node.n_dep())]
+        signs = [Traits.POSITIVE in part for part in parts]
+        kept = node.op() in KEEP_POSITIVE and all(signs)
+        positive = kept or node.op() in POSITIVE or (node.op() == ca.OP_FMAX and any(signs))
+        traits = Traits.POSITIVE if positive else Traits.NONE
+        for part in parts:
+            traits |= part & (Traits.MOVING | Traits.OTHER)
+        self.found[node.element_hash()] = traits
+
+
+def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
+    """Return the switching arguments of expressions that are functions of state and phase, inner ones first.
+
+    Parameters
+    ----------
+    rows : casadi.SX
+        A column of expressions.
+    given : callable
+        Traits of a symbol.
+
+    Returns
+    -------
+    list of casadi.SX
+        s of every fmax, fmin, fabs, sign, < and <=, but for those that depend on rates or unknowns, on
+        parameters alone, or are positive by their form.
+    """
+    known, found = _Known(given, {}), []
+    for node in _nodes(rows):
+        known.add(node)
+        if node.op() not in COMPARED + SIGNED:
+            continue
+        parts = [node.dep(i) for i in range(node.n_dep())]
+        parts = [p for p in parts if not (p.is_constant() and abs(float(p)) < NOTHING)]
+        traits = [known.of(part) for part in parts]
+        if any(Traits.OTHER in t for t in traits) or not any(Traits.MOVING in t for t in traits):
+            continue
+        if len(parts) == 2:
+            found.append(parts[0] - parts[1] if Traits.MOVING in traits[0] else parts[1] - parts[0])
+        elif Traits.POSITIVE not in traits[0]:
+            found.append(parts[0])
+    return [s.dep(0) if s.op() == ca.OP_NEG else s for s in found]
+
+
+def _nodes(rows: ca.SX) -> Iterator[ca.SX]:
+    """The operations of a graph, each once and after what it is made of."""
+    seen: set[int] = set()
+    pending = [(rows[i], False) for i in reversed(range(rows.numel()))]
+    while pending:
+        node, ready = pending.pop()
+        if ready:
+            yield node
+        elif not node.is_leaf() and node.element_hash() not in seen:
+            seen.add(node.element_hash())
+            pending.append((node, True))
+            pending.extend((node.dep(i), False) for i in reversed(range(node.n_dep())))

@@ -1,0 +1,116 @@
+"""Kinks and jumps of a model's equations: where fmax, fmin, fabs, sign and if_else pass from one branch to
+the other.
+
+Each of them has a switching argument s, and the equations are smooth on either side of s = 0, see
+`symbolic.equations.branches`. Arguments of parameters alone are constant along a motion; those with a rate or
+an algebraic unknown in them are no functions of state and phase: there the mesh has to resolve the kink, and
+the error estimate tells how well it does.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+
+import casadi as ca
+
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.branches import Traits, switching
+from symbolic.equations.samples import Samples, constant, multiples
+from symbolic.equations.variables import SwitchInfo
+
+LONG = 40
+"""Letters of an expression that still make a name."""
+
+
+def find(assembly: Assembly) -> None:
+    """Add to an assembly the switches that its equations have and no part has declared.
+
+    Multiples of a switch that is there already are the same switch.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The workbench of a model, all its parts laid and closed.
+    """
+    forces = [motion.force for motion in assembly.motions.values()]
+    rows = ca.vertcat(ca.SX(0, 1), *forces, *assembly.differential_rows, *assembly.algebraic_rows)
+    candidates = switching(rows, _traits(assembly))
+    if not candidates:
+        return
+    samples = Samples(assembly)
+    usable = _hashes(_moving(assembly)) | _hashes(_fixed(assembly))
+    smooth = [s for s in assembly.smooth if _hashes(ca.symvar(s)) <= usable]
+    declared = [s for _, s in assembly.switches]
+    values = samples.values([*declared, *smooth, *candidates])
+    known, new = values[: -len(candidates)], values[-len(candidates) :]
+    for argument, found in zip(candidates, new, strict=True):
+        if not constant(found) and not any(multiples(found, other) for other in known):
+            known.append(found)
+            name = _unused(_written(assembly, argument), [info.name for info, _ in assembly.switches])
+            assembly.switches.append((SwitchInfo(name, 0), argument / samples.size(argument)))
+
+
+def _moving(assembly: Assembly) -> list[ca.SX]:
+    excitation = assembly.excitation
+    waves = [excitation.symbols[k] for k in range(excitation.symbols.numel())]
+    return [*(s.symbol for s in assembly.states), excitation.angle, *waves]
+
+
+def _fixed(assembly: Assembly) -> list[ca.SX]:
+    numbers = [n.parameter.symbol for n in assembly.numbers.taken]
+    return [*numbers, assembly.omega, assembly.excitation.pace]
+
+
+def _traits(assembly: Assembly) -> Callable[[ca.SX], Traits]:
+    """What a symbol is; a parameter is positive where its nominal value is."""
+    moving, fixed = _hashes(_moving(assembly)), _hashes(_fixed(assembly))
+    positive = _hashes(n.parameter.symbol for n in assembly.numbers.taken if n.parameter.value > 0)
+
+    def given(symbol: ca.SX) -> Traits:
+        key = symbol.element_hash()
+        if key in moving:
+            return Traits.MOVING
+        if key in fixed:
+            return Traits.POSITIVE if key in positive else Traits.NONE
+        return Traits.OTHER
+
+    return given
+
+
+def _hashes(symbols: Iterable[ca.SX]) -> set[int]:
+    return {symbol.element_hash() for symbol in symbols}
+
+
+def _written(assembly: Assembly, argument: ca.SX) -> str:
+    """An argument in letters, "x - 1"; a long one by the variables in it."""
+    text = str(argument)
+    for motion in assembly.motions.values():
+        text = text.replace(f"(omega*{motion.velocity.name})", f"d{motion.position.name}/dt")
+    text = re.sub(r"(sin|cos)_(\S+?)_theta", r"\1 \2 theta", re.sub(r"(?<=\d)\.(?!\d)", "", text))
+    text = text.replace(" 1 theta", " theta")
+    text = re.sub(r"(?<=[^e(])([-+])", r" \1 ", text)
+    if text.startswith("(") and text.endswith(")") and _matching(text) == len(text) - 1:
+        text = text[1:-1]
+    if "@" not in text and len(text) <= LONG:
+        return text
+    used = _hashes(ca.symvar(argument))
+    names = [s.name for s in assembly.states if s.symbol.element_hash() in used]
+    excited = len(used & _hashes(_moving(assembly))) > len(names)
+    return "kink in " + ", ".join([*names, *(["theta"] if excited else [])])
+
+
+def _matching(text: str) -> int:
+    """Where the parenthesis closes that a text begins with."""
+    depth = 0
+    for place, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        if depth == 0:
+            return place
+    return -1
+
+
+def _unused(name: str, names: list[str]) -> str:
+    """The name, with a number where it is taken."""
+    taken = [name, *(f"{name} ({k})" for k in range(2, len(names) + 2))]
+    return next(each for each in taken if each not in names)

@@ -1,0 +1,81 @@
+"""Values of functions of state, phase and parameters at sample points: are two alike, and of what order."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.expressions import Packed
+
+SAME = 1e-12
+"""Ratios of two functions that differ by less are equal."""
+
+ALIKE = 3
+"""Sets of parameters on which two functions are compared, the nominal one first."""
+
+POINTS = 24
+"""Points at which they are compared for each."""
+
+
+class Samples:
+    """Points at which functions of state, phase and parameters are compared, drawn about the rest.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The workbench of a model, all its parts laid and closed.
+    """
+
+    def __init__(self, assembly: Assembly) -> None:
+        assembly.with_frequency(assembly.omega)  # an omega of its own is a parameter like any other
+        self.packed = packed = Packed(assembly)
+        draw = np.random.default_rng(1)
+        nominal = np.array([p.value for p in assembly.parameters.values()])
+        rest = packed.scaled([s.rest / s.scale for s in assembly.states])
+        start = np.array(ca.Function("rest", [packed.parameter], [rest])(nominal)).reshape(-1, 1)
+        self.points = []
+        for k in range(ALIKE):
+            change = draw.uniform(0.02, 0.1, nominal.size) if k else np.zeros(nominal.size)
+            parameter = np.where(nominal == 0, change, nominal * (1 + change))
+            spread = 10 ** draw.uniform(-1, 1, POINTS) * draw.normal(size=(len(start), POINTS))
+            self.points.append((start + spread, draw.uniform(0, 2 * np.pi, (1, POINTS)), parameter))
+
+    def _evaluated(self, column: ca.SX) -> list[Array]:
+        """Values at the points for each set of parameters, shape (rows, POINTS)."""
+        packed = self.packed
+        function = ca.Function("sampled", [packed.state, packed.phase, packed.parameter], [column])
+        return [np.array(function(*point)) for point in self.points]
+
+    def values(self, expressions: list[ca.SX]) -> list[list[Array]]:
+        """Values of each function in the assembly's symbols, a row for each set of parameters."""
+        return [list(rows) for rows in zip(*self._evaluated(self.packed.scaled(expressions)), strict=True)]
+
+    def size(self, expression: ca.SX) -> float:
+        """How much a function changes with states of their scales and with the phase: its order."""
+        packed = self.packed
+        moving = ca.vertcat(packed.state, packed.phase)
+        columns = self._evaluated(ca.jacobian(packed.scaled([expression]), moving).T)[0]
+        steepness = np.linalg.norm(columns, axis=0)
+        usable = steepness[np.isfinite(steepness) & (steepness > 0)]
+        return float(np.median(usable)) if usable.size else 1.0
+
+
+def constant(values: list[Array]) -> bool:
+    """Whether a function does not vary with state and phase, for any parameters."""
+    finite = [v[np.isfinite(v)] for v in values]
+    return all(v.size and np.ptp(v) <= SAME * np.abs(v).max() for v in finite)
+
+
+def multiples(values: list[Array], others: list[Array]) -> bool:
+    """Whether two functions differ by a factor that depends on parameters alone."""
+    for a, b in zip(values, others, strict=True):
+        both = np.isfinite(a) & np.isfinite(b)
+        a, b = a[both], b[both]
+        if not a.size or not a.any() or not b.any():
+            return False
+        factor = (a @ b) / (b @ b)
+        if np.abs(a - factor * b).max() > SAME * np.abs(a).max():
+            return False
+    return True
