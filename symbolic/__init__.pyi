@@ -11,14 +11,21 @@ from .motion.linear import Modes, NoRestError, modes, resonance
 from .motion.response import FrequencyResponse, response
 from .motion.simulate import Simulation, simulate
 from .parts.contact.excitation import RampedWaviness, Waviness
+from .parts.contact.huntcrossley import HuntCrossleyStop
 from .parts.contact.law import ContactLaw, HertzLaw
 from .parts.contact.loads import ContactDamping, ElasticContact, Hertz, Preload
 from .parts.contact.pair import ContactPair
+from .parts.contact.palmgren import PalmgrenLaw
 from .parts.contact.stop import Stop
 from .parts.equations import Equations
 from .parts.films.cavitating import CavitatingFilm
 from .parts.films.explicit import ExplicitSqueezeFilm
+from .parts.films.flattening import AmplitudeReduction, FlattenedWaviness, LineReduction, PointReduction
+from .parts.films.law import FilmLaw, PowerFilm
+from .parts.films.line import LineFilm
+from .parts.films.lubricated import LubricantFilm
 from .parts.films.quasistatic import QuasistaticFilm
+from .parts.films.regimes import FilmRegime, RegimeFilm, film_regime
 from .parts.films.regressions import (
     Compliance,
     ConstantThickness,
@@ -27,7 +34,7 @@ from .parts.films.regressions import (
     Rolling,
 )
 from .parts.films.squeeze import SqueezeFilm
-from .parts.films.thickness import CalibratedThickness, GivenThickness, ThicknessLaw
+from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
 from .parts.mechanics.driven import BaseMotion, PeriodicForce, VaryingSpring
@@ -52,6 +59,7 @@ from .system.compile import compile
 from .system.compiled import CompiledSystem
 
 __all__ = [
+    "AmplitudeReduction",
     "Assembly",
     "Backlash",
     "BaseMotion",
@@ -73,6 +81,9 @@ __all__ = [
     "ElasticContact",
     "Equations",
     "ExplicitSqueezeFilm",
+    "FilmLaw",
+    "FilmRegime",
+    "FlattenedWaviness",
     "FourierSeries",
     "FrequencyResponse",
     "Gap",
@@ -82,25 +93,33 @@ __all__ = [
     "HarmonicForce",
     "Hertz",
     "HertzLaw",
+    "HuntCrossleyStop",
     "InputError",
     "IntegrationError",
     "Kernels",
+    "LineFilm",
+    "LineReduction",
+    "LubricantFilm",
     "Mass",
     "Matrices",
     "Model",
     "Modes",
     "NoRestError",
     "OneSidedSpring",
+    "PalmgrenLaw",
     "Parameter",
     "Part",
     "PeriodicForce",
     "PiecewiseLinearSpring",
+    "PointReduction",
+    "PowerFilm",
     "Preload",
     "Profile",
     "QuasistaticFilm",
     "RampedWaviness",
     "ReducedMass",
     "Reduction",
+    "RegimeFilm",
     "RegressionThickness",
     "Rolling",
     "Samples",
@@ -108,6 +127,7 @@ __all__ = [
     "Simulation",
     "Spring",
     "SqueezeFilm",
+    "SteadyThickness",
     "Stop",
     "Structure",
     "Support",
@@ -123,6 +143,7 @@ __all__ = [
     "coordinate",
     "coordinates",
     "craig_bampton",
+    "film_regime",
     "flexibility",
     "functions",
     "modes",

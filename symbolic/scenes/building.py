@@ -14,7 +14,17 @@ from symbolic.parts.contact.law import ContactLaw, deflection_under
 from symbolic.parts.contact.loads import ContactDamping, ElasticContact, Preload
 from symbolic.parts.contact.pair import ContactPair
 from symbolic.parts.films.cavitating import CavitatingFilm
+from symbolic.parts.films.flattening import (
+    AmplitudeReduction,
+    FlattenedWaviness,
+    LineReduction,
+    PointReduction,
+)
+from symbolic.parts.films.law import FilmLaw
+from symbolic.parts.films.line import LineFilm
+from symbolic.parts.films.lubricated import LubricantFilm
 from symbolic.parts.films.quasistatic import QuasistaticFilm
+from symbolic.parts.films.regimes import RegimeFilm
 from symbolic.parts.films.regressions import (
     Compliance,
     ConstantThickness,
@@ -23,14 +33,14 @@ from symbolic.parts.films.regressions import (
     Rolling,
 )
 from symbolic.parts.films.squeeze import SqueezeFilm
-from symbolic.parts.films.thickness import CalibratedThickness, ThicknessLaw
+from symbolic.parts.films.thickness import CalibratedThickness, SteadyThickness, ThicknessLaw
 from symbolic.parts.films.thirdorder import ThirdOrder
 from symbolic.parts.mechanics.forces import HarmonicForce
 from symbolic.parts.mechanics.inertia import Mass, ReducedMass
 from symbolic.parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
 from symbolic.scenes.errors import InputError, listed, refused, shown
-from symbolic.scenes.laws import HERTZ, contact_laws
-from symbolic.scenes.schema import AnyContact, Discs, DiscScene, Film, Oscillator, OscillatorScene, Scene
+from symbolic.scenes.laws import HERTZ, PALMGREN, contact_laws
+from symbolic.scenes.schema import AnyContact, DiscScene, Film, Oscillator, OscillatorScene, Scene
 from symbolic.system.compile import compile
 from symbolic.system.compiled import CompiledSystem
 
@@ -76,7 +86,10 @@ def disc_model(scene: DiscScene) -> Model:
         Waviness(pair, waviness.amplitude, waviness.waves, speed),
     ]
     if scene.film is not None:
-        parts.append(film_part(scene.film, scene.discs, pair, speed))
+        parts.append(film_part(scene, pair, speed))
+        if waviness.reduction:
+            law = amplitude_reduction(scene, scene.film, speed)
+            parts.append(FlattenedWaviness(pair, law, scene.discs.diameter / 2, waviness.waves))
     if scene.damping is not None:
         parts.append(ContactDamping(pair, scene.damping.ratio))
     model = combine(parts)
@@ -118,24 +131,36 @@ def contact_law(contact: AnyContact) -> ContactLaw:
     return contact_laws()[contact.law or HERTZ](**contact.numbers)
 
 
-def film_part(film: Film, discs: Discs, pair: ContactPair, speed: Parameter) -> Part:
+def film_part(scene: DiscScene, pair: ContactPair, speed: Parameter) -> Part:
     """Return the film between the discs."""
-    law, radius = thickness_law(film, discs, speed), discs.diameter / 2
+    film, radius = scene.film, scene.discs.diameter / 2
+    assert film is not None
+    law = film_law(scene, film, speed)
+    if film.law == "squeeze" and film.squeeze is not None and law is not None:
+        return LubricantFilm(pair, law, speed, radius, film.squeeze / film.beta)
+    steady = thickness_law(scene, film, speed) if law is None else SteadyThickness(law)
     if film.squeeze is None:
-        return QuasistaticFilm(pair, law, film.beta)
+        return QuasistaticFilm(pair, steady, film.beta)
     if film.floor is not None:
-        return CavitatingFilm(pair, law, speed, radius, film.beta, film.squeeze, film.floor)
-    return SqueezeFilm(pair, law, speed, radius, film.beta, film.squeeze)
+        return CavitatingFilm(pair, steady, speed, radius, film.beta, film.squeeze, film.floor)
+    return SqueezeFilm(pair, steady, speed, radius, film.beta, film.squeeze)
 
 
-def thickness_law(film: Film, discs: Discs, speed: Parameter) -> ThicknessLaw:
+def film_law(scene: DiscScene, film: Film, speed: Parameter) -> FilmLaw | None:
+    """Return the law of the film at any load, where the scene names one."""
+    if film.thickness == "regimes":
+        return RegimeFilm(rolling_of(scene, film, speed))
+    if film.thickness == "line":
+        return LineFilm(rolling_of(scene, film, speed), scene.contact.numbers["length"])
+    return None
+
+
+def thickness_law(scene: DiscScene, film: Film, speed: Parameter) -> ThicknessLaw:
     """Return the law of the steady film thickness that a scene names."""
-    radius, oil = discs.diameter / 2, (film.viscosity, film.piezoviscosity)
     if film.thickness == "calibrated":
-        return CalibratedThickness(speed, radius, *oil)
-    given = {"crown": discs.crown, "modulus": discs.modulus, "poisson": discs.poisson}
-    known = {name: value for name, value in given.items() if value is not None}
-    rolling = Rolling(speed, radius, *oil, **known)
+        radius = scene.discs.diameter / 2
+        return CalibratedThickness(speed, radius, film.viscosity, film.piezoviscosity)
+    rolling = rolling_of(scene, film, speed)
     laws: dict[str, ThicknessLaw] = {
         "equation-5": RegressionThickness(rolling),
         "constant-one-body": ConstantThickness(rolling),
@@ -143,6 +168,22 @@ def thickness_law(film: Film, discs: Discs, speed: Parameter) -> ThicknessLaw:
         "hamrock-dowson": HamrockDowsonThickness(rolling),
     }
     return laws[film.thickness]
+
+
+def amplitude_reduction(scene: DiscScene, film: Film, speed: Parameter) -> AmplitudeReduction:
+    """Return what decides how much of the waviness the film keeps."""
+    rolling = rolling_of(scene, film, speed)
+    if scene.contact.law == PALMGREN:
+        return LineReduction(rolling, scene.contact.numbers["length"])
+    return PointReduction(rolling)
+
+
+def rolling_of(scene: DiscScene, film: Film, speed: Parameter) -> Rolling:
+    """Return the discs and their lubricant."""
+    discs = scene.discs
+    given = {"crown": discs.crown, "modulus": discs.modulus, "poisson": discs.poisson}
+    known = {name: value for name, value in given.items() if value is not None}
+    return Rolling(speed, discs.diameter / 2, film.viscosity, film.piezoviscosity, **known)
 
 
 def oscillator_model(scene: OscillatorScene) -> Model:

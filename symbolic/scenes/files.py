@@ -145,7 +145,9 @@ def _override(tables: dict[str, Any], path: list[str], value: str | float | None
         tables[path[-1]] = _value(value) if isinstance(value, str) else value
 
 
-def _value(text: str) -> int | float | str:
+def _value(text: str) -> bool | int | float | str:
+    if text in ("true", "false"):
+        return text == "true"
     for number in (int, float):
         try:
             return number(text)

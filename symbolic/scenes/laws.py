@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 
 from symbolic.parts.contact.law import ContactLaw, HertzLaw
+from symbolic.parts.contact.palmgren import PalmgrenLaw
 
-HERTZ = "hertz"
+HERTZ, PALMGREN = "hertz", "palmgren"
 NAME = re.compile(r"[a-z][a-z0-9-]{0,39}")
 TAKEN = {"law", "preload"}
 """Keys of the table [contact] that are not numbers of a law."""
 
-_laws: dict[str, type[ContactLaw]] = {HERTZ: HertzLaw}
+BUILT_IN: dict[str, type[ContactLaw]] = {HERTZ: HertzLaw, PALMGREN: PalmgrenLaw}
+
+_laws = dict(BUILT_IN)
 
 
 def register_contact_law(name: str, law: type[ContactLaw]) -> None:
@@ -32,9 +35,10 @@ def register_contact_law(name: str, law: type[ContactLaw]) -> None:
     ValueError
         For a name that cannot be taken, and for a law that is no dataclass or has a field `law` or `preload`.
     """
-    if not NAME.fullmatch(name) or name == HERTZ:
+    if not NAME.fullmatch(name) or name in BUILT_IN:
+        own = " or ".join(map(repr, BUILT_IN))
         raise ValueError(
-            f"name of a contact law is {name!r}; it must be small letters, digits and hyphens, not {HERTZ!r}"
+            f"name of a contact law is {name!r}; it must be small letters, digits and hyphens, not {own}"
         )
     fields = getattr(law, "__dataclass_fields__", None)
     if fields is None:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model,
 
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.scenes.errors import InputError, listed, refused, shown
-from symbolic.scenes.laws import HERTZ, TAKEN, contact_laws
+from symbolic.scenes.laws import HERTZ, PALMGREN, TAKEN, contact_laws
 
 
 def number(low: float, high: float, unit: str = "") -> Any:
@@ -83,11 +83,18 @@ class Contact(AnyContact):
     exponent: float = number(1, 4)
 
 
+class LineContact(AnyContact):
+    """Cylinders along a line: Palmgren's law."""
+
+    length: float = number(1e-5, 10, "m")
+
+
 class Waviness(Table):
-    """Sinusoidal corrugations on one disc."""
+    """Sinusoidal corrugations on one disc; with `reduction` the film keeps its part of them."""
 
     amplitude: float = number(1e-10, 1e-3, "m")
     waves: int = whole(1, 100_000)
+    reduction: bool = Field(False, description="true or false")
 
 
 FILM_NEEDS: dict[str, tuple[str, ...]] = {
@@ -106,11 +113,17 @@ class Film(Table):
         description='"squeeze", "quasistatic", "cavitating" or "third-order"'
     )
     thickness: Literal[
-        "calibrated", "equation-5", "constant-one-body", "constant-two-body", "hamrock-dowson"
+        "calibrated",
+        "equation-5",
+        "constant-one-body",
+        "constant-two-body",
+        "hamrock-dowson",
+        "regimes",
+        "line",
     ] = Field(
         "calibrated",
-        description='"calibrated", "equation-5", "constant-one-body", "constant-two-body" '
-        'or "hamrock-dowson"',
+        description='"calibrated", "equation-5", "constant-one-body", "constant-two-body", '
+        '"hamrock-dowson", "regimes" or "line"',
     )
     lubricant: str | None = Field(None, description="the name of a lubricant")
     viscosity: float = number(1e-5, 1e3, "Pa s")
@@ -186,7 +199,7 @@ class DiscScene(Table):
     title: Title
     kind: Literal["disc"]
     discs: Discs
-    contact: Contact
+    contact: AnyContact
     waviness: Waviness
     film: Film | None = None
     damping: Damping | None = None
@@ -200,9 +213,23 @@ class DiscScene(Table):
         return self
 
     @model_validator(mode="after")
+    def _reduced(self) -> DiscScene:
+        if self.waviness.reduction and self.film is None:
+            raise InputError("waviness.reduction", "is true", "only a scene with a film may have it")
+        return self
+
+    @model_validator(mode="after")
+    def _line(self) -> DiscScene:
+        """Refuse a film of lines in a contact that is none."""
+        if self.film is not None and self.film.thickness == "line" and self.contact.law != PALMGREN:
+            raise InputError("film.thickness", 'is "line"', 'only contact.law = "palmgren" may have it')
+        return self
+
+    @model_validator(mode="after")
     def _elastic(self) -> DiscScene:
         """Refuse elastic constants that nothing in the scene depends on."""
-        if self.film is None or self.film.thickness == "calibrated":
+        calibrated = self.film is None or self.film.thickness == "calibrated"
+        if calibrated and not self.waviness.reduction:
             for key in ("crown", "modulus", "poisson"):
                 if (value := getattr(self.discs, key)) is not None:
                     allowed = "only a film whose thickness is not calibrated may have one"
@@ -224,6 +251,18 @@ class Oscillator(Table):
         if self.stiffness == 0 and (self.cubic or 0) <= 0:
             raise InputError("oscillator.stiffness", "is 0", "it must be greater than 0 where cubic is not")
         return self
+
+
+class HertzDiscScene(DiscScene):
+    """Two discs in Hertzian rolling contact."""
+
+    contact: Contact
+
+
+class LineDiscScene(DiscScene):
+    """Two cylinders in rolling contact along a line, one of them wavy."""
+
+    contact: LineContact
 
 
 class FrequencyRange(Table):
@@ -255,7 +294,7 @@ class OscillatorScene(Table):
 
 Scene = DiscScene | OscillatorScene
 
-KINDS: dict[str, type[Scene]] = {"disc": DiscScene, "oscillator": OscillatorScene}
+KINDS: dict[str, type[Scene]] = {"disc": HertzDiscScene, "oscillator": OscillatorScene}
 
 
 def schema_of(tables: Mapping[str, Any]) -> type[Scene]:
@@ -268,6 +307,8 @@ def schema_of(tables: Mapping[str, Any]) -> type[Scene]:
     law = contact.get("law", HERTZ) if isinstance(contact, dict) else HERTZ
     if kind != "disc" or law == HERTZ:
         return KINDS[kind]
+    if law == PALMGREN:
+        return LineDiscScene
     laws = contact_laws()
     if not isinstance(law, str) or law not in laws:
         raise refused("contact.law", law, listed([shown(name) for name in laws]))

@@ -37,9 +37,10 @@ def case(value: float, changes: Mapping[str, float], base: str = "vitrea79-810N"
 
 def dry_resonance(scene: DiscScene) -> float:
     """Return the speed (rad/s) at which the waves meet the dry contact, omega^2 = n Q/(delta0 m/2)."""
-    contact, n = scene.contact, scene.contact.exponent
-    deflection = (contact.preload / contact.stiffness) ** (1 / n)
-    omega = math.sqrt(n * contact.preload / (deflection * scene.discs.mass / 2))
+    preload, contact = scene.contact.preload, scene.contact.numbers
+    n = contact["exponent"]
+    deflection = (preload / contact["stiffness"]) ** (1 / n)
+    omega = math.sqrt(n * preload / (deflection * scene.discs.mass / 2))
     return omega / scene.waviness.waves
 
 

@@ -8,6 +8,7 @@ one is g = w - X (Mehdigoli et al. 1990, eq. 10), shared by the elastic deflecti
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -92,7 +93,10 @@ class Film(Protocol):
 
 @dataclass
 class Junction:
-    """What the parts have said of one contact pair (SI symbols); None where they have said nothing yet."""
+    """What the parts have said of one contact pair (SI symbols); None where they have said nothing yet.
+
+    `ripple` is the part of the profile that a film keeps under the preload, so that it compresses nothing.
+    """
 
     pair: ContactPair
     preload: ca.SX | None = None
@@ -100,6 +104,7 @@ class Junction:
     film: Film | None = None
     damping_ratio: ca.SX | None = None
     profile: ca.SX = field(default_factory=lambda: ca.SX(0))
+    ripple: Callable[[ca.SX], ca.SX] | None = None
 
     def close(self, assembly: Assembly) -> None:
         """Join the parts: load on every coordinate, outputs and switches."""
@@ -122,7 +127,8 @@ class Junction:
         for q in self.pair.coordinates:
             assembly.suggest_scale(q, delta0)
         displacement = sum((assembly.motion(q).position.symbol for q in self.pair.coordinates), ca.SX(0))
-        return Loaded(self.pair.name, self.preload, law, self.profile - displacement)
+        felt = self.profile if self.ripple is None else self.profile * (1 - self.ripple(self.preload))
+        return Loaded(self.pair.name, self.preload, law, felt - displacement)
 
     def _damping(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """2 zeta omega0 mu dX/dt, with omega0^2 = n Q / (delta0 mu), mu the reduced mass of the bodies."""

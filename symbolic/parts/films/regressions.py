@@ -78,15 +78,30 @@ class Rolling:
     modulus: Value = STEEL_MODULUS
     poisson: Value = STEEL_POISSON
 
-    def groups(self, assembly: Assembly, contact: Loaded, compliance: Compliance) -> Groups:
-        """Return the dimensionless groups under the preload.
+    def reduced_radius(self, assembly: Assembly) -> ca.SX:
+        """Return R_x in m.
 
         Parameters
         ----------
         assembly : Assembly
             The workbench of the model.
-        contact : Loaded
-            The contact under its preload.
+
+        Returns
+        -------
+        casadi.SX
+            Half the radius of the discs.
+        """
+        return assembly.parameter(self.radius, "radius", "m") / 2
+
+    def groups(self, assembly: Assembly, load: ca.SX, compliance: Compliance) -> Groups:
+        """Return the dimensionless groups under a load.
+
+        Parameters
+        ----------
+        assembly : Assembly
+            The workbench of the model.
+        load : casadi.SX
+            Q in N.
         compliance : Compliance
             Which compliance the groups use.
 
@@ -101,11 +116,11 @@ class Rolling:
         crown = assembly.parameter(self.crown, "crown_radius", "m")
         modulus = assembly.parameter(self.modulus, "modulus", "Pa")
         e_x = compliance.value * (1 - assembly.parameter(self.poisson, "poisson") ** 2) / modulus
-        r_x = assembly.parameter(self.radius, "radius", "m") / 2
+        r_x = self.reduced_radius(assembly)
         return Groups(
             log_u=ca.log(eta * u * e_x / r_x),
             log_g=ca.log(alpha / e_x),
-            log_w=ca.log(contact.preload * e_x / r_x**2),
+            log_w=ca.log(load * e_x / r_x**2),
             length=r_x,
             compliance=e_x,
             ellipticity=1.03 * (crown / r_x) ** 0.64,
@@ -140,7 +155,7 @@ class RegressionThickness:
 
     def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m."""
-        g = self.rolling.groups(assembly, contact, self.compliance)
+        g = self.rolling.groups(assembly, contact.preload, self.compliance)
         exponent = assembly.parameter(self.speed_exponent, "speed_exponent")
         powers = exponent * g.log_u + 0.46 * g.log_g - 0.045 * g.log_w
         return g.length * 0.112 * ca.exp(powers + 0.076 * g.ellipticity)
@@ -172,7 +187,7 @@ class ConstantThickness:
 
     def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m."""
-        g = self.rolling.groups(assembly, contact, self.compliance)
+        g = self.rolling.groups(assembly, contact.preload, self.compliance)
         log_k = beta * ca.log(0.112) + 13.9 * g.log_u + 10.2 * g.log_g + (beta + 2) * ca.log(g.length)
         log_k += 54.85 + 1.6 * g.ellipticity - ca.log(g.compliance)
         return ca.exp((log_k - ca.log(contact.preload)) / beta)
@@ -198,6 +213,6 @@ class HamrockDowsonThickness:
 
     def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m."""
-        g = self.rolling.groups(assembly, contact, Compliance.REDUCED)
+        g = self.rolling.groups(assembly, contact.preload, Compliance.REDUCED)
         powers = ca.exp(0.68 * g.log_u + 0.49 * g.log_g - 0.073 * g.log_w)
         return g.length * 3.63 * powers * (1 - ca.exp(-0.68 * g.ellipticity))

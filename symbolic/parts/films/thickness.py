@@ -13,6 +13,7 @@ import casadi as ca
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.variables import Value
 from symbolic.parts.contact.pair import Loaded
+from symbolic.parts.films.law import FilmLaw
 
 
 class ThicknessLaw(Protocol):
@@ -58,6 +59,23 @@ class GivenThickness:
     def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
         """Return h0 in m."""
         return assembly.parameter(self.h0, "h0", "m")
+
+
+@dataclass(frozen=True)
+class SteadyThickness:
+    """h0 = H(Q) of a film law: its thickness under the preload; the film's own law does the rest.
+
+    Parameters
+    ----------
+    law : FilmLaw
+        H(W).
+    """
+
+    law: FilmLaw
+
+    def thickness(self, assembly: Assembly, contact: Loaded, beta: ca.SX) -> ca.SX:
+        """Return h0 in m."""
+        return self.law.thickness(assembly, contact.preload)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,10 @@ import pytest
 
 import symbolic as sym
 from symbolic.scenes import laws
+from symbolic.scenes.files import load
+from symbolic.scenes.schema import HertzDiscScene
 
-DISCS = [name for name in sym.scene_names() if name != "duffing"]
+DISCS = [name for name in sym.scene_names() if isinstance(load(name), HertzDiscScene)]
 
 
 @dataclass(frozen=True)

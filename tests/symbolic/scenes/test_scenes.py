@@ -13,6 +13,7 @@ SIZES = {
     "cavitating-film-810N": (3, 0),
     "dry-810N": (2, 0),
     "duffing": (2, 0),
+    "line-contact-810N": (3, 1),
     "quasistatic-film-810N": (2, 1),
     "supports-810N": (5, 1),
     "third-order-810N": (3, 0),
