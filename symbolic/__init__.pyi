@@ -10,6 +10,8 @@ from .kernels.native import CompilerError
 from .motion.linear import Modes, NoRestError, modes, resonance
 from .motion.response import FrequencyResponse, response
 from .motion.simulate import Simulation, simulate
+from .parts.bearings.rolling import RollingBearing
+from .parts.bearings.waves import RaceWave
 from .parts.contact.excitation import RampedWaviness, Waviness
 from .parts.contact.huntcrossley import HuntCrossleyStop
 from .parts.contact.law import ContactLaw, HertzLaw
@@ -33,9 +35,12 @@ from .parts.films.regressions import (
     RegressionThickness,
     Rolling,
 )
+from .parts.films.series import SeriesFilm
 from .parts.films.squeeze import SqueezeFilm
 from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
+from .parts.gears.error import TransmissionError
+from .parts.gears.mesh import GearMesh
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
 from .parts.mechanics.driven import BaseMotion, PeriodicForce, VaryingSpring
 from .parts.mechanics.forces import ConstantForce, HarmonicForce
@@ -87,6 +92,7 @@ __all__ = [
     "FourierSeries",
     "FrequencyResponse",
     "Gap",
+    "GearMesh",
     "GivenThickness",
     "HamrockDowsonThickness",
     "Harmonic",
@@ -116,13 +122,16 @@ __all__ = [
     "Preload",
     "Profile",
     "QuasistaticFilm",
+    "RaceWave",
     "RampedWaviness",
     "ReducedMass",
     "Reduction",
     "RegimeFilm",
     "RegressionThickness",
     "Rolling",
+    "RollingBearing",
     "Samples",
+    "SeriesFilm",
     "ShaftDisc",
     "Simulation",
     "Spring",
@@ -133,6 +142,7 @@ __all__ = [
     "Support",
     "ThicknessLaw",
     "ThirdOrder",
+    "TransmissionError",
     "Variable",
     "VaryingSpring",
     "Waviness",

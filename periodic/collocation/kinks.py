@@ -135,7 +135,18 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         directions = (switch.direction,) if switch.direction else (-1, 1)
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
-    return sorted(chosen, key=lambda crossing: crossing.phase)
+    return _apart(sorted(chosen, key=lambda crossing: crossing.phase), orbit, settings)
+
+
+def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Leave out crossings that lie closer than the threshold to the one before: two nodes cannot meet."""
+    kept: list[Crossing] = []
+    for crossing in chosen:
+        ends = [kept[-1].phase, kept[0].phase + orbit.mesh.period] if kept else []
+        limit = settings.vanish if _is_tied(crossing, orbit) else settings.appear
+        if all(abs(crossing.phase - end) >= limit for end in ends):
+            kept.append(crossing)
+    return kept
 
 
 def _kink(

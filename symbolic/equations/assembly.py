@@ -278,7 +278,8 @@ class Assembly:
         float
             Its value (SI).
         """
-        expression = self.with_frequency(expression)
+        if ca.depends_on(expression, self.omega):
+            expression = self.with_frequency(expression)
         items = [number.parameter for number in self.numbers.taken]
         symbols = ca.vertcat(*[item.symbol for item in items])
         values = [item.value for item in items]

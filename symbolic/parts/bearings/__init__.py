@@ -1,0 +1,1 @@
+"""Rolling bearings: elements that pass one after another between two wavy races."""

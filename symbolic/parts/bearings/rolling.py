@@ -1,0 +1,169 @@
+"""A rolling bearing: elements between two races, which carry the shaft one after another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from symbolic.checks import positive, refusal, whole
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.excitation import Order, order_of
+from symbolic.equations.model import Part
+from symbolic.equations.rest import steady_force
+from symbolic.equations.variables import Coordinate, Value
+from symbolic.parts.bearings.ranked import ranked
+from symbolic.parts.bearings.waves import RaceWave, Turns
+from symbolic.parts.contact.law import ContactLaw
+from symbolic.parts.films.series import SeriesFilm
+
+NEAR = 0.02
+"""Relative difference between `passages` and what the race diameters say, up to which it is a rounding."""
+
+
+WEAK = (-1.0,)
+"""Level of the switches, not 0: the equations do not change there, only a derivative of theirs does."""
+
+
+@dataclass(frozen=True)
+class RollingBearing(Part):
+    """Rolling bearing: force -sum_i F(d_i) (cos theta_i, sin theta_i) on the shaft's centre (x, y).
+
+        d_i = x cos theta_i + y sin theta_i - g + waves,   theta_i = Omega_c t + 2 pi i/n,
+        Omega_c = Omega D_i/(D_i + D_o)
+
+    The period is that of the passage of the elements, n Omega_c, after which each is where the next one was;
+    with `passages`, that which it has in common with the turns of the shaft. A kink in time lies where the
+    number of loaded elements changes.
+
+    Parameters
+    ----------
+    x, y : Coordinate
+        Displacement of the shaft's centre from that of the outer race.
+    elements : int
+        n.
+    law : ContactLaw
+        F, of both contacts of an element together: HertzLaw with exponent 3/2 for balls, 10/9 for rollers.
+    clearance : float or Parameter
+        g in m, radial; negative for a preloaded bearing.
+    speed : float or Parameter
+        Omega of the shaft in rad/s.
+    inner, outer : float or Parameter
+        Diameters of the races D_i and D_o in m.
+    waves : sequence of RaceWave
+        Waviness of races and elements.
+    film : SeriesFilm, optional
+        Lubricant film between each element and the races, in series with F.
+    passages, spin : int, float, str or Fraction, optional
+        Passages of elements and turns of an element about itself, in one turn of the shaft: rational numbers,
+        for the period in common with what turns with the shaft.
+
+    Raises
+    ------
+    ValueError
+        For fewer than one element, diameters that are no races, and passages that do not fit them.
+
+    References
+    ----------
+    Fukata, Gad, Kondou, Ayabe & Tamura, Bull. JSME 28 (1985) 899-904; Sunnersjo, J. Sound Vib. 58 (1978)
+    363-373.
+    """
+
+    x: Coordinate
+    y: Coordinate
+    elements: int
+    law: ContactLaw
+    clearance: Value
+    speed: Value
+    inner: Value
+    outer: Value
+    waves: Sequence[RaceWave] = ()
+    film: SeriesFilm | None = None
+    passages: Order | None = None
+    spin: Order | None = None
+
+    def __post_init__(self) -> None:
+        whole("elements", self.elements, 1)
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the forces of all elements, and begin the search for a rest where they carry the load."""
+        x, y = assembly.motion(self.x), assembly.motion(self.y)
+        g = assembly.parameter(self.clearance, "clearance", self.x.unit)
+        approaches, places = [], self._places(assembly)
+        for turns in places:
+            height = sum((wave.height(assembly, turns) for wave in self.waves), ca.SX(0))
+            along = x.position.symbol * ca.cos(turns.place) + y.position.symbol * ca.sin(turns.place)
+            approaches.append(along - g + height)
+        for turns, approach in zip(places, approaches, strict=True):
+            load = self._load(assembly, approach)
+            x.force -= load * ca.cos(turns.place)
+            y.force -= load * ca.sin(turns.place)
+        rest = Carried(self, g)
+        assembly.joints[rest] = rest
+        if self.film is None:
+            for count, approach in enumerate(ranked(approaches), 1):
+                assembly.switch(f"{count} loaded", approach / x.position.scale - 1, 0, WEAK)
+
+    def _load(self, assembly: Assembly, approach: ca.SX) -> ca.SX:
+        if self.film is None:
+            return self.law.load(assembly, approach)
+        return self.film.load(assembly, self.law, approach)
+
+    def _places(self, assembly: Assembly) -> list[Turns]:
+        """The angles of all elements."""
+        speed = assembly.parameter(self.speed, "speed", "rad/s")
+        cage = self._cage(assembly)
+        shaft = spin = None
+        if self.passages is None:
+            assembly.excite(self.elements * cage * speed)
+            passage = assembly.angle()
+        else:
+            order = self._checked(assembly, self.elements * cage)
+            assembly.excite(speed)
+            passage = float(order_of(order)) * assembly.angle(order)
+            shaft = assembly.angle()
+            spin = None if self.spin is None else float(order_of(self.spin)) * shaft
+            for wave in self.waves:
+                assembly.angle(wave.order(order, self.spin))
+        turn = 2 * ca.pi / self.elements
+        return [Turns(passage / self.elements + turn * i, shaft, spin) for i in range(self.elements)]
+
+    def _cage(self, assembly: Assembly) -> ca.SX:
+        """Turns of the cage in one of the shaft."""
+        inner = assembly.parameter(self.inner, "inner_race", "m")
+        outer = assembly.parameter(self.outer, "outer_race", "m")
+        if positive("inner", assembly.nominal(inner)) >= assembly.nominal(outer):
+            raise refusal("outer", assembly.nominal(outer), "greater than the diameter of the inner race")
+        return inner / (inner + outer)
+
+    def _checked(self, assembly: Assembly, exact: ca.SX) -> Order:
+        """The passages in one turn of the shaft, which the diameters have to allow."""
+        assert self.passages is not None
+        expected = assembly.nominal(exact)
+        if abs(float(order_of(self.passages)) - expected) > NEAR * expected:
+            raise refusal(
+                "passages", self.passages, f"about {expected:.6g}, as the diameters of the races say"
+            )
+        return self.passages
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """The search for a rest begins where one element carries the load on the shaft."""
+
+    bearing: RollingBearing
+    clearance: ca.SX
+
+    def close(self, assembly: Assembly) -> None:
+        """Set where the search begins, unless the user has."""
+        bearing = self.bearing
+        load = ca.vertcat(steady_force(assembly, bearing.x), steady_force(assembly, bearing.y))
+        size = ca.norm_2(load)
+        if not assembly.nominal(size) > 0:
+            return
+        reach = ca.fmax(self.clearance, 0) + bearing.law.preloaded(assembly, size).delta0
+        for q, part in ((bearing.x, load[0]), (bearing.y, load[1])):
+            position = assembly.motion(q).position
+            if position.rest.is_zero():
+                position.rest = reach * part / size

@@ -1,0 +1,75 @@
+"""A film in series with an elastic contact, solved for the load: no state, no unknown, no kink.
+
+The bodies' approach d (beyond that at which dry surfaces touch) and the film make up the deflection,
+
+    delta(W) = d + c h(W),   W = F(delta),
+
+c films one after another. With y = ln W Newton's method, written out, solves it in logarithms:
+ln(c h) = ln(delta - d) where the bodies part (d < 0), ln delta = ln(c h + d) where they press.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from symbolic.equations.assembly import Assembly
+from symbolic.parts.contact.law import ContactLaw
+from symbolic.parts.films.law import FilmLaw
+
+ITERATIONS = 7
+"""Newton's steps; both equations are nearly straight lines in ln W."""
+
+
+@dataclass(frozen=True)
+class SeriesFilm:
+    """Steady film in series with an elastic contact: W of F^-1(W) = d + c h(W).
+
+    Parameters
+    ----------
+    law : FilmLaw
+        h(W).
+    contacts : int
+        c: 2 where an element has a film on either side.
+    typical : float
+        A load in N from which the equation is solved; the result does not depend on it.
+    """
+
+    law: FilmLaw
+    contacts: int = 1
+    typical: float = 100.0
+
+    def load(self, assembly: Assembly, contact: ContactLaw, approach: ca.SX) -> ca.SX:
+        """Return the load under the film.
+
+        Parameters
+        ----------
+        assembly : Assembly
+            The workbench of the model.
+        contact : ContactLaw
+            F.
+        approach : casadi.SX
+            d in m, of either sign.
+
+        Returns
+        -------
+        casadi.SX
+            W in N, always positive.
+        """
+        elastic = contact.preloaded(assembly, ca.SX(self.typical))
+        y = ca.SX.sym("log_load")
+        log_delta = ca.log(elastic.delta0) + elastic.log_deflection(y)
+        log_film = ca.log(self.contacts * self.law.thickness(assembly, self.typical * ca.exp(y)))
+        pressed = log_delta - ca.log(ca.exp(log_film) + ca.fmax(approach, 0))
+        parted = ca.log(ca.exp(log_delta) - ca.fmin(approach, 0)) - log_film
+        return self.typical * ca.exp(_solved(ca.if_else(approach > 0, pressed, parted), y))
+
+
+def _solved(rising: ca.SX, y: ca.SX) -> ca.SX:
+    """Where a function of y that rises nearly along a line is zero."""
+    step = y - rising / ca.jacobian(rising, y)
+    found = ca.SX(0)
+    for _ in range(ITERATIONS):
+        found = ca.substitute(step, y, found)
+    return found

@@ -1,0 +1,80 @@
+"""The ball bearing JIS 6306 with varying compliance, against shooting with DOP853."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from reference.returning import Rates, Shot, shot
+
+import periodic as per
+import symbolic as sym
+
+KRPM = 2000 * math.pi / 60
+PLACES = (9.0, 8.0, 7.0, 6.0, 5.9)
+PEAKS = {7.0: (0.49618627, 0.29072993), 6.0: (2.43086450, 0.41931401)}
+"""Known x and y peak to peak in um (another author's integration, its peaks on samples)."""
+
+
+def bearing() -> sym.CompiledSystem:
+    """A rigid shaft under its weight, balls of Hertz's law in a clearance."""
+    x, y = (sym.coordinate(name, scale=1e-6) for name in "xy")
+    m, c = sym.parameter("m", 20.0, "kg"), sym.parameter("c", 200.0, "N s/m")
+    speed = sym.parameter("speed", 10 * KRPM, "rad/s")
+    parts = [sym.Mass(x, m), sym.Mass(y, m), sym.Damper(x, c), sym.Damper(y, c), sym.ConstantForce(x, 196.0)]
+    law = sym.HertzLaw(13.34e9)
+    return sym.compile(sym.combine([*parts, sym.RollingBearing(x, y, 8, law, 6e-6, speed, 40.1e-3, 63.9e-3)]))
+
+
+@cache
+def branch() -> per.Branch:
+    """The branch from 10 krpm to beyond the doubling."""
+    return per.trace(bearing(), "speed", (5.4 * KRPM, 10 * KRPM), start=10 * KRPM, at=np.array(PLACES) * KRPM)
+
+
+def rates(krpm: float) -> Rates:
+    """The equations in um, ' = d/dtau, tau = 8 W_c t, each ball written out."""
+    omega = 8 * krpm * KRPM * 40.1 / 104.0
+
+    def found(tau: float, s: np.ndarray) -> list[float]:
+        theta = (tau + 2 * np.pi * np.arange(8)) / 8
+        depth = np.maximum(s[0] * np.cos(theta) + s[2] * np.sin(theta) - 6, 0) * 1e-6
+        load = 13.34e9 * depth**1.5
+        ax = (196 - load @ np.cos(theta)) / 20 * 1e6 / omega**2 - 10 / omega * s[1]
+        ay = -(load @ np.sin(theta)) / 20 * 1e6 / omega**2 - 10 / omega * s[3]
+        return [s[1], ax, s[3], ay]
+
+    return found
+
+
+def confirmed(point: per.Point) -> Shot:
+    """The orbit of a point by shooting, begun a little beside it."""
+    guess = point.orbit.state(np.zeros(1))[0] + 1e-6
+    return shot(rates(point.parameter / KRPM), guess, (1.0, 1.0, 1.0, 1.0))
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_orbits(place: float) -> None:
+    """Assert orbit, peaks and multipliers of one passage at five speeds by shooting."""
+    (point,) = [p for p in branch().labelled(per.Label.USER) if abs(p.parameter / KRPM - place) < 1e-9]
+    own = confirmed(point)
+    assert point.orbit.state(np.zeros(1))[0] == pytest.approx(own.start, abs=2e-7)
+    assert point.peak_to_peak("x") * 1e6 == pytest.approx(own.peak_to_peak(0), rel=1e-6)
+    assert point.peak_to_peak("y") * 1e6 == pytest.approx(own.peak_to_peak(2), rel=1e-6)
+    assert np.abs(point.multipliers) == pytest.approx(np.abs(own.multipliers), rel=3e-5)
+
+
+@pytest.mark.parametrize("krpm", PEAKS)
+def test_known_peaks(krpm: float) -> None:
+    """Assert the known peaks, to the 1e-5 by which samples miss them."""
+    (point,) = [p for p in branch().labelled(per.Label.USER) if abs(p.parameter / KRPM - krpm) < 1e-9]
+    found = [point.peak_to_peak(q) * 1e6 for q in "xy"]
+    assert found == pytest.approx(PEAKS[krpm], rel=1e-5)
+
+
+def test_known_doubling() -> None:
+    """Assert the known doubling, PD of one passage and not BP of eight, to eight digits."""
+    (doubling,) = branch().labelled(per.Label.DOUBLING)
+    assert doubling.parameter / KRPM == pytest.approx(5.428828134, rel=1e-8)
