@@ -95,6 +95,7 @@ class RollingBearing(Part):
             height = sum((wave.height(assembly, turns) for wave in self.waves), ca.SX(0))
             along = x.position.symbol * ca.cos(turns.place) + y.position.symbol * ca.sin(turns.place)
             approaches.append(along - g + height)
+            assembly.smooth_at(approaches[-1])  # an element's own kinks have not the period of the passage
         for turns, approach in zip(places, approaches, strict=True):
             load = self._load(assembly, approach)
             x.force -= load * ca.cos(turns.place)
