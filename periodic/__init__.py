@@ -31,6 +31,7 @@ from periodic.orbit.row import Row
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Family, Scheme
 from periodic.results.branch import Branch
+from periodic.results.interactive.page import page
 from periodic.results.journal import JournalError, recovered
 from periodic.results.netcdf import BranchFileError
 from periodic.results.plots import plot
@@ -109,6 +110,7 @@ __all__ = [
     "mean",
     "mode",
     "outputs",
+    "page",
     "plot",
     "recovered",
     "sampled",
