@@ -52,6 +52,7 @@ from .parts.structure import Structure
 from .scenes.door import scene, scene_names
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
+from .scenes.model.catalogue import register_part
 from .structures.beam import beam
 from .structures.campbell import Campbell, campbell
 from .structures.files import read_matrices
@@ -160,6 +161,7 @@ __all__ = [
     "parameter",
     "read_matrices",
     "register_contact_law",
+    "register_part",
     "residual_modes",
     "resonance",
     "response",

@@ -1,4 +1,4 @@
-"""The command line: `orbitrace scenes`, `orbitrace trace SCENE` and `orbitrace linear SCENE`.
+"""The command line: `orbitrace trace SCENE`, `linear SCENE`, `scenes`, `parts` and `new`.
 
 What is imported here is small; each command imports what it needs, so that --help is quick.
 """
@@ -16,6 +16,7 @@ from typer._click.exceptions import ClickException
 
 from reports.app.linear.command import linear
 from reports.app.options import BAD_INPUT, DONE, say
+from reports.app.parts.command import new, parts
 from reports.app.scenes import scenes
 from reports.app.trace.command import trace
 
@@ -26,7 +27,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (scenes, trace, linear):
+for command in (scenes, trace, linear, parts, new):
     app.command()(command)
 
 

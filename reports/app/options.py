@@ -5,6 +5,8 @@ Imported for --help: nothing large is imported here.
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -25,6 +27,16 @@ Out = Annotated[
 ]
 
 
+Axis = Annotated[
+    str | None,
+    typer.Option("--axis", metavar="UNIT", help="Read the frequency in rev/min, Hz or rad/s."),
+]
+Own = Annotated[
+    list[str] | None,
+    typer.Option("--parts", metavar="MODULE", help="Import a module of your own with parts for scenes."),
+]
+
+
 def say(sentence: str) -> None:
     """Say something on standard error."""
     typer.echo(f"orbitrace: {sentence}", err=True)
@@ -42,6 +54,17 @@ def _pair(change: str) -> tuple[str, str]:
     if not (key and equals):
         raise refused("--set", change, "KEY=VALUE, as in film.beta=20")
     return key.strip(), value.strip()
+
+
+def take_parts(modules: Sequence[str] | None) -> None:
+    """Import modules with parts, those in the working directory too. Raises InputError."""
+    if not modules:
+        return
+    from symbolic.scenes.model.catalogue import register_module
+
+    sys.path.insert(0, os.getcwd())
+    for name in modules:
+        register_module(name)
 
 
 def count(option: str, text: str | None) -> int | None:

@@ -1,17 +1,19 @@
 """What people read of a branch: the columns of its table, in the units of the field.
 
-A disc is read in rev/min, micrometres and newtons, an oscillator in SI.
+A disc is read in rev/min, micrometres and newtons, an oscillator and a model in SI; the axis is that of the
+scene or of the user.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import AXES, RPM, SHORT
+from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.schema import DiscScene, Scene
 
 if TYPE_CHECKING:
@@ -68,7 +70,68 @@ class View:
 
 def view_of(scene: Scene) -> View:
     """Return how branches of a scene are read."""
-    return DISC if isinstance(scene, DiscScene) else OSCILLATOR
+    if isinstance(scene, ModelScene):
+        usual = _model(scene)
+    else:
+        usual = DISC if isinstance(scene, DiscScene) else OSCILLATOR
+    axis = scene.trace.axis
+    return usual if axis in (None, usual.unit_name) else _on_axis(usual, axis)
+
+
+def _on_axis(view: View, axis: str) -> View:
+    """The same with the parameter in another unit."""
+    stem = view.abscissa.heading.partition(" (")[0]
+    column = Column(
+        name=f"{view.abscissa.name.removesuffix('_rpm')}_{SHORT[axis]}",
+        heading=f"{stem} ({axis})",
+        value=_parameter(AXES[axis]),
+    )
+    return replace(
+        view,
+        unit=AXES[axis],
+        columns=(column, *view.columns[1:]),
+        axes=(column.heading, view.axes[1]),
+        unit_name=axis,
+    )
+
+
+TOLD = 4
+"""Outputs of a model that the table of special points tells of; the files have all."""
+
+
+def _model(scene: ModelScene) -> View:
+    """How a model is read: peak to peak of every output, SI."""
+    continued, outputs = scene.continued, scene.compiled.outputs
+    swings = tuple(
+        Column(
+            name=f"{o.name}_pp",
+            heading=_with_unit(f"{o.name} p-p", o.unit) if k < TOLD else "",
+            value=_ripple(o.name, 1.0),
+        )
+        for k, o in enumerate(outputs)
+    )
+    first = outputs[0]
+    heading = _with_unit(continued.name, continued.unit)
+    return View(
+        parameter=continued.name,
+        unit=1.0,
+        columns=(
+            Column(name=continued.name, heading=heading, value=_parameter(1.0)),
+            *swings,
+            MULTIPLIER,
+            STABLE,
+            LABEL,
+            ERROR,
+        ),
+        height=swings[0],
+        settled=lambda motion: motion.maximum - motion.minimum,
+        axes=(heading, _with_unit(f"{first.name} peak to peak", first.unit)),
+        unit_name=continued.unit,
+    )
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} ({unit})" if unit else name
 
 
 def in_units(value: float, unit: float) -> float:

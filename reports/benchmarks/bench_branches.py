@@ -7,7 +7,8 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import periodic as per
 from reports.benchmarks.work import fold_error
-from symbolic.scenes.building import RPM, build
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build
 from symbolic.scenes.files import load
 
 

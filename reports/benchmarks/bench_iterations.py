@@ -9,7 +9,8 @@ import periodic as per
 import symbolic as sym
 from periodic.correction.newton import correct
 from reports.benchmarks.work import COUNTS, NTST, OFF_RESONANCE, chain_model, converged, linearisations
-from symbolic.scenes.building import RPM, build
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build
 from symbolic.scenes.files import load
 
 

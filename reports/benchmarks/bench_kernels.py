@@ -18,7 +18,8 @@ from periodic.orbit.orbit import Orbit
 from reports.benchmarks.work import chain_model
 from symbolic.kernels import native
 from symbolic.kernels.choice import Kernels
-from symbolic.scenes.building import RPM, disc_model, oscillator_model
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import disc_model, oscillator_model
 from symbolic.scenes.files import load
 from symbolic.scenes.schema import DiscScene, OscillatorScene
 

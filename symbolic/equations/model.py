@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from symbolic.checks import refusal, text, typed
 from symbolic.equations.assembly import Assembly
@@ -13,7 +14,12 @@ PART = "Part, as symbolic.Mass(x, 1.0) is"
 
 
 class Part:
-    """One term of the equations of motion; what it adds it says in `contribute`."""
+    """One term of the equations of motion; what it adds it says in `contribute`.
+
+    A class may have `EXAMPLE`, values of its fields as a text scene has them, where 1.0 is no good one.
+    """
+
+    EXAMPLE: ClassVar[Mapping[str, object]] = {}
 
     @property
     def owner(self) -> str:

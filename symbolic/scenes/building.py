@@ -38,14 +38,13 @@ from symbolic.parts.films.thirdorder import ThirdOrder
 from symbolic.parts.mechanics.forces import HarmonicForce
 from symbolic.parts.mechanics.inertia import Mass, ReducedMass
 from symbolic.parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
+from symbolic.scenes.axes import RPM
 from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.laws import HERTZ, PALMGREN, contact_laws
+from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.schema import AnyContact, DiscScene, Film, Oscillator, OscillatorScene, Scene
 from symbolic.system.compile import compile
 from symbolic.system.compiled import CompiledSystem
-
-RPM = 2 * math.pi / 60
-"""rad/s in one rev/min."""
 
 
 def build(scene: Scene) -> CompiledSystem:
@@ -53,6 +52,8 @@ def build(scene: Scene) -> CompiledSystem:
 
     Raises InputError where the environment asks for kernels that cannot be.
     """
+    if isinstance(scene, ModelScene):
+        return scene.system(_kernels())
     model = disc_model(scene) if isinstance(scene, DiscScene) else oscillator_model(scene)
     return compile(model, _kernels())
 

@@ -19,6 +19,22 @@ class InputError(Exception):
         super().__init__(plain(f"{field} {what}; {allowed}"))
         self.field, self.what, self.allowed = field, what, allowed
 
+    @classmethod
+    def said(cls, sentence: str) -> InputError:
+        """Return the error that a sentence tells already, as those of functions for Python do.
+
+        Parameters
+        ----------
+        sentence : str
+            "what it is; what is allowed".
+
+        Returns
+        -------
+        InputError
+            With that sentence.
+        """
+        return ToldError(sentence)
+
     def renamed(self, names: Mapping[str, str]) -> InputError:
         """Return the error with fields under the names by which the user gave them.
 
@@ -36,6 +52,18 @@ class InputError(Exception):
         for old, new in names.items():
             field, allowed = new if field == old else field, allowed.replace(old, new)
         return InputError(field, self.what, allowed)
+
+
+class ToldError(InputError):
+    """Bad input told in a sentence as it stands."""
+
+    def __init__(self, sentence: str) -> None:
+        Exception.__init__(self, plain(" ".join(sentence.split())))
+        self.field, self.what, self.allowed = sentence, "", ""
+
+    def renamed(self, names: Mapping[str, str]) -> InputError:
+        """Return the error itself."""
+        return self
 
 
 def refused(field: str, value: Any, allowed: str) -> InputError:

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
-from symbolic.scenes.errors import LONGEST, InputError, cut, listed, refused, shown
+from symbolic.scenes.changing import Steps, Value, address, complaint, keys_of, set_value
+from symbolic.scenes.errors import LONGEST, InputError, cut, refused
+from symbolic.scenes.model.keys import model_keys
+from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.schema import Scene, schema_of
 
-Override = tuple[str, str | float | None]
+Override = tuple[str, Value]
 """A key, dotted or its last component alone, and its value, perhaps as text; none takes the key out."""
 
 
 LARGEST = 32768
 """Bytes of a scene file; what is larger is none, and may take Python's reader of TOML for ever."""
-
-
-BARE = re.compile(r"[A-Za-z0-9_-]{1,60}")
-"""Keys that stand in a sentence without quotes."""
 
 
 def scene_names() -> list[str]:
@@ -33,6 +32,11 @@ def scene_names() -> list[str]:
     return sorted(names, key=lambda name: re.sub(r"\d+", lambda digits: digits[0].zfill(8), name))
 
 
+def built_in(name: str) -> str:
+    """Return the text of a built-in scene."""
+    return resources.files("symbolic.scenes").joinpath("data", f"{name}.toml").read_text("utf-8")
+
+
 def short_name(source: str) -> str:
     """Return what to call a scene: its name, or that of its file without folder and ending."""
     return source if source in scene_names() else Path(source).stem
@@ -40,7 +44,7 @@ def short_name(source: str) -> str:
 
 def ends(scene: Scene) -> list[str]:
     """Return the keys of the two ends of a scene's range."""
-    return [f"trace.{key}" for key in type(scene.trace).model_fields]
+    return [f"trace.{key}" for key in scene.trace.written]
 
 
 def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
@@ -51,17 +55,34 @@ def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
     tables = _parsed(source, _text(source))
     schema = schema_of(tables)
     for key, value in overrides:
-        _override(tables, _path(schema, key, tables), value)
+        set_value(tables, _address(schema, key, tables), value)
         schema = schema_of(tables)
+    return _validated(schema, tables)
+
+
+def _address(schema: type[Scene], key: str, tables: dict[str, Any]) -> Steps:
+    """Where a key stands; a parameter of a model by its name goes to its [values]."""
+    if not issubclass(schema, ModelScene):
+        return address({k: list(k.split(".")) for k in keys_of(schema)}, key, tables)
+    keys = model_keys(tables)
+    if key not in keys:
+        scene = _validated(schema, tables)
+        assert isinstance(scene, ModelScene)
+        if key in [p.name for p in scene.compiled.parameters]:
+            return ["values", key]
+    return address(keys, key, tables)
+
+
+def _validated(schema: type[Scene], tables: Mapping[str, Any]) -> Scene:
     try:
         return schema.model_validate(tables)
     except ValidationError as error:
-        raise _complaint(schema, error) from None
+        raise complaint(schema, error) from None
 
 
 def _text(source: str) -> str:
     if source in scene_names():
-        return resources.files("symbolic.scenes").joinpath("data", f"{source}.toml").read_text("utf-8")
+        return built_in(source)
     names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
     if not source.strip():
@@ -92,85 +113,3 @@ def _parsed(source: str, text: str) -> dict[str, Any]:
         why = "its tables are too deep" if isinstance(error, RecursionError) else str(error)
         found = f'file "{source}" is not TOML: {cut(why, 3 * LONGEST)}'
         raise InputError("scene", found, "it must hold lines like preload = 810") from error
-
-
-def _keys(schema: type[BaseModel], prefix: str = "") -> Iterator[str]:
-    """Yield the dotted keys of a scene, tables and values."""
-    for name, table in schema.model_fields.items():
-        if name == "kind":
-            continue
-        yield prefix + name
-        if inner := _table(table.annotation):
-            yield from _keys(inner, f"{prefix}{name}.")
-
-
-def _table(annotation: Any) -> type[BaseModel] | None:
-    """Return the model of a field that is a table, or None."""
-    for candidate in (annotation, *getattr(annotation, "__args__", ())):
-        if isinstance(candidate, type) and issubclass(candidate, BaseModel):
-            return candidate
-    return None
-
-
-def _path(schema: type[BaseModel], key: str, tables: Mapping[str, Any]) -> list[str]:
-    """Return the components of a key that may be given by its last component alone.
-
-    Where several end so it is the one that the scene has.
-    """
-    keys = list(_keys(schema))
-    found = [k for k in keys if k == key] or [k for k in keys if k.rpartition(".")[2] == key]
-    if len(found) > 1:
-        found = [k for k in found if _has(tables, k.split("."))] or found
-    if len(found) != 1:
-        choice = found or [k for k in keys if "." in k]
-        raise refused("--set key", key, f"one of {', '.join(choice)}")
-    return found[0].split(".")
-
-
-def _has(tables: Any, path: Sequence[str]) -> bool:
-    if not path:
-        return True
-    return isinstance(tables, Mapping) and path[0] in tables and _has(tables[path[0]], path[1:])
-
-
-def _override(tables: dict[str, Any], path: list[str], value: str | float | None) -> None:
-    for name in path[:-1]:
-        inner = tables.setdefault(name, {})
-        if not isinstance(inner, dict):
-            raise refused(name, inner, "a table")
-        tables = inner
-    if value is None or value == "":
-        tables.pop(path[-1], None)
-    else:
-        tables[path[-1]] = _value(value) if isinstance(value, str) else value
-
-
-def _value(text: str) -> bool | int | float | str:
-    if text in ("true", "false"):
-        return text == "true"
-    for number in (int, float):
-        try:
-            return number(text)
-        except ValueError:
-            continue
-    return text
-
-
-def _complaint(schema: type[BaseModel], error: ValidationError) -> InputError:
-    """Return the first of pydantic's errors as a sentence; a mistyped key before what it leaves missing."""
-    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    path = [str(part) for part in first["loc"]]
-    key = ".".join(part if BARE.fullmatch(part) else shown(part) for part in path)
-    table: type[BaseModel] = schema
-    for name in path[:-1]:
-        table = _table(table.model_fields[name].annotation) or table
-    if first["type"] == "extra_forbidden":
-        place = f"[{'.'.join(path[:-1])}]" if path[1:] else "the scene"
-        known = listed(list(table.model_fields), "and")
-        return InputError(key, "is not a key of the scene", f"{place} may have {known}")
-    field = table.model_fields[path[-1]]
-    inner = _table(field.annotation)
-    allowed = f"a table with {listed(list(inner.model_fields), 'and')}" if inner else str(field.description)
-    if first["type"] == "missing":
-        return InputError(key, "is missing", f"it must be {allowed}")
-    return refused(key, first["input"], allowed)

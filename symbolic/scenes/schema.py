@@ -7,47 +7,16 @@ from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from functools import cache
 from importlib import resources
-from typing import Annotated, Any, Literal, cast
+from typing import Any, Literal, cast
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model, model_validator
+from pydantic import Field, create_model, model_validator
 
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.laws import HERTZ, PALMGREN, TAKEN, contact_laws
-
-
-def number(low: float, high: float, unit: str = "") -> Any:
-    """A field that takes finite numbers from low to high."""
-    return Field(ge=low, le=high, description=f"a number from {low:g} to {high:g}{unit and f' ({unit})'}")
-
-
-def whole(low: int, high: int) -> Any:
-    """A field that takes whole numbers from low to high."""
-    return Field(ge=low, le=high, description=f"a whole number from {low} to {high}")
-
-
-Speed = Annotated[float, number(0.1, 1e5, "rev/min")]
-Frequency = Annotated[float, number(1e-9, 1e9, "rad/s")]
-
-
-def one_line(text: str) -> str:
-    """Refuse a text that a terminal would not show as a line."""
-    if not text.isprintable():
-        raise ValueError
-    return text
-
-
-Title = Annotated[
-    str,
-    AfterValidator(one_line),
-    Field(max_length=200, description="one line of text, at most 200 characters"),
-]
-
-
-class Table(BaseModel):
-    """A table of a scene file: no unknown keys, no conversions, no infinities."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+from symbolic.scenes.model.scene import ModelScene
+from symbolic.scenes.ranges import FrequencyRange, SpeedRange
+from symbolic.scenes.tables import Table, Title, number, whole
 
 
 class Discs(Table):
@@ -175,24 +144,6 @@ class Support(Table):
     )
 
 
-class SpeedRange(Table):
-    """Where the trace starts and which way it goes, in rev/min of the discs."""
-
-    from_rpm: Speed
-    to_rpm: Speed
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Where the trace starts and ends."""
-        return self.from_rpm, self.to_rpm
-
-    @model_validator(mode="after")
-    def _two_ends(self) -> SpeedRange:
-        if self.from_rpm == self.to_rpm:
-            raise _one_point("trace.to_rpm", self.to_rpm, "trace.from_rpm")
-        return self
-
-
 class DiscScene(Table):
     """Two discs in rolling contact, one of them wavy."""
 
@@ -265,24 +216,6 @@ class LineDiscScene(DiscScene):
     contact: LineContact
 
 
-class FrequencyRange(Table):
-    """Where the trace starts and which way it goes: angular frequency Omega in rad/s."""
-
-    from_frequency: Frequency
-    to_frequency: Frequency
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Where the trace starts and ends."""
-        return self.from_frequency, self.to_frequency
-
-    @model_validator(mode="after")
-    def _two_ends(self) -> FrequencyRange:
-        if self.from_frequency == self.to_frequency:
-            raise _one_point("trace.to_frequency", self.to_frequency, "trace.from_frequency")
-        return self
-
-
 class OscillatorScene(Table):
     """A forced oscillator with a linear and a cubic spring."""
 
@@ -292,9 +225,9 @@ class OscillatorScene(Table):
     trace: FrequencyRange
 
 
-Scene = DiscScene | OscillatorScene
+Scene = DiscScene | OscillatorScene | ModelScene
 
-KINDS: dict[str, type[Scene]] = {"disc": HertzDiscScene, "oscillator": OscillatorScene}
+KINDS: dict[str, type[Scene]] = {"disc": HertzDiscScene, "oscillator": OscillatorScene, "model": ModelScene}
 
 
 def schema_of(tables: Mapping[str, Any]) -> type[Scene]:
@@ -323,10 +256,6 @@ def _disc_scene(law: type[ContactLaw]) -> type[DiscScene]:
     }
     contact = create_model("Contact", __base__=AnyContact, **numbers)
     return create_model("DiscScene", __base__=DiscScene, contact=(contact, ...))
-
-
-def _one_point(field: str, value: float, other: str) -> InputError:
-    return InputError(field, f"is {value:g}", f"it must differ from {other} so that there is a range")
 
 
 @cache

@@ -20,7 +20,8 @@ import periodic as per
 import symbolic as sym
 from symbolic.equations.assembly import Assembly
 from symbolic.motion.explicit import rates
-from symbolic.scenes.building import RPM, build
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build
 from symbolic.scenes.schema import DiscScene
 
 Random = np.random.Generator

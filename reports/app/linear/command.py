@@ -8,7 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.app.options import DONE, STOPPED_EARLY, Changes, Out, Source, folder_for, pairs, say
+from reports.app.options import (
+    DONE,
+    STOPPED_EARLY,
+    Axis,
+    Changes,
+    Out,
+    Own,
+    Source,
+    folder_for,
+    pairs,
+    say,
+    take_parts,
+)
 
 if TYPE_CHECKING:
     from reports.app.linear.study import Study
@@ -17,15 +29,21 @@ Values = Annotated[
     str | None,
     typer.Option(
         "--at",
-        metavar="RPM,RPM,...",
-        help="Values to linearise at (oscillator: rad/s). [default: the resonance]",
+        metavar="VALUE,VALUE,...",
+        help="Values to linearise at, in the unit of the axis. [default: the resonance]",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print what linear.json holds, and nothing else.")]
 
 
 def linear(
-    scene: Source, at: Values = None, changes: Changes = None, out: Out = None, as_json: Json = False
+    scene: Source,
+    at: Values = None,
+    axis: Axis = None,
+    changes: Changes = None,
+    parts: Own = None,
+    out: Out = None,
+    as_json: Json = False,
 ) -> int:
     """Show the linear system about the rest of a scene: natural frequencies, damping, frequency response.
 
@@ -37,7 +55,8 @@ def linear(
     from symbolic.motion.linear import NoRestError
     from symbolic.scenes.files import short_name
 
-    task = validated(Request(source=scene, at=at, overrides=pairs(changes)))
+    take_parts(parts)
+    task = validated(Request(source=scene, at=at, overrides=pairs(changes), axis=axis))
     folder = folder_for(out, name := short_name(scene))
     try:
         found = study.study(task)

@@ -21,15 +21,15 @@ def draw(path: Path, found: Study) -> None:
     drawn = figure(6.0)
     upper, lower = drawn.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     view, answer = view_of(found.scene), found.response
-    _, unit, scale = units(found.system)[0]
+    name, unit, scale = units(found.system)[0]
     across = answer.values / view.unit
-    upper.semilogy(across, answer.peak_to_peak("x") / scale, color=BLUE, linewidth=1.8)
-    lower.plot(across, degrees(found, "x"), color=BLUE, linewidth=1.8)
+    upper.semilogy(across, answer.peak_to_peak(name) / scale, color=BLUE, linewidth=1.8)
+    lower.plot(across, degrees(found, name), color=BLUE, linewidth=1.8)
     _mark(upper, found, scale)
     source = "wave" if found.scene.kind == "disc" else "force"
     letters = "µm" if unit == "um" else unit
-    upper.set_ylabel(f"x peak to peak, linear ({letters})")
-    lower.set(xlabel=view.axes[0], ylabel=f"phase of x to the {source} (°)")
+    upper.set_ylabel(f"{name} peak to peak, linear ({letters})")
+    lower.set(xlabel=view.axes[0], ylabel=f"phase of {name} to the {source} (°)")
     lower.yaxis.set_major_locator(MultipleLocator(90))
     for axes in (upper, lower):
         axes.grid(alpha=0.25)
@@ -48,7 +48,7 @@ def _mark(axes: Axes, found: Study, scale: float) -> None:
         name = f"peak at {where:.6g} {view.unit_name}"
         axes.plot([where], [height], "o", color=INK, markersize=5, label=name)
     if found.at != (found.resonance,):
-        swings = found.there.peak_to_peak("x") / scale
+        swings = found.there.peak_to_peak(found.system.outputs[0].name) / scale
         across = [value / view.unit for value in found.at]
         look: dict[str, Any] = {"color": ORANGE, "markersize": 7, "markerfacecolor": "none"}
         axes.plot(across, swings, "s", label="values of the table", **look)

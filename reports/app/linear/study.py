@@ -33,7 +33,7 @@ class Study:
     """What `orbitrace linear` finds; SI units. None where there is no resonance in the range.
 
     `modes` are those at the values `at`, `swings` the linear peak to peak of each output there. `peak` is
-    where the response of x is largest near the resonance, and its peak to peak.
+    where the response of the first output is largest near the resonance, and its peak to peak.
     """
 
     scene: Scene
@@ -53,9 +53,9 @@ def study(task: Task) -> Study:
     `symbolic.NoRestError`.
     """
     view, system = view_of(task.scene), build(task.scene)
-    low, high = sorted(value * view.unit for value in task.scene.trace.ends)
+    low, high = sorted(task.scene.trace.bounds)
     met = resonance(system, view.parameter, (low, high))
-    default = task.scene.trace.ends[0] * view.unit if met is None else met
+    default = task.scene.trace.bounds[0] if met is None else met
     at = tuple(value * view.unit for value in task.at) or (default,)
     ratio = modes(system, {view.parameter: met}).damping_ratios[0] if met is not None else math.nan
     return Study(
@@ -77,7 +77,7 @@ def _peak(
         return None
     width = min(3 * ratio, 0.9)
     about = max(bounds[0], met * (1 - width)), min(bounds[1], met * (1 + width))
-    return peak(system, "x", view.parameter, about)
+    return peak(system, system.outputs[0].name, view.parameter, about)
 
 
 def _samples(low: float, high: float, met: float | None, ratio: float) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 from reports.app.linear.study import Array, Study
 from reports.app.view import MICRO, View, view_of
 from symbolic import CompiledSystem
+from symbolic.scenes.axes import SHORT
 
 
 def units(system: CompiledSystem) -> list[tuple[str, str, float]]:
@@ -66,11 +67,11 @@ def summary(name: str, found: Study) -> dict[str, Any]:
     at = view.abscissa.name
     top = None
     if found.peak is not None:
-        unit, scale = units(found.system)[0][1:]
-        top = {at: view.shown(found.peak[0]), f"x_pp_{unit}": found.peak[1] / scale}
+        output, unit, scale = units(found.system)[0]
+        top = {at: view.shown(found.peak[0]), f"{output}_pp_{unit}": found.peak[1] / scale}
     return {
         "scene": name,
-        "parameters": found.scene.model_dump(exclude={"title", "kind"}, exclude_none=True),
+        "parameters": found.scene.model_dump(exclude={"title", "kind"}, exclude_none=True, by_alias=True),
         "resonance": None if found.resonance is None else {at: view.shown(found.resonance)},
         "peak": top,
         "states": [{"name": state.name, "unit": state.unit} for state in found.system.states],
@@ -106,7 +107,7 @@ def _point(found: Study, k: int) -> dict[str, Any]:
 
 
 def _suffix(view: View) -> str:
-    return "rpm" if view.unit_name == "rev/min" else "rad_s"
+    return SHORT.get(view.unit_name, "rad_s")
 
 
 def _as_parameter(found: Study, k: int, frequencies: Array) -> list[float]:
@@ -178,10 +179,10 @@ def verdict(found: Study) -> list[str]:
     lines = [f"resonance of the lowest mode: {where} (excitation meets the natural frequency)"]
     if found.peak is None:
         return [*lines, "peak of the linear response: unbounded"]
-    unit, scale = units(found.system)[0][1:]
+    output, unit, scale = units(found.system)[0]
     peak, height = view.shown(found.peak[0]), found.peak[1] / scale
     letter = "µm" if unit == "um" else unit
     return [
         *lines,
-        f"peak of the linear response: x p-p {height:.6g} {letter} at {peak:.8g} {view.unit_name}",
+        f"peak of the linear response: {output} p-p {height:.6g} {letter} at {peak:.8g} {view.unit_name}",
     ]

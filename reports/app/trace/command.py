@@ -16,13 +16,16 @@ from reports.app.options import (
     DONE,
     INTERRUPTED,
     STOPPED_EARLY,
+    Axis,
     Changes,
     Out,
+    Own,
     Source,
     count,
     folder_for,
     pairs,
     say,
+    take_parts,
 )
 
 if TYPE_CHECKING:
@@ -49,12 +52,12 @@ class Method(Enum):
 
 
 From = Annotated[
-    str | None, typer.Option("--from", metavar="RPM", help="Where to start (oscillator: rad/s).")
+    str | None, typer.Option("--from", metavar="VALUE", help="Where to start, in the unit of the axis.")
 ]
-To = Annotated[str | None, typer.Option("--to", metavar="RPM", help="Where to end.")]
+To = Annotated[str | None, typer.Option("--to", metavar="VALUE", help="Where to end.")]
 At = Annotated[
     str | None,
-    typer.Option("--at", metavar="RPM,RPM,...", help="Values that get a point on every sheet."),
+    typer.Option("--at", metavar="VALUE,VALUE,...", help="Values that get a point on every sheet."),
 ]
 Dial = Annotated[Accuracy, typer.Option("--accuracy", help="How accurate every orbit is.")]
 How = Annotated[Method, typer.Option("--method", help="How orbits are represented and solved for.")]
@@ -80,7 +83,9 @@ def trace(
     begin: From = None,
     end: To = None,
     at: At = None,
+    axis: Axis = None,
     changes: Changes = None,
+    parts: Own = None,
     accuracy: Dial = Accuracy.STANDARD,
     method: How = Method.COLLOCATION,
     out: Out = None,
@@ -98,7 +103,9 @@ def trace(
     from reports.app.request import Request, validated
     from symbolic.scenes.files import short_name
 
-    task = validated(Request(source=scene, begin=begin, end=end, at=at, overrides=pairs(changes)))
+    take_parts(parts)
+    wanted = Request(source=scene, begin=begin, end=end, at=at, overrides=pairs(changes), axis=axis)
+    task = validated(wanted)
     points, newton = count("--max-points", max_points), count("--max-newton", max_newton)
     folder = folder_for(out, name := short_name(scene))
 

@@ -94,7 +94,7 @@ def trace(
     Raises InputError for a branch to resume that is another's, or a directory in use.
     """
     view = view_of(task.scene)
-    begin, end = (value * view.unit for value in task.scene.trace.ends)
+    begin, end = task.scene.trace.bounds
     try:
         return per.trace(
             build(task.scene),
@@ -129,7 +129,7 @@ def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Sett
     Where it has not settled there is no point.
     """
     view, system = view_of(task.scene), build(task.scene)
-    low, high = sorted(value * view.unit for value in task.scene.trace.ends)
+    low, high = sorted(task.scene.trace.bounds)
     values = list(np.linspace(low, high, SPEEDS))
     ways = [sweep(system, view.parameter, way, progress=progress) for way in (values, values[::-1])]
     below, above = ([(m.parameter / view.unit, view.settled(m)) for m in way if m.steady] for way in ways)

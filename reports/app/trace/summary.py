@@ -23,11 +23,15 @@ def json_text(name: str, scene: Scene, branch: Branch) -> str:
 
 
 def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
-    """Return what a branch says in short; `points` is their number."""
+    """Return what a branch says in short; `points` is their number.
+
+    Of special points, beside what the table tells, `parameter` and `NAME_pp` of every output are in the units
+    of the equations: SI, or none.
+    """
     view = view_of(scene)
     return {
         "scene": name,
-        "parameters": scene.model_dump(exclude={"title", "kind"}, exclude_none=True),
+        "parameters": scene.model_dump(exclude={"title", "kind"}, exclude_none=True, by_alias=True),
         "special_points": [_told(view, point) for point in branch.special_points],
         "points": len(branch),
         "newton_iterations": branch.newton_iterations,
@@ -41,7 +45,8 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
 def _told(view: View, point: Point) -> dict[str, Any]:
     told: dict[str, Any] = {column.name: column.value(point) for column in view.told}
     told["multipliers"] = [[float(m.real), float(m.imag)] for m in point.multipliers]
-    return told
+    told["parameter"] = point.parameter
+    return told | {f"{output}_pp": point.peak_to_peak(output) for output in point.maximum}
 
 
 def _finite(value: Any) -> Any:

@@ -11,7 +11,8 @@ import periodic as per
 import symbolic as sym
 from reports.studies.extremes.study import Study
 from reports.studies.extremes.survey import Case
-from symbolic.scenes.building import RPM, build
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build
 from symbolic.scenes.files import load
 from symbolic.scenes.schema import DiscScene
 

@@ -28,7 +28,7 @@ from reports.studies.paper.marching.transients import (
     stepped_decay,
 )
 from symbolic.motion.response import response
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 STEP, STABLE_STEP = 1e-4, 8e-5
 """The paper's time step, s, and one with which the film of oil B is still stable in Runge-Kutta steps."""

@@ -24,7 +24,7 @@ from reports.studies.paper.marching.transients import (
 )
 from symbolic.motion.linear import resonance
 from symbolic.motion.response import response
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 OILS = {OIL_A: "oil A (Vitrea 79)", OIL_B: "oil B (Turbo 33)"}
 COLOUR = {OIL_A: TRUSTED, OIL_B: SECOND}

@@ -14,7 +14,7 @@ from reports.studies.paper.branches import films
 from reports.studies.paper.common.discs import MICRO
 from reports.studies.paper.common.figures import COLOURS, SPEED, SWING, curve
 from reports.studies.paper.common.tracing import at_speed, branch
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 NAMES = {
     "calibrated": "calibrated to the paper's 3.85 µm (default)",

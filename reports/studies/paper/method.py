@@ -20,7 +20,7 @@ from reports.studies.paper.marching.breakdown import Band, Outcome
 from reports.studies.paper.marching.histories import PAPER_STEP, ripple, trusted
 from reports.studies.paper.marching.started import Form
 from reports.studies.paper.method_figures import breakdown_at, limits, maps, responses
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 GRID = tuple(float(rpm) for rpm in range(100, 501, 5))
 """Speeds of the map, rev/min."""

@@ -18,7 +18,7 @@ from reports.studies.paper.common.scenes import nominal
 from reports.studies.paper.marching.breakdown import Band, Outcome, film_rate, real_limit, step_limit
 from reports.studies.paper.marching.histories import History, stepped, trusted
 from symbolic.arrays import Array
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 COLOURS = {
     Outcome.SETTLED: "#7fb77e",

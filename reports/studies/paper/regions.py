@@ -41,7 +41,7 @@ from reports.studies.paper.common.discs import HEAVY, LUBRICATED, MICRO, OIL_B, 
 from reports.studies.paper.common.scenes import nominal, static_deflection, system
 from reports.studies.paper.common.tracing import branch, shown, speed, traced
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 ASIDE = (0.95, 1.05)
 """Parts of a cusp's or tip's value at which the folds or doublings of a branch over speed are counted."""

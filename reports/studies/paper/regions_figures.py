@@ -30,7 +30,7 @@ from reports.studies.paper.common.figures import SPEED, legend
 from reports.studies.paper.common.scenes import nominal
 from reports.studies.paper.common.tracing import speed
 from symbolic.arrays import Array
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 AXES = {AMPLITUDE: "waviness amplitude (µm)", PRELOAD: "preload (N)", VISCOSITY: "viscosity (Pa s)"}
 SPEEDS = {AMPLITUDE: (180.0, 620.0), PRELOAD: (60.0, 900.0), VISCOSITY: (100.0, 620.0)}

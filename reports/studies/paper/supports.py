@@ -15,7 +15,7 @@ from reports.studies.paper.common.scenes import nominal, system
 from reports.studies.paper.common.tracing import at_speed, branch
 from symbolic.motion.flow import Flow
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 SHARES, SHARE = (0.1, 0.3, 0.5, 0.7), 0.3
 """Parts of each 20.4 kg that are taken to move with the disc, and that of the scene with supports."""

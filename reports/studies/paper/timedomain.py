@@ -33,7 +33,7 @@ from reports.studies.paper.marching.histories import (
     stepped,
     trusted,
 )
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 EARLY, STEADY_6B, FIG_7, FIG_8 = (0.0, 0.02), (0.1, 0.14), (0.95, 1.0), (0.1, 0.15)
 """Windows in s, those of the paper's figures by their numbers."""

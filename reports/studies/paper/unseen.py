@@ -22,7 +22,7 @@ from reports.studies.paper.common.tracing import at_speed, branch, lost_from, xy
 from reports.studies.paper.marching.equivalent import exponents, ratio
 from symbolic.arrays import Array
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 AT = (360.0, 288.0, 260.0, 245.0)
 """Speeds of the labelled orbits, rev/min, beside the upper fold."""

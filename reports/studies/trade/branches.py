@@ -25,7 +25,7 @@ from reports.studies.trade.methods.whole import (
     swept,
 )
 from reports.studies.trade.words import advice, failures, seconds
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 TOLERANCES = tuple(10.0**-k for k in range(2, 10))
 

@@ -16,7 +16,8 @@ import symbolic as sym
 from periodic.orbit.construction import bisect
 from reports.studies.trade.methods import problems
 from symbolic.parts.equations import Names
-from symbolic.scenes.building import RPM, build
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build
 from symbolic.scenes.files import load
 
 TIGHTEST = 1e-11

@@ -16,7 +16,7 @@ from reports.studies.pages.figures import panels
 from reports.studies.paper.common.scenes import system
 from reports.studies.trade.methods.measure import timed
 from reports.studies.trade.words import seconds
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 FULL = "vitrea79-810N"
 MODELS = {

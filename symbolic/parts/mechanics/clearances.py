@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import casadi as ca
 
@@ -77,6 +79,7 @@ class Gap(Part):
         For a negative stiffness, and for stops that overlap.
     """
 
+    EXAMPLE: ClassVar[Mapping[str, object]] = {"lower": -0.1, "upper": 0.1}
     q: Coordinate
     k: Value
     lower: Value

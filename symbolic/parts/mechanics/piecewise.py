@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import casadi as ca
 
@@ -36,6 +38,7 @@ class PiecewiseLinearSpring(Part):
         For corners that do not rise, or another number of stiffnesses.
     """
 
+    EXAMPLE: ClassVar[Mapping[str, object]] = {"stiffnesses": [1.0, 2.0], "corners": [0.1]}
     q: Coordinate
     stiffnesses: tuple[Value, ...]
     corners: tuple[Value, ...]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import casadi as ca
 import numpy as np
@@ -100,6 +100,7 @@ class FourierSeries(Profile):
         For a series without harmonics.
     """
 
+    EXAMPLE: ClassVar[Mapping[str, object]] = {"cosines": [0.1, 0.05]}
     cosines: tuple[Value, ...] = ()
     sines: tuple[Value, ...] = ()
     mean: float = 0.0
@@ -140,6 +141,7 @@ class Samples(Profile):
         For fewer than three values, and for more harmonics than they tell.
     """
 
+    EXAMPLE: ClassVar[Mapping[str, object]] = {"values": [0.0, 0.1, -0.1]}
     values: tuple[float, ...]
     harmonics: int | None = None
     factor: Value = 1.0

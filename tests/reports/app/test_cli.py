@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 import re
 import subprocess
 import sys
@@ -143,8 +144,11 @@ def test_special_points_of_disc(disc: Outcome) -> None:
     assert [point["label"] for point in points] == ["EP", "UZ", "UZ", "EP"]
     for point in points:
         assert list(point) == [
-            "label", "speed_rpm", "x_pp_um", "film_pp_um", "load_max_N", "stable", "multipliers"
+            "label", "speed_rpm", "x_pp_um", "film_pp_um", "load_max_N", "stable", "multipliers",
+            "parameter", "x_pp", "film_pp", "deflection_pp", "load_pp",
         ]  # fmt: skip
+        assert point["parameter"] == pytest.approx(point["speed_rpm"] * math.pi / 30, rel=1e-13)
+        assert point["x_pp"] == pytest.approx(point["x_pp_um"] * 1e-6, rel=1e-13)
         assert len(point["multipliers"]) == 3 and all(len(pair) == 2 for pair in point["multipliers"])
 
 

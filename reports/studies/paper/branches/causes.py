@@ -21,7 +21,7 @@ from reports.studies.paper.marching.transients import (
 )
 from symbolic.motion.linear import modes
 from symbolic.motion.response import response
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 PAPER_A, PAPER_B = 0.007, 0.0018
 """Damping ratios that the paper prints for Shell Vitrea 79 and Shell Turbo 33."""

@@ -13,7 +13,7 @@ from reports.studies.paper.common.scenes import system
 from reports.studies.paper.common.tracing import branch, traced
 from symbolic.motion.flow import Flow, Trajectory
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 from symbolic.system.compiled import with_values
 
 SCENE = OIL_A

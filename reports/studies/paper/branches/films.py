@@ -17,7 +17,7 @@ from reports.studies.paper.common.scenes import film_at_rest, system
 from reports.studies.paper.common.tracing import at_speed, branch, traced
 from symbolic import CompiledSystem
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 from symbolic.system.compiled import with_values
 
 SCENE, FLOORED = OIL_A, "cavitating-film-810N"

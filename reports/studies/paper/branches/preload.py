@@ -10,7 +10,7 @@ from periodic import Accuracy, Branch, Label
 from reports.studies.paper.common.discs import HEAVY, LOST, OIL_A
 from reports.studies.paper.common.scenes import system
 from reports.studies.paper.common.tracing import at_speed, traced
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 SPEEDS = (200.0, 360.0)
 """Speeds of the paper's Figs. 12a and 12b, rev/min."""

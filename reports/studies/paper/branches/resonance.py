@@ -11,7 +11,7 @@ from reports.studies.paper.common.tracing import branch, traced
 from symbolic import CompiledSystem
 from symbolic.motion.linear import resonance
 from symbolic.motion.response import peak
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 RANGE = (100.0, 500.0)
 """Speeds of the paper's frequency plots, rev/min."""

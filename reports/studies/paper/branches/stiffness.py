@@ -18,7 +18,7 @@ from reports.studies.paper.common.discs import OIL_A
 from reports.studies.paper.common.scenes import nominal, static_deflection, system
 from symbolic import CompiledSystem
 from symbolic.motion.linear import Modes, modes, resonance
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 from symbolic.scenes.errors import InputError
 
 SCENE, RIGID = "supports-810N", OIL_A

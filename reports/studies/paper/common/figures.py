@@ -8,7 +8,7 @@ from periodic import Branch, Label
 from reports.app.curve import draw_curve, solid
 from reports.studies.paper.common.discs import MICRO
 from reports.studies.paper.common.tracing import xy
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")
 

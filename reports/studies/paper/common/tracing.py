@@ -10,7 +10,7 @@ from reports.studies.paper.common.discs import LOST, MICRO
 from reports.studies.paper.common.scenes import nominal, system
 from symbolic import CompiledSystem
 from symbolic.arrays import Array
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 Condition = per.DoublingCondition | per.FoldCondition | per.Level | per.Peak
 

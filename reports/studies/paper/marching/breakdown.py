@@ -19,7 +19,7 @@ from reports.studies.paper.marching.started import Form, Runs, runs
 from symbolic.arrays import Array
 from symbolic.motion.explicit import Rates, rates
 from symbolic.motion.linear import RestFinder
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 from symbolic.system.compiled import with_values
 
 DURATION, WINDOW = 1.0, 0.05

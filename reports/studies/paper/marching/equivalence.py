@@ -11,7 +11,7 @@ from reports.studies.paper.common.scenes import system
 from reports.studies.paper.common.tracing import branch, traced
 from reports.studies.paper.marching.histories import stepped, trusted
 from symbolic.motion.linear import modes
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 THIRD, THREE = "third-order-810N", OIL_A
 SPEEDS = (200.0, 290.0, 360.0, 500.0)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 import symbolic as sym
 from symbolic.arrays import Array
 from symbolic.motion.flow import Flow, Trajectory
-from symbolic.scenes.building import RPM, disc_model
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import disc_model
 from symbolic.scenes.files import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values

@@ -15,7 +15,8 @@ from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Array
 from reports.benchmarks.work import chain_model
 from symbolic.motion.flow import Flow
-from symbolic.scenes.building import RPM, build, disc_model
+from symbolic.scenes.axes import RPM
+from symbolic.scenes.building import build, disc_model
 from symbolic.scenes.files import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values

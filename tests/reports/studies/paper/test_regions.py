@@ -22,7 +22,7 @@ from reports.studies.paper.common.discs import LUBRICATED, MICRO
 from reports.studies.paper.common.scenes import system
 from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import rows
-from symbolic.scenes.building import RPM
+from symbolic.scenes.axes import RPM
 
 
 def kept() -> dict[str, float]:

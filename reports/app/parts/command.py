@@ -1,0 +1,35 @@
+"""The commands `orbitrace parts` and `orbitrace new`. What is imported here is small: --help is quick."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reports.app.options import DONE, Own, take_parts
+
+Name = Annotated[
+    str | None, typer.Argument(metavar="[NAME]", help="A part; all of them where none is named.")
+]
+Start = Annotated[
+    str, typer.Argument(metavar="KIND", help='"model", or a word of the name of a built-in scene, as "gear".')
+]
+File = Annotated[Path, typer.Argument(metavar="FILE", help="The TOML file to write; it must not exist yet.")]
+
+
+def parts(name: Name = None, own: Own = None) -> int:
+    """List the parts that a scene of the kind "model" can name, or show one: formula, keys, an example."""
+    from reports.app.parts.text import every, one
+
+    take_parts(own)
+    typer.echo(every() if name is None else one(name))
+    return DONE
+
+
+def new(kind: Start, file: File) -> int:
+    """Write the commented start of a scene of your own."""
+    from reports.app.parts.start import write_start
+
+    typer.echo(f"written: {write_start(kind, file)}; run it with: orbitrace trace {file}")
+    return DONE

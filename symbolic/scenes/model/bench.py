@@ -1,0 +1,57 @@
+"""What tables of a scene refer to by name: coordinates, shared parameters, places of several parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from typing import TypeVar
+
+from symbolic.equations.variables import Coordinate, Parameter
+from symbolic.scenes.errors import InputError, listed, shown
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Coordinates and parameters by name, and what has been made of equal inline tables."""
+
+    coordinates: dict[str, Coordinate] = field(default_factory=dict)
+    parameters: dict[str, Parameter] = field(default_factory=dict)
+    places: dict[str, object] = field(default_factory=dict)
+
+    def coordinate(self, where: str, name: str) -> Coordinate:
+        """Return a coordinate by name. Raises InputError."""
+        return _known(self.coordinates, where, name, "the name of a [[coordinate]]")
+
+    def parameter(self, where: str, name: str) -> Parameter:
+        """Return a shared parameter by name. Raises InputError."""
+        return _known(self.parameters, where, name, "a number or the name of one in [parameters]")
+
+    def place(self, table: object, make: Callable[[], object]) -> object:
+        """Return the object that an inline table stands for: one for all tables that are equal."""
+        key = repr(table)
+        if key not in self.places:
+            self.places[key] = make()
+        return self.places[key]
+
+
+def nearest(name: str, names: list[str]) -> str:
+    """Return the name that one was probably meant to be, or "" """
+    small = {each.lower(): each for each in names}
+    found = get_close_matches(name.lower(), list(small), n=1, cutoff=0.5)
+    return small[found[0]] if found else ""
+
+
+def unknown(where: str, name: object, names: list[str], allowed: str) -> InputError:
+    """Return the error of a name that is not among some, with the nearest that is."""
+    near = nearest(str(name), names)
+    known = f"nearest is {shown(near)}" if near else f"there is {listed(names, 'and') or 'none'}"
+    return InputError(where, f"is {shown(name)}", f"it must be {allowed}; {known}")
+
+
+def _known(known: dict[str, T], where: str, name: str, allowed: str) -> T:
+    if name not in known:
+        raise unknown(where, name, list(known), allowed)
+    return known[name]

@@ -1,0 +1,255 @@
+"""The parts that scenes can name, with their keys: what their classes' fields and docstrings say.
+
+Parts are those of `symbolic.parts`, those that a program registers, and those of installed packages under the
+entry point "orbitrace.parts". Nothing is ever taken from a scene file.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+import typing
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields
+from functools import cache
+from importlib.metadata import entry_points
+from types import ModuleType
+from typing import Any, cast
+
+import symbolic.parts
+from symbolic.equations.model import Part
+from symbolic.scenes.errors import InputError, listed
+from symbolic.scenes.laws import contact_laws
+from symbolic.scenes.model.bench import Bench, nearest, unknown
+from symbolic.scenes.model.described import Described, described
+from symbolic.scenes.model.readers import Reader, UnreadableError, reader_of
+
+ENTRY_POINT = "orbitrace.parts"
+"""Installed packages name modules with parts under it."""
+
+KIND = "kind"
+"""The key that says which class a table stands for."""
+
+_registered: dict[str, type[Part]] = {}
+_own: list[ModuleType] = []
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a table: name, text and default of its field (MISSING where it must be given), its reader."""
+
+    name: str
+    text: str
+    default: Any
+    reader: Reader
+
+    @property
+    def needed(self) -> bool:
+        """Whether the key must be given."""
+        return self.default is MISSING
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A class that a table can stand for."""
+
+    owner: type
+    text: Described
+    keys: tuple[Key, ...]
+
+    @property
+    def name(self) -> str:
+        """What scenes call it: the name of the class."""
+        return self.owner.__name__
+
+    def made(self, bench: Bench, where: str, table: Mapping[str, Any]) -> Any:
+        """Return the object that a table, without its kind, stands for. Raises InputError."""
+        known = {key.name: key for key in self.keys}
+        for name in table:
+            if name not in known:
+                near = nearest(name, list(known))
+                may = f"nearest is {near}; " if near else ""
+                raise InputError(
+                    f"{where} {name}", "is not a key", f"{may}it may have {listed(list(known), 'and')}"
+                )
+        for key in self.keys:
+            if key.needed and key.name not in table:
+                raise InputError(f"{where} {key.name}", "is missing", f"it must be {key.reader.allowed}")
+        given = {
+            name: known[name].reader.read(bench, f"{where} {name}", value) for name, value in table.items()
+        }
+        try:
+            return self.owner(**given)
+        except ValueError as error:
+            raise InputError.said(f"{where}: {error}") from None
+
+    @property
+    def example(self) -> dict[str, Any]:
+        """A table with what must be given."""
+        own = dict(getattr(self.owner, "EXAMPLE", {}))
+        return {
+            key.name: own.get(key.name, key.reader.example)
+            for key in self.keys
+            if key.needed or key.name in own
+        }
+
+
+@dataclass(frozen=True)
+class Inline:
+    """A table for an object that a part holds: a law, a profile; `kind` chooses where there are several."""
+
+    entries: tuple[Entry, ...]
+
+    @property
+    def allowed(self) -> str:
+        """The kinds, or the keys of the only one."""
+        if len(self.entries) == 1:
+            return f"a table with {listed([key.name for key in self.entries[0].keys], 'and')}"
+        return f"a table of the kind {listed([entry.name for entry in self.entries])}"
+
+    @property
+    def example(self) -> dict[str, Any]:
+        """That of the first kind."""
+        kind = {KIND: self.entries[0].name} if len(self.entries) > 1 else {}
+        return kind | self.entries[0].example
+
+    def read(self, bench: Bench, where: str, value: Any) -> Any:
+        """Return the object; equal tables are one."""
+        if not isinstance(value, dict):
+            raise InputError(where, "is no table", f"it must be {self.allowed}")
+        names = {entry.name: entry for entry in self.entries}
+        kind = value.get(KIND, self.entries[0].name if len(self.entries) == 1 else None)
+        if kind not in names:
+            raise unknown(f"{where} {KIND}", kind, list(names), listed(list(names)))
+        table = {name: item for name, item in value.items() if name != KIND}
+        return bench.place((kind, table), lambda: names[kind].made(bench, where, table))
+
+
+def register_part(part: type[Part]) -> None:
+    """Let scenes of the kind "model" name a part: `kind = "CLASS"` in a table [[part]].
+
+    Parameters
+    ----------
+    part : type of Part
+        A dataclass; its fields are the keys, its docstring describes them.
+
+    Raises
+    ------
+    ValueError
+        For what is no dataclass, and for a name that another part has.
+    """
+    if not _is_part(part):
+        raise ValueError(
+            f"part is {part!r}; it must be a class that inherits from symbolic.Part, a dataclass"
+        )
+    known = _built_in().get(part.__name__, part)
+    if known is not part:
+        raise ValueError(f"part {part.__name__!r} is one of symbolic's own already; give yours another name")
+    _registered[part.__name__] = part
+    catalogue.cache_clear()
+
+
+def register_module(name: str) -> None:
+    """Import a module and register all parts that it holds. Raises InputError."""
+    try:
+        module = importlib.import_module(name)
+    except Exception as error:  # whatever a user's own module raises
+        why = f"{type(error).__name__}: {error}"
+        raise InputError(
+            "--parts", f'is "{name}" ({why})', "it must be a module that can be imported"
+        ) from error
+    found = list(_parts_in(module))
+    if not found:
+        raise InputError(
+            "--parts", f'is "{name}", which has no part', "it must hold classes of symbolic.Part"
+        )
+    _own.append(module)
+    for part in found:
+        try:
+            register_part(part)
+        except ValueError as error:
+            raise InputError.said(str(error)) from None
+
+
+@cache
+def catalogue() -> dict[str, Entry]:
+    """Return all parts that text can give, by name in alphabetical order."""
+    for point in entry_points(group=ENTRY_POINT):
+        for part in _parts_in(point.load()):
+            _registered.setdefault(part.__name__, part)
+    found = {**_built_in(), **_registered}
+    entries = {name: entry for name in sorted(found) if (entry := entry_of(found[name])) is not None}
+    return dict(entries)
+
+
+def entry_of(owner: type) -> Entry | None:
+    """Return the keys of a class, None where text cannot give what it must be given."""
+    text, hints = described(owner), typing.get_type_hints(owner)
+    keys = []
+    for field in fields(owner):
+        default = field.default if field.default_factory is MISSING else field.default_factory()
+        if not field.init:
+            continue
+        try:
+            keys.append(
+                Key(field.name, text.parameters.get(field.name, ""), default, _reader(hints[field.name]))
+            )
+        except UnreadableError:
+            if default is MISSING:
+                return None
+    return Entry(owner, text, tuple(keys))
+
+
+def _reader(annotation: Any) -> Reader:
+    return reader_of(annotation, _inline)
+
+
+def _inline(kind: type) -> Reader | None:
+    """The tables for a class, or for all classes that follow a protocol."""
+    if getattr(kind, "_is_protocol", False):
+        wanted = {name for name, value in vars(kind).items() if inspect.isfunction(value) and name[0] != "_"}
+        owners = [owner for owner in _objects() if all(hasattr(owner, name) for name in wanted)]
+    else:
+        owners = [owner for owner in _objects() if issubclass(owner, kind)]
+    entries = [entry for owner in owners if (entry := entry_of(owner)) is not None]
+    return Inline(tuple(entries)) if entries else None
+
+
+@cache
+def _built_in() -> dict[str, type[Part]]:
+    return {part.__name__: part for module in _modules() for part in _parts_in(module)}
+
+
+def _objects() -> tuple[type, ...]:
+    """Public dataclasses beside the parts, that parts may hold, and the laws of contact of the user's."""
+    found: dict[str, type] = {law.__name__: law for law in contact_laws().values()}
+    found |= {
+        name: value
+        for module in (*_modules(), *_own)
+        for name, value in vars(module).items()
+        if inspect.isclass(value) and value.__module__ == module.__name__ and name[0] != "_"
+    }
+    chosen = [value for _, value in sorted(found.items()) if not issubclass(value, Part)]
+    return tuple(value for value in chosen if dataclasses.is_dataclass(value))
+
+
+@cache
+def _modules() -> tuple[ModuleType, ...]:
+    names = [found.name for found in pkgutil.walk_packages(symbolic.parts.__path__, "symbolic.parts.")]
+    return tuple(importlib.import_module(name) for name in names)
+
+
+def _is_part(value: Any) -> bool:
+    return inspect.isclass(value) and issubclass(value, Part) and dataclasses.is_dataclass(value)
+
+
+def _parts_in(module: Any) -> Iterator[type[Part]]:
+    """The parts that a module defines; a class of parts stands for itself."""
+    if _is_part(module):
+        yield cast(type[Part], module)
+        return
+    for name, value in vars(module).items():
+        if _is_part(value) and value.__module__ == module.__name__ and name[0] != "_":
+            yield cast(type[Part], value)
