@@ -88,12 +88,13 @@ class Entry:
     @property
     def example(self) -> dict[str, Any]:
         """A table with what must be given."""
-        own = dict(getattr(self.owner, "EXAMPLE", {}))
-        return {
-            key.name: own.get(key.name, key.reader.example)
-            for key in self.keys
-            if key.needed or key.name in own
-        }
+        own, names = dict(getattr(self.owner, "EXAMPLE", {})), iter("xyzuvw")
+        found = {}
+        for key in self.keys:
+            if key.needed or key.name in own:
+                usual = next(names) if isinstance(key.reader, CoordinateName) else key.reader.example
+                found[key.name] = own.get(key.name, usual)
+        return found
 
 
 @dataclass(frozen=True)
@@ -186,6 +187,11 @@ def catalogue() -> dict[str, Entry]:
 
 def entry_of(owner: type) -> Entry | None:
     """Return the keys of a class, None where text cannot give what it must be given."""
+    return _entry(owner, ())
+
+
+def _entry(owner: type, within: tuple[type, ...]) -> Entry | None:
+    """The same for a class inside others, none of which it may hold."""
     text, hints = described(owner), typing.get_type_hints(owner)
     keys = []
     for field in fields(owner):
@@ -194,7 +200,12 @@ def entry_of(owner: type) -> Entry | None:
             continue
         try:
             keys.append(
-                Key(field.name, text.parameters.get(field.name, ""), default, _reader(hints[field.name]))
+                Key(
+                    field.name,
+                    text.parameters.get(field.name, ""),
+                    default,
+                    _reader(hints[field.name], (*within, owner)),
+                )
             )
         except UnreadableError:
             if default is MISSING:
@@ -202,18 +213,19 @@ def entry_of(owner: type) -> Entry | None:
     return Entry(owner, text, tuple(keys))
 
 
-def _reader(annotation: Any) -> Reader:
-    return reader_of(annotation, _inline)
+def _reader(annotation: Any, within: tuple[type, ...]) -> Reader:
+    return reader_of(annotation, lambda kind: _inline(kind, within))
 
 
-def _inline(kind: type) -> Reader | None:
+def _inline(kind: type, within: tuple[type, ...]) -> Reader | None:
     """The tables for a class, or for all classes that follow a protocol."""
     if getattr(kind, "_is_protocol", False):
         wanted = {name for name, value in vars(kind).items() if inspect.isfunction(value) and name[0] != "_"}
         owners = [owner for owner in _objects() if all(hasattr(owner, name) for name in wanted)]
     else:
         owners = [owner for owner in _objects() if issubclass(owner, kind)]
-    entries = [entry for owner in owners if (entry := entry_of(owner)) is not None]
+    found = [_entry(owner, within) for owner in owners if owner not in within]
+    entries = [entry for entry in found if entry is not None]
     return Inline(tuple(entries)) if entries else None
 
 
@@ -224,15 +236,11 @@ def _built_in() -> dict[str, type[Part]]:
 
 def _objects() -> tuple[type, ...]:
     """Public dataclasses beside the parts, that parts may hold, and the laws of contact of the user's."""
-    found: dict[str, type] = {law.__name__: law for law in contact_laws().values()}
-    found |= {
-        name: value
-        for module in (*_modules(), *_own)
-        for name, value in vars(module).items()
-        if inspect.isclass(value) and value.__module__ == module.__name__ and name[0] != "_"
-    }
-    chosen = [value for _, value in sorted(found.items()) if not issubclass(value, Part)]
-    return tuple(value for value in chosen if dataclasses.is_dataclass(value))
+    public = importlib.import_module("symbolic")
+    given = [getattr(public, name) for name in public.__all__] + list(contact_laws().values())
+    given += [value for module in _own for value in vars(module).values()]
+    chosen = {v.__name__: v for v in given if dataclasses.is_dataclass(v) and inspect.isclass(v)}
+    return tuple(v for _, v in sorted(chosen.items()) if not issubclass(v, Part))
 
 
 @cache
