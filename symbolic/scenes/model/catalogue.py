@@ -24,7 +24,7 @@ from symbolic.scenes.errors import InputError, listed
 from symbolic.scenes.laws import contact_laws
 from symbolic.scenes.model.bench import Bench, nearest, unknown
 from symbolic.scenes.model.described import Described, described
-from symbolic.scenes.model.readers import Reader, UnreadableError, reader_of
+from symbolic.scenes.model.readers import CoordinateName, Reader, UnreadableError, reader_of
 
 ENTRY_POINT = "orbitrace.parts"
 """Installed packages name modules with parts under it."""
