@@ -57,7 +57,8 @@ class Samples:
         packed = self.packed
         moving = ca.vertcat(packed.state, packed.phase)
         columns = self._evaluated(ca.jacobian(packed.scaled([expression]), moving).T)[0]
-        steepness = np.linalg.norm(columns, axis=0)
+        with np.errstate(over="ignore"):
+            steepness = np.linalg.norm(columns, axis=0)
         usable = steepness[np.isfinite(steepness) & (steepness > 0)]
         return float(np.median(usable)) if usable.size else 1.0
 
@@ -65,7 +66,8 @@ class Samples:
 def constant(values: list[Array]) -> bool:
     """Whether a function does not vary with state and phase, for any parameters."""
     finite = [v[np.isfinite(v)] for v in values]
-    return all(v.size and np.ptp(v) <= SAME * np.abs(v).max() for v in finite)
+    with np.errstate(over="ignore"):
+        return all(v.size and np.ptp(v) <= SAME * np.abs(v).max() for v in finite)
 
 
 def multiples(values: list[Array], others: list[Array]) -> bool:
@@ -75,7 +77,7 @@ def multiples(values: list[Array], others: list[Array]) -> bool:
         a, b = a[both], b[both]
         if not a.size or not a.any() or not b.any():
             return False
-        factor = (a @ b) / (b @ b)
-        if np.abs(a - factor * b).max() > SAME * np.abs(a).max():
+        a, b = a / np.abs(a).max(), b / np.abs(b).max()
+        if np.abs(a - (a @ b) / (b @ b) * b).max() > SAME:
             return False
     return True

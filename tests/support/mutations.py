@@ -73,8 +73,9 @@ def _one_of(items: list[Any], random: Random) -> Any:
 
 def _places(tables: Tables) -> list[tuple[Tables, str]]:
     """Every key, with the table that it is in."""
-    inner = [place for value in tables.values() if isinstance(value, dict) for place in _places(value)]
-    return [(tables, key) for key in tables] + inner
+    lists = [item for value in tables.values() if isinstance(value, list) for item in value]
+    inner = [item for item in (*tables.values(), *lists) if isinstance(item, dict)]
+    return [(tables, key) for key in tables] + [place for item in inner for place in _places(item)]
 
 
 def _place(tables: Tables, random: Random) -> tuple[Tables, str]:

@@ -52,6 +52,7 @@ def linear(
     """
     from reports.app.linear import study, text
     from reports.app.request import Request, validated
+    from reports.app.rest import check_rest
     from symbolic.motion.linear import NoRestError
     from symbolic.scenes.files import short_name
 
@@ -61,6 +62,7 @@ def linear(
     try:
         found = study.study(task)
     except NoRestError as error:
+        check_rest(task)
         say(f"{error}; nothing was saved")
         return STOPPED_EARLY
     files = _saved(folder, name, found)

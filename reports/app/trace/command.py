@@ -142,7 +142,11 @@ def _run(
 
 
 def _traced(name: str, task: Task, effort: Effort, folder: Path, before: Branch | None) -> Branch:
-    """Trace; raise KeyboardInterrupt where that is interrupted before the first point."""
+    """Trace; raise KeyboardInterrupt where that is interrupted before the first point.
+
+    Raises InputError where there is no point because the scene does not rest anywhere.
+    """
+    from reports.app.rest import check_rest
     from reports.app.trace import run, shown
 
     with shown.progress(name, task.scene) as progress, warnings.catch_warnings():
@@ -150,6 +154,9 @@ def _traced(name: str, task: Task, effort: Effort, folder: Path, before: Branch 
         branch = run.trace(task, effort, folder, before, progress)
     if _interrupted(branch) and not len(branch):
         raise KeyboardInterrupt
+    if not len(branch):
+        (folder / run.JOURNAL).unlink(missing_ok=True)
+        check_rest(task)
     return branch
 
 

@@ -12,6 +12,9 @@ from symbolic.scenes.errors import InputError, listed, shown
 
 T = TypeVar("T")
 
+MOST = 12
+"""Names that a sentence lists."""
+
 
 @dataclass(frozen=True)
 class Bench:
@@ -47,7 +50,8 @@ def nearest(name: str, names: list[str]) -> str:
 def unknown(where: str, name: object, names: list[str], allowed: str) -> InputError:
     """Return the error of a name that is not among some, with the nearest that is."""
     near = nearest(str(name), names)
-    known = f"nearest is {shown(near)}" if near else f"there is {listed(names, 'and') or 'none'}"
+    first = names if len(names) <= MOST else [*names[:MOST], "others"]
+    known = f"nearest is {shown(near)}" if near else f"there is {listed(first, 'and') or 'none'}"
     return InputError(where, f"is {shown(name)}", f"it must be {allowed}; {known}")
 
 

@@ -20,7 +20,7 @@ from typing import Any, cast
 
 import symbolic.parts
 from symbolic.equations.model import Part
-from symbolic.scenes.errors import InputError, listed
+from symbolic.scenes.errors import InputError, listed, shown
 from symbolic.scenes.laws import contact_laws
 from symbolic.scenes.model.bench import Bench, nearest, unknown
 from symbolic.scenes.model.described import Described, described
@@ -71,9 +71,8 @@ class Entry:
             if name not in known:
                 near = nearest(name, list(known))
                 may = f"nearest is {near}; " if near else ""
-                raise InputError(
-                    f"{where} {name}", "is not a key", f"{may}it may have {listed(list(known), 'and')}"
-                )
+                what = f"{where} {shown(name)}"
+                raise InputError(what, "is not a key", f"{may}it may have {listed(list(known), 'and')}")
         for key in self.keys:
             if key.needed and key.name not in table:
                 raise InputError(f"{where} {key.name}", "is missing", f"it must be {key.reader.allowed}")
@@ -122,7 +121,7 @@ class Inline:
             raise InputError(where, "is no table", f"it must be {self.allowed}")
         names = {entry.name: entry for entry in self.entries}
         kind = value.get(KIND, self.entries[0].name if len(self.entries) == 1 else None)
-        if kind not in names:
+        if not isinstance(kind, str) or kind not in names:
             raise unknown(f"{where} {KIND}", kind, list(names), listed(list(names)))
         table = {name: item for name, item in value.items() if name != KIND}
         return bench.place((kind, table), lambda: names[kind].made(bench, where, table))

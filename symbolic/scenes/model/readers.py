@@ -5,7 +5,6 @@ from __future__ import annotations
 import collections.abc
 import enum
 import inspect
-import math
 import types
 import typing
 from dataclasses import dataclass
@@ -18,6 +17,9 @@ from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.model.bench import Bench
 
 NUMBERS = (int, float)
+
+LARGEST = 1e300
+"""Numbers that are larger are none of physics."""
 
 ORDER = {int, float, str, Fraction}
 """The types of `symbolic.equations.excitation.Order`."""
@@ -52,14 +54,14 @@ class Plain:
 
     def read(self, bench: Bench, where: str, value: Any) -> Any:
         """Return the value, numbers finite."""
-        wrong = isinstance(value, bool) and bool not in self.kinds
-        if (
-            wrong
-            or not isinstance(value, self.kinds)
-            or (isinstance(value, float) and not math.isfinite(value))
-        ):
+        wrong = not isinstance(value, self.kinds) or (bool not in self.kinds and isinstance(value, bool))
+        if wrong or (_is_number(value) and not -LARGEST < value < LARGEST):
             raise refused(where, value, self.allowed)
-        return float(typing.cast(float, value)) if self.kinds == NUMBERS else value
+        return float(value) if self.kinds == NUMBERS else value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 @dataclass(frozen=True)
@@ -73,9 +75,7 @@ class Number:
         """Return the number or parameter."""
         if isinstance(value, str):
             return bench.parameter(where, value)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise refused(where, value, self.allowed)
-        return float(value)
+        return float(Plain(NUMBERS, self.allowed, self.example).read(bench, where, value))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.commands import refusal
 
 from reports.app.cli import main
 from symbolic.scenes.files import load, scene_names
@@ -165,3 +166,16 @@ def test_linear(start: str, tmp_path: Path, capsys: Capture) -> None:
     assert main(["linear", start, "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().out
     assert "resonance of the lowest mode: 1 rad/s" in told and "x p-p" in told
+
+
+@pytest.mark.parametrize("command", ["trace", "linear"])
+def test_load_that_nothing_carries(command: str, start: str, tmp_path: Path, capsys: Capture) -> None:
+    """Assert that a model without equilibrium is refused in one sentence."""
+    text = Path(start).read_text("utf-8").replace('kind = "Spring"', 'kind = "OneSidedSpring"\ngap = 0.5')
+    text += '\n[[part]]\nkind = "ConstantForce"\nq = "x"\nforce = -0.1\n'
+    source = tmp_path / "free.toml"
+    source.write_text(text, "utf-8")
+    capsys.readouterr()
+    said = refusal(capsys, command, str(source), "--out", str(tmp_path / "out"))
+    assert said.startswith("scene has no equilibrium that was found at Omega = 0.4; something must carry")
+    assert not list((tmp_path / "out").iterdir())

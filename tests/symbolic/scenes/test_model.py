@@ -183,7 +183,7 @@ REFUSED = [
     ),
     (
         replaced("force = 0.3", "forse = 0.3"),
-        r"\[\[part\]\] 7 \(HarmonicForce\) forse is not a key; nearest is force; it may have q, force, .*",
+        r"\[\[part\]\] 7 \(HarmonicForce\) .forse. is not a key; nearest is force; it may have q, force, .*",
     ),
     (replaced("b = 0.1\n", ""), r"\[\[part\]\] 6 \(Backlash\) b is missing; it must be a number or .*"),
     (
