@@ -284,6 +284,61 @@ class Flowing(System, Protocol):
         """
 
 
+class Resetting(System, Protocol):
+    """A system with impacts: the state is mapped, x+ = r(x-, tau, p), where some switches pass their level.
+
+    Of these switches the level is 0 and the direction -1 or 1. Between events they keep to the side that they
+    come from; r leads back to it.
+    """
+
+    @property
+    def resets(self) -> Sequence[int]:
+        """Indices of these switches."""
+
+    def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array:
+        """Return the states after the event.
+
+        Parameters
+        ----------
+        switch : int
+            Index of the switch.
+        state : ndarray, shape (N, n)
+            x-, before the event.
+        phase, parameter : ndarray
+            As in `linearise`.
+
+        Returns
+        -------
+        ndarray, shape (N, n)
+            x+, scaled.
+        """
+
+    def reset_gradient(
+        self, switch: int, state: Array, phase: Array, parameter: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return the derivatives of `reset`.
+
+        Parameters
+        ----------
+        switch, state, phase, parameter
+            As in `reset`.
+
+        Returns
+        -------
+        d_state : ndarray, shape (N, n, n)
+            In the states before the event.
+        d_phase : ndarray, shape (N, n)
+            In tau.
+        d_parameter : ndarray, shape (N, n, p)
+            In all parameters.
+        """
+
+
+def resets_of(system: System) -> tuple[int, ...]:
+    """Return the indices of the switches at which the state is mapped; none of most systems."""
+    return tuple(getattr(system, "resets", ()))
+
+
 class Compiling(System, Protocol):
     """A system with a C compiler, which then serves the engine too: its small systems are solved in C."""
 

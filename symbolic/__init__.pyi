@@ -18,6 +18,7 @@ from .parts.contact.law import ContactLaw, HertzLaw
 from .parts.contact.loads import ContactDamping, ElasticContact, Hertz, Preload
 from .parts.contact.pair import ContactPair
 from .parts.contact.palmgren import PalmgrenLaw
+from .parts.contact.rigidstop import RigidStop
 from .parts.contact.stop import Stop
 from .parts.equations import Equations
 from .parts.films.cavitating import CavitatingFilm
@@ -138,6 +139,7 @@ __all__ = [
     "Spring",
     "SqueezeFilm",
     "SteadyThickness",
+    "RigidStop",
     "Stop",
     "Structure",
     "Support",

@@ -8,15 +8,18 @@ With y the event nodes' phases and the free parameters, what is left of interval
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.compiled import Routines, routines
+from periodic.collocation.impacts import applied
+from periodic.collocation.impacts import jumps as jumps_of
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.linear.bordering import Chain
 from periodic.linear.kinematic import kinematic, solve
+from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -27,8 +30,9 @@ from periodic.system import LinearisationLike, System
 class Condensed:
     """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
 
-    algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one.
-    Fulfils `periodic.linear.bordering.Condensed`.
+    algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one;
+    perturbed (N, n, n) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
+    `periodic.linear.bordering.Condensed`.
     """
 
     orbit: Orbit
@@ -37,6 +41,7 @@ class Condensed:
     algebraic: Array
     residual: float
     compiled: Routines | None = None
+    perturbed: Array | None = None
 
     @property
     def origin(self) -> NDArray[np.int_]:
@@ -72,12 +77,18 @@ class Condensed:
         return stages, -(self.algebraic @ inner)[..., 0]
 
 
-def condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condensed:
-    """Eliminate all that is local from equations evaluated at an orbit's collocation points.
+def condense(system: System, orbit: Orbit, line: LinearisationLike, jumps: Sequence[Jump] = ()) -> Condensed:
+    """Eliminate all that is local from equations evaluated at an orbit's collocation points, with its jumps.
 
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
     matrix is singular.
     """
+    smooth = _condense(system, orbit, line)
+    step, perturbed = applied(orbit, smooth.step, jumps)
+    return replace(smooth, step=step, perturbed=perturbed)
+
+
+def _condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condensed:
     compiled = routines(system)
     if compiled is not None:
         return Condensed(orbit, *compiled.condense(orbit, line), compiled)
@@ -96,12 +107,14 @@ def condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condensed
 
 def condensed(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     """Linearise the collocation equations at an orbit and condense them. Raises as `condense`."""
-    return condense(system, orbit, evaluated(system, orbit, free))
+    return condense(system, orbit, evaluated(system, orbit, free), jumps_of(system, orbit, free))
 
 
-def condensation(system: System, orbit: Orbit, line: LinearisationLike, own: Sequence[Row]) -> Chain:
+def condensation(
+    system: System, orbit: Orbit, line: LinearisationLike, own: Sequence[Row], jumps: Sequence[Jump]
+) -> Chain:
     """The linear solver of `Collocation` by default: condensed intervals, chained and bordered."""
-    return Chain(condense(system, orbit, line), own)
+    return Chain(condense(system, orbit, line, jumps), own)
 
 
 def solve_stages(local: Array, right: Array, weights: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from periodic.collocation.impacts import event_row, tied
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System
@@ -11,7 +12,9 @@ from periodic.system import System
 
 def event_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Row]:
     """Return the condition of each event node, linearised: s(x, phi, p) = level where its segment begins."""
-    return [_row(system, orbit, index, free) for index in range(len(orbit.phases))]
+    impacts = tied(system, orbit)
+    rows = (event_row if index in impacts else _row for index in range(len(orbit.phases)))
+    return [row(system, orbit, index, free) for index, row in enumerate(rows)]
 
 
 def _row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:

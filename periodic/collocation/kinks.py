@@ -14,10 +14,11 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
+from periodic.collocation import impacts
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System
+from periodic.system import System, resets_of
 
 SAME = 1e-9
 """Phases closer than this are the same."""
@@ -111,7 +112,10 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     tau = np.append(tau, tau[0] + orbit.mesh.period)
     values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
     found = []
+    resets = resets_of(system)
     for k, switch in enumerate(system.switches):
+        if k in resets:
+            continue
         above = values[:, k, None] > np.array(switch.levels)
         for i, j in np.argwhere(above[1:] != above[:-1]):
             level = switch.levels[j]
@@ -125,7 +129,7 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
     """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
     found = crossings(system, orbit)
-    chosen: list[Crossing] = []
+    chosen = [Crossing(*impact) for impact in impacts.passages(system, orbit)]
     for k, switch in enumerate(system.switches):
         levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
         kept = [
@@ -232,9 +236,10 @@ def genuine(system: System, orbit: Orbit) -> bool:
     at = orbit.nodes[orbit.mesh.starts]
     d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
     rates = orbit.node_rates[orbit.mesh.starts]
+    reset = impacts.tied(system, orbit)
     for i, event in enumerate(orbit.mesh.events):
         slope = d_phase[i, event.switch] + d_state[i, event.switch] @ rates[i]
-        if slope * event.direction <= 0:
+        if i not in reset and slope * event.direction <= 0:
             return False
     return True
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import kinks
+from periodic.collocation import impacts, kinks
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
 from periodic.collocation.kinks import Crossing, KinkSettings
@@ -117,10 +117,15 @@ class Collocation(Discretisation):
         """Return the collocation equations and those of the event nodes."""
         if not in_order(orbit):
             raise EventsCrossedError
-        return self.solver(system, orbit, evaluated(system, orbit, free), event_rows(system, orbit, free))
+        line, own = evaluated(system, orbit, free), event_rows(system, orbit, free)
+        return self.solver(system, orbit, line, own, impacts.jumps(system, orbit, free))
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
+        if not impacts.arrived(system, correction.orbit):
+            return replace(correction, outcome=Outcome.GRAZING)
+        if not impacts.free(system, correction.orbit, self.tolerance):
+            return replace(correction, outcome=Outcome.THROUGH_STOP)
         if kinks.genuine(system, correction.orbit):
             return correction
         return replace(correction, outcome=Outcome.EVENTS_CROSSED)

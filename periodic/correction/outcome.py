@@ -16,6 +16,8 @@ class Outcome(Enum):
     SINGULAR = "the linear system was singular"
     NOT_INTEGRATED = "time integration failed near the iterate"
     EVENTS_CROSSED = "two event nodes of the mesh met"
+    GRAZING = "an impact has no speed left, the orbit grazes"
+    THROUGH_STOP = "the orbit passes where an impact would be, start from a simulated one that has it"
     COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
 

@@ -26,7 +26,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System
+from periodic.system import System, resets_of
 
 WAYS = (1.0, 0.5, 0.25)
 """How far on the way to the harmonics needed an orbit is tried, in turn."""
@@ -94,6 +94,8 @@ class HarmonicBalance(Discretisation):
 
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
         """Return the constant orbit at rest, or a series of as many harmonics as an orbit seems to need."""
+        if resets_of(system):
+            raise ValueError("method is HarmonicBalance; for a system with impacts it must be Collocation()")
         if near is None:
             mesh = mesh_for(self.harmonics, FORCED)
             return series(at_rest(system, mesh, parameter), mesh)

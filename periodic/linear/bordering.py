@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import Protocol
 
 import numpy as np
@@ -35,7 +36,8 @@ class Condensed(Protocol):
 
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
-    orbit is the one linearised at, residual the largest of its equations; compiled chains in C.
+    orbit is the one linearised at, residual the largest of its equations; compiled chains in C. perturbed
+    (N, n, n) are the steps of perturbations at fixed tau where the state jumps, None where it does not.
     """
 
     @property
@@ -48,6 +50,8 @@ class Condensed(Protocol):
     def residual(self) -> float: ...
     @property
     def compiled(self) -> Compiled | None: ...
+    @property
+    def perturbed(self) -> Array | None: ...
 
     def reduced(self, row: Row) -> Row:
         """Return a row in mesh-point states and y alone, its stages eliminated."""
@@ -84,9 +88,12 @@ class Chain:
         """The affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
         return chain(self.condensed)
 
-    @property
+    @cached_property
     def fundamental(self) -> Array:
         """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
+        steps = self.condensed.perturbed
+        if steps is not None:
+            return np.array(list(accumulate(steps, lambda m, step: step @ m, initial=np.eye(steps.shape[1]))))
         return self.maps[:, :, 1 : 1 + self.maps.shape[1]]
 
     @property

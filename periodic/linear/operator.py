@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from periodic.linear.unknowns import Increment
+from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -61,6 +62,6 @@ class Operator(Protocol):
         """
 
 
-LinearSolver = Callable[[System, Orbit, LinearisationLike, Sequence[Row]], Operator]
-"""What factors the collocation equations of an orbit, given at its collocation points, and the rows of its
-event nodes."""
+LinearSolver = Callable[[System, Orbit, LinearisationLike, Sequence[Row], Sequence[Jump]], Operator]
+"""What factors the collocation equations of an orbit, given at its collocation points, the rows of its
+event nodes, and the jumps of its state there."""

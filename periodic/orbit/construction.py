@@ -117,10 +117,17 @@ def transfer(orbit: Orbit, mesh: Mesh, phases: Array) -> Orbit:
     tau = (grid.left[:, None] + grid.width[:, None] * mesh.scheme.points).ravel()
     inside = tau - 1e-9 * np.repeat(grid.width, mesh.scheme.ncol)
     shape = (mesh.ntst, mesh.scheme.ncol, -1)
+    stages = tau.reshape(shape[:2]).copy()
+    at = mesh.nodes(phases)
+    for start in mesh.starts:  # where the state may jump: x- before, x+ after
+        stages[start - 1, -1] -= 1e-9 * grid.width[start - 1]
+        at[start] += 1e-9 * grid.width[start]
+    if mesh.events:
+        at[-1] = at[0]
     return Orbit(
         mesh,
-        orbit.state(mesh.nodes(phases)),
-        orbit.state(tau).reshape(shape),
+        orbit.state(at),
+        orbit.state(stages.ravel()).reshape(shape),
         orbit.algebraic_guess(inside).reshape(*shape[:2], orbit.algebraic.shape[2]),
         phases,
         orbit.parameter,

@@ -10,13 +10,16 @@ import scipy
 from numpy.typing import ArrayLike
 
 from periodic.orbit.layout import Layout, Quantity, layout_of
-from periodic.orbit.mesh import uniform
+from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import System, index_of
+from periodic.system import System, index_of, resets_of
 
 PER_PERIOD = 96
 """Intervals in each period of the excitation."""
+
+LEAST = 4
+"""Fewest intervals between two impacts."""
 
 
 def sampled(
@@ -37,7 +40,8 @@ def sampled(
     ----------
     phase : array_like, optional
         Phases tau (rad), shape (K,): they rise over a whole number of excitation periods 2 pi, both ends
-        included.
+        included. Of a system with impacts one that is given twice is an impact, with the states before and
+        after it.
     state : array_like or mapping
         States scaled as in the system, shape (K, n); or by name in SI, shape (K,) each, `x'` being the
         velocity dx/dt.
@@ -82,7 +86,10 @@ def sampled(
         )
     if not (np.isfinite(x).all() and np.isfinite(z).all()):
         raise ValueError("the samples have values that are not finite; all of them must be")
-    orbit = _through(tau, periods, x, z, values)
+    if (np.diff(tau) == 0).any():
+        orbit = _through_impacts(system, tau, periods, x, z, values)
+    else:
+        orbit = _through(tau, periods, x, z, values)
     return orbit if layout is None else orbit.expressed_in(layout, "the sampled orbit")
 
 
@@ -100,6 +107,40 @@ def _through(phase: Array, periods: int, state: Array, algebraic: Array, paramet
     nodes = at(mesh.nodes(np.zeros(0)), state)
     nodes[-1] = nodes[0]
     return Orbit(mesh, nodes, at(stages, state), at(stages, algebraic), np.zeros(0), parameter)
+
+
+def _through_impacts(
+    system: System | None, phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array
+) -> Orbit:
+    """The motion in pieces between impacts, each at the switch that is nearest to its level there."""
+    resets = [] if system is None else list(resets_of(system))
+    if system is None or not resets:
+        raise ValueError("phases are given twice; they must rise, but at the impacts of a system= with some")
+    second = np.flatnonzero(np.diff(phase) == 0) + 1
+    values = np.abs(system.switch(state[second - 1], phase[second - 1], parameter)[:, resets])
+    switches = [resets[k] for k in values.argmin(axis=1)]
+    events = tuple(EventNode(k, system.switches[k].direction) for k in switches)
+    first, period = second[0], FORCED * periods
+    tau = np.concatenate([phase[first:], phase[1:first] + period])
+    x, z = (np.concatenate([a[first:], a[1:first]]) for a in (state, algebraic))
+    cuts = [0, *(second[1:] - first), len(tau)]
+    lengths = np.diff(np.append(phase[second], phase[first] + period))
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST)
+    breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
+    mesh = Mesh(Scheme(), breaks, events, period)
+    grid = mesh.grid(phase[second])
+    stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
+    nodes, inner, unknown = [], [], []
+    for cut, end, start, count in zip(cuts[:-1], cuts[1:], mesh.starts, counts, strict=True):
+        part = slice(start, start + count)
+        curve = scipy.interpolate.PchipInterpolator(tau[cut:end], x[cut:end], axis=0)
+        nodes.append(curve(grid.left[part]))
+        inner.append(curve(stages[part]))
+        near = np.clip(np.searchsorted(tau[cut:end], stages[part]), 0, end - cut - 1)
+        unknown.append(z[cut:end][near])
+    knots = np.concatenate([*nodes, nodes[0][:1]])
+    both = np.concatenate(inner), np.concatenate(unknown)
+    return Orbit(mesh, knots, *both, phase[second], parameter)
 
 
 def _parameters(system: System | None, given: ArrayLike | Mapping[str, float]) -> Array:
@@ -143,7 +184,7 @@ def _real(name: str, given: object) -> Array:
 
 
 def _periods(phase: Array) -> int:
-    if phase.ndim != 1 or len(phase) < 4 or not (np.diff(phase) > 0).all():
+    if phase.ndim != 1 or len(phase) < 4 or not (np.diff(phase) >= 0).all():
         raise ValueError("phases of the samples must be at least 4 rising numbers")
     length = float(phase[-1] - phase[0]) / FORCED
     periods = round(length) if math.isfinite(length) else 0

@@ -29,7 +29,7 @@ from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
 from periodic.shooting.flow import condense
 from periodic.stability.spectrum import Spectrum
-from periodic.system import Flowing, System
+from periodic.system import Flowing, System, resets_of
 
 TIGHTER = 0.1
 """Tolerance of the integration that an orbit is held against, as a part of its own."""
@@ -159,4 +159,6 @@ def _flowing(system: System) -> Flowing:
             f"system is a {type(system).__name__} without flow, which shooting needs; "
             f"it must be a Flowing system (symbolic.compile makes one of a model)"
         )
+    if resets_of(system):
+        raise ValueError("method is Shooting; for a system with impacts it must be Collocation()")
     return cast(Flowing, system)

@@ -106,6 +106,7 @@ class Assembly:
     outputs: list[tuple[Variable, ca.SX]] = field(default_factory=list, init=False)
     switches: list[tuple[SwitchInfo, ca.SX]] = field(default_factory=list, init=False)
     smooth: list[ca.SX] = field(default_factory=list, init=False)
+    resets: dict[int, dict[State, ca.SX]] = field(default_factory=dict, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
     structures: list[Body] = field(default_factory=list, init=False)
     places: list[Place] = field(default_factory=list, init=False)
@@ -457,6 +458,21 @@ class Assembly:
             Falling values; each marks the same kink more sharply than the one before.
         """
         self.switches.append((SwitchInfo(name, direction, levels), expression))
+
+    def reset(self, name: str, expression: ca.SX, to: dict[State, ca.SX]) -> None:
+        """Add a switch at whose fall through 0 states are given new values: an impact.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+        expression : casadi.SX
+            s(x, tau, p), positive but at the event itself.
+        to : dict
+            New values (SI) of the states that change, expressions in what they are before.
+        """
+        self.resets[len(self.switches)] = to
+        self.switch(name, expression, -1)
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

@@ -40,6 +40,7 @@ class Expressions:
     frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
+    resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
     increment: ca.SX
@@ -74,6 +75,10 @@ def expressed(assembly: Assembly) -> Expressions:
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
         switches=packed.scaled([expression for _, expression in assembly.switches]),
+        resets={
+            k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
+            for k, to in assembly.resets.items()
+        },
         rest_state=packed.scaled([s.rest / s.scale for s in assembly.states]),
         rest_algebraic=packed.scaled([u.rest for u in unknowns]),
         increment=packed.increment,

@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 
 
-@dataclass
+@dataclass(eq=False)
 class State:
     """A differential state: its symbol (SI), the symbol of its tau-derivative, its scale and rest value."""
 

@@ -14,6 +14,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import finite
 from symbolic.integration.cvodes import integrated, integrator
+from symbolic.integration.impacting import Reset, Switch, bouncing
 from symbolic.integration.lsoda import failure, followed
 from symbolic.integration.rates import constraint_rows, ode
 from symbolic.system.compiled import CompiledSystem
@@ -47,10 +48,35 @@ class Flow:
         """
         n = len(self.system.states)
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
+        if self.system.resets:
+            return self._bounced(start, parameter, np.asarray(phase, dtype=float))
         found = integrated(self._cvodes(tuple(phase)), start, parameter)
         later = self._lsoda(start, parameter, phase) if found is None else found.T
         values = np.concatenate([start[None, :], later])
         return Trajectory(np.asarray(phase, dtype=float), values[:, :n], values[:, n:])
+
+    def _bounced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
+        """The motion through impacts: at each of them there are two points of one phase."""
+        system, n, (rates, _) = self.system, len(self.system.states), self._rates
+
+        def impact(k: int) -> tuple[Switch, Reset]:
+            def value(tau: float, y: Array) -> float:
+                return float(system.switch(y[None, :n], np.array([tau]), parameter)[0, k])
+
+            def reset(tau: float, y: Array) -> Array:
+                after = system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
+                return self._on_constraints(np.append(after, y[n:]), parameter, tau)
+
+            return value, reset
+
+        tau, values = bouncing(
+            lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
+            dict(impact(k) for k in system.resets),
+            start,
+            phase,
+            self.tolerance,
+        )
+        return Trajectory(tau, values[:, :n], values[:, n:])
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
         """Return (x', z') along a trajectory, shape (N, n+m)."""

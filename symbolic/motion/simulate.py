@@ -32,7 +32,7 @@ class Simulation:
     parameter : ndarray, shape (p,)
         Values of all parameters, SI.
     phase : ndarray, shape (N,)
-        tau, rising.
+        tau, rising; every impact is there twice, with the states before and after it.
     state : ndarray, shape (N, n)
         States, scaled as in the system.
     algebraic : ndarray, shape (N, m)
@@ -104,7 +104,7 @@ def simulate(
     Returns
     -------
     Simulation
-        ``samples * periods + 1`` points.
+        ``samples * periods + 1`` points, and two for each impact.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def simulate(
         time = (PERIOD * done + error.phase) / system.omega(parameter)
         raise IntegrationError(f"the motion could not be followed past {time:.6g} s; {error}") from None
     return Simulation(
-        system=system, parameter=parameter, phase=phase, state=found.state, algebraic=found.algebraic
+        system=system, parameter=parameter, phase=found.phase, state=found.state, algebraic=found.algebraic
     )
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from typing import Any
 
 import casadi as ca
 
 from symbolic.checks import finite, mapping, numbers, positive, refusal, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
+from symbolic.equations.terms import State
 from symbolic.equations.variables import Coordinate, Parameter, Value
 from symbolic.parts.calls import Function, called
 
@@ -65,6 +67,10 @@ class Equations(Part):
         Returns by name functions of states, phase and parameters that vanish where the equations have a kink
         or a jump. Those that fmax, fmin, fabs, sign and if_else bring are found without it; a kink in an
         unknown cannot be one, and is left to the mesh and its error estimate.
+    resets : callable, optional
+        Returns by name pairs (s, {state: new value}): where s, positive between these events, falls to 0, the
+        states named are given new values; {"wall": (p.d - x.x, {"v": -p.e * x.v})} is an impact. `x_dot` is
+        the speed of a coordinate x.
 
     Raises
     ------
@@ -82,6 +88,7 @@ class Equations(Part):
     scales: Mapping[str, float] = field(default_factory=dict)
     outputs: Function | None = None
     switches: Function | None = None
+    resets: Callable[..., Mapping[str, tuple[Any, Mapping[str, Any]]]] | None = None
 
     def __post_init__(self) -> None:
         self._check_types()
@@ -105,7 +112,7 @@ class Equations(Part):
             )
 
     def _check_types(self) -> None:
-        optional = {"outputs": self.outputs, "switches": self.switches}
+        optional = {"outputs": self.outputs, "switches": self.switches, "resets": self.resets}
         for name, function in {"function": self.function, **optional}.items():
             if not callable(function) and (function is not None or name not in optional):
                 raise refusal(name, function, "a function of x and p")
@@ -156,6 +163,33 @@ class Equations(Part):
             for name, expression in called("switches", self.switches, arguments).items():
                 self._check_switch(name, expression, symbols)
                 assembly.switch(name, expression, 0)
+        if self.resets is not None:
+            self._reset(assembly, states, arguments, symbols)
+
+    def _reset(
+        self,
+        assembly: Assembly,
+        states: Mapping[str, State],
+        arguments: Sequence[object],
+        symbols: Mapping[str, ca.SX],
+    ) -> None:
+        """Add the events at which states are given new values."""
+        known = dict(states)
+        for q in self.coordinates:
+            motion = assembly.motion(q)
+            known |= {q.name: motion.position, f"{q.name}_dot": motion.velocity}
+        flat = called("resets", lambda *given: _flat(self.resets, given), arguments)
+        events = [name for name in flat if " of " not in name]
+        for event in events:
+            self._check_switch(event, flat[event], symbols)
+            to: dict[State, ca.SX] = {}
+            for key in (key for key in flat if key.endswith(f" of {event}")):
+                name = key.removesuffix(f" of {event}")
+                _fitting(f"resets[{event!r}]", [name], known, all_needed=False)
+                self._check_switch(key, flat[key], symbols)
+                speed = name.removesuffix("_dot") in [q.name for q in self.coordinates if q.name != name]
+                to[known[name]] = flat[key] / assembly.omega if speed else flat[key]
+            assembly.reset(event, flat[event], to)
 
     def _check_switch(self, name: str, expression: ca.SX, symbols: Mapping[str, ca.SX]) -> None:
         used = {symbol.element_hash() for symbol in ca.symvar(expression)}
@@ -165,6 +199,23 @@ class Equations(Part):
                     f"switch {name!r} depends on the unknown {unknown}; "
                     f"it must be a function of states, phase and parameters"
                 )
+
+
+def _flat(resets: Callable[..., object] | None, arguments: Sequence[object]) -> dict[str, Any]:
+    """What `resets` returns as one mapping: s under the name of an event, "v of wall" for a new value."""
+    found = resets(*arguments) if resets is not None else {}
+    allowed = "a mapping of names to pairs (s, {state: new value})"
+    if not isinstance(found, Mapping):
+        raise refusal("what resets returned", found, allowed)
+    flat: dict[str, Any] = {}
+    for event, pair in found.items():
+        if " of " in str(event):
+            raise refusal("name of a reset", event, "a name without ' of ' in it")
+        if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[1], Mapping) and pair[1]):
+            raise refusal(f"resets[{event!r}]", pair, "a pair (s, {state: new value})")
+        flat[str(event)] = pair[0]
+        flat |= {f"{state} of {event}": value for state, value in pair[1].items()}
+    return flat
 
 
 def _fitting(

@@ -218,6 +218,29 @@ class CompiledSystem:
             self._switch_gradient_kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
 
+    @property
+    def resets(self) -> tuple[int, ...]:
+        """Indices of the switches whose fall to 0 is an impact: see `periodic.system.Resetting`."""
+        return tuple(self.expressions.resets)
+
+    def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array:
+        """Return the states after the event of a switch, shape (N, n), from those before it."""
+        result = np.zeros_like(state)
+        with np.errstate(all="ignore"):
+            self._reset_kernels[switch][0](state, phase, parameter, result)
+        return result
+
+    def reset_gradient(
+        self, switch: int, state: Array, phase: Array, parameter: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return derivatives of `reset` in state (N, n, n), phase (N, n) and parameters (N, n, p)."""
+        count, n = state.shape
+        d_state, d_phase = np.zeros((count, n, n)), np.zeros((count, n))
+        d_parameter = np.zeros((count, n, len(self.parameters)))
+        with np.errstate(all="ignore"):
+            self._reset_kernels[switch][1](state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+        return d_state, d_phase, d_parameter
+
     def flow(
         self,
         state: Array,
@@ -284,6 +307,18 @@ class CompiledSystem:
         e = self.expressions
         gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
         return self._build([state, phase, parameter], gradients)
+
+    @cached_property
+    def _reset_kernels(self) -> dict[int, tuple[Callable[..., None], Callable[..., None]]]:
+        _, state, _, phase, parameter = self._arguments
+        at, e = [state, phase, parameter], self.expressions
+        return {
+            k: (
+                self._build(at, [after]),
+                self._build(at, [ca.jacobian(after, v) for v in (e.state, e.phase, e.parameter)]),
+            )
+            for k, after in e.resets.items()
+        }
 
     def _derivatives(
         self, known: dict[tuple[int, ...], Callable[..., None]], rows: ca.SX, free: tuple[int, ...]

@@ -24,6 +24,7 @@ from support.traces import DUFFING_A, RPM, disc_system, duffing_system
 
 import periodic as per
 from periodic.collocation.residual import Rows, rows_of
+from periodic.orbit.jump import Jump
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System
 
@@ -128,9 +129,15 @@ def _block_diagonal(blocks: Array) -> sparse.csr_matrix:
 
 
 def by_splu(
-    system: System, orbit: per.Orbit, line: LinearisationLike, own: Sequence[per.Row]
+    system: System,
+    orbit: per.Orbit,
+    line: LinearisationLike,
+    own: Sequence[per.Row],
+    jumps: Sequence[Jump],
 ) -> SparseOperator:
-    """The linear solver."""
+    """The linear solver, of systems without impacts."""
+    if jumps:
+        raise ValueError("the system has impacts; by_splu is for systems without")
     return SparseOperator(orbit, rows_of(orbit, line), own)
 
 

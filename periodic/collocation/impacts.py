@@ -1,0 +1,169 @@
+"""Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
+
+The mesh point of the event is x+, the polynomial of the interval before it ends at x-. Perturbations at fixed
+tau pass by the saltation matrix
+
+    S = r_x + (f+ - r_x f- - r_tau) s_x / (s_x f- + s_tau),
+
+f- and f+ being x' before and after: the linearisation of the flow through an event whose time follows the
+state (di Bernardo et al., Piecewise-smooth Dynamical Systems, 2.5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.system import Resetting, System, resets_of
+
+ITERATIONS = 4
+"""Newton steps to the rates at a point; one is enough where the equations are linear in them."""
+
+SAMPLES = 17
+"""Places in each interval at which an orbit is looked at between its impacts."""
+
+TINY = 1e-300
+
+
+def tied(system: System, orbit: Orbit) -> list[int]:
+    """Return the indices of the orbit's event nodes that are impacts."""
+    resets = resets_of(system)
+    return [i for i, event in enumerate(orbit.mesh.events) if event.switch in resets]
+
+
+def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
+    """Return the impacts of an orbit, linearised. Raises numpy.linalg.LinAlgError where one has no rates."""
+    events = tied(system, orbit)
+    return [_jump(cast(Resetting, system), orbit, i, free) for i in events]
+
+
+def _jump(system: Resetting, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
+    switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
+    interval, x, phase = before(orbit, index)
+    after = system.reset(switch, x, phase, orbit.parameter)
+    by_state, by_phase, by_parameter = system.reset_gradient(switch, x, phase, orbit.parameter)
+    by_outer = np.zeros((x.shape[1], k + len(free)))
+    by_outer[:, index] = by_phase[0]
+    by_outer[:, k:] = by_parameter[0][:, list(free)]
+
+    start = orbit.mesh.starts[index]
+    arriving = _rate(system, orbit, x, rate_before(orbit, index), orbit.algebraic[interval, -1], phase)
+    leaving = _rate(system, orbit, after, orbit.node_rates[start], orbit.algebraic[start, 0], phase)
+    s_state, s_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
+    along = s_state[0, switch] @ arriving + s_phase[0, switch]
+    jump = leaving - by_state[0] @ arriving - by_phase[0]
+    saltation = by_state[0] + np.outer(jump, s_state[0, switch]) / along
+    return Jump(interval, x[0], after[0], by_state[0], by_outer, saltation)
+
+
+def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
+    """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
+    interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst
+    return interval, orbit.mesh.scheme.end[None] @ orbit.knots[interval], orbit.phases[index : index + 1]
+
+
+def rate_before(orbit: Orbit, index: int) -> Array:
+    """x' at the end of the interval before an event node, shape (n,)."""
+    interval = before(orbit, index)[0]
+    return orbit.mesh.scheme.end @ orbit.knot_rates[interval]
+
+
+def _rate(system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array) -> Array:
+    """x' from the equations at a state (1, n), by Newton's method from a guess of it and of the unknowns."""
+    n, found = x.shape[1], np.append(rate, algebraic)[None]
+    for _ in range(ITERATIONS):
+        line = system.linearise(found[:, :n], x, found[:, n:], phase, orbit.parameter)
+        matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
+        found = found - np.linalg.solve(matrix, line.residual[0])
+    return found[0, :n]
+
+
+def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> tuple[Array, Array | None]:
+    """Return the steps (N, n, w) with impacts at their ends, and the steps of perturbations at fixed tau.
+
+    The latter have shape (N, n, n), None where there are no impacts.
+    """
+    if not found:
+        return step, None
+    n = step.shape[1]
+    perturbed = step[:, :, 1 : 1 + n].copy()
+    for jump in found:
+        j, start = jump.interval, orbit.nodes[jump.interval + 1]
+        own = step[j].copy()
+        own[:, 0] += start - jump.before
+        perturbed[j] = jump.saltation @ own[:, 1 : 1 + n]
+        step[j] = jump.by_state @ own
+        step[j, :, 0] += jump.after - start
+        step[j, :, 1 + n :] += jump.by_outer
+    return step, perturbed
+
+
+def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
+    """Return the condition of an impact, linearised: s(x-, phi, p) = 0 where the interval before it ends."""
+    switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
+    interval, x, phase = before(orbit, index)
+    d_state, d_phase, d_parameter = system.switch_gradient(x, phase, orbit.parameter)
+    nodes, stages = np.zeros_like(orbit.nodes), np.zeros_like(orbit.stages)
+    nodes[interval] = end[0] * d_state[0, switch]
+    stages[interval] = end[1:, None] * d_state[0, switch]
+    outer = np.zeros(k + len(free))
+    outer[index] = d_phase[0, switch]
+    outer[k:] = d_parameter[0, switch, list(free)]
+    return Row(float(system.switch(x, phase, orbit.parameter)[0, switch]), nodes, outer, stages)
+
+
+def slope_before(system: System, orbit: Orbit, index: int) -> float:
+    """ds/dtau with which a switch arrives at its impact."""
+    switch = orbit.mesh.events[index].switch
+    _, x, phase = before(orbit, index)
+    d_state, d_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
+    return float(d_phase[0, switch] + d_state[0, switch] @ rate_before(orbit, index))
+
+
+def arrived(system: System, orbit: Orbit) -> bool:
+    """Whether every impact of an orbit is met in the direction of its switch."""
+    every = ((orbit.mesh.events[i], slope_before(system, orbit, i)) for i in tied(system, orbit))
+    return all(slope * event.direction > 0 for event, slope in every)
+
+
+def free(system: System, orbit: Orbit, least: float) -> bool:
+    """Whether an orbit keeps to its side of all impacts, on the whole of it, but for `least` (in s)."""
+    resets = list(resets_of(system))
+    if not resets:
+        return True
+    count, theta = orbit.mesh.ntst, np.linspace(0.0, 1.0, SAMPLES)
+    index = np.repeat(np.arange(count), SAMPLES)
+    values = _sides(system, orbit, index, np.tile(theta, count)).reshape(count, SAMPLES, len(resets))
+    left, middle, right = values[:, :-2], values[:, 1:-1], values[:, 2:]
+    lowest = np.argwhere((middle <= left) & (middle <= right))
+    bend = (left + right - 2 * middle)[tuple(lowest.T)]
+    tilt = (right - left)[tuple(lowest.T)]
+    vertex = theta[1 + lowest[:, 1]] - np.where(bend > 0, tilt / (2 * np.maximum(bend, TINY)), 0.0) * theta[1]
+    deepest = _sides(system, orbit, lowest[:, 0], np.clip(vertex, 0.0, 1.0))
+    return bool(values.min() >= -least and deepest.min(initial=0.0) >= -least)
+
+
+def _sides(system: System, orbit: Orbit, index: NDArray[np.int_], theta: Array) -> Array:
+    """Switches of impacts at places in intervals, positive on the free side, shape (points, impacts)."""
+    resets = list(resets_of(system))
+    basis = orbit.mesh.scheme.basis(theta)
+    state = np.einsum("pl,pln->pn", basis, orbit.knots[index])
+    tau = orbit.grid.left[index] + orbit.grid.width[index] * theta
+    away = [-system.switches[k].direction for k in resets]
+    return system.switch(state, tau, orbit.parameter)[:, resets] * away
+
+
+def passages(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """Return event, phase and |ds/dtau| of an orbit's impacts."""
+    return [
+        (orbit.mesh.events[i], float(orbit.phases[i]), abs(slope_before(system, orbit, i)))
+        for i in tied(system, orbit)
+    ]

@@ -1,0 +1,54 @@
+"""A rigid stop on a coordinate: an impact of no duration, with a coefficient of restitution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symbolic.checks import refusal
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.variables import Coordinate, Parameter, Value
+
+
+@dataclass(frozen=True)
+class RigidStop(Part):
+    """Wall that a coordinate does not pass: q <= gap, and dq/dt becomes -e dq/dt where q arrives at the gap.
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    gap : float or Parameter
+        Where the wall is, in the unit of q.
+    restitution : float or Parameter
+        e, greater than 0 and up to 1 (Newton's law of impact).
+    below : bool
+        Whether the wall is on the other side, q >= -gap.
+
+    Raises
+    ------
+    ValueError
+        For a restitution out of range.
+    """
+
+    q: Coordinate
+    gap: Value
+    restitution: Value
+    below: bool = False
+
+    def __post_init__(self) -> None:
+        given = self.restitution
+        value = given.value if isinstance(given, Parameter) else given
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
+            raise refusal("restitution", value, "a number greater than 0 and up to 1")
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the impact."""
+        motion = assembly.motion(self.q)
+        gap = assembly.parameter(self.gap, "gap", self.q.unit)
+        e = assembly.parameter(self.restitution, "restitution")
+        side, which = (-1, "-gap") if self.below else (1, "gap")
+        free = (gap - side * motion.position.symbol) / motion.position.scale
+        assembly.reset(
+            f"impact at {self.q.name} = {which}", free, {motion.velocity: -e * motion.velocity.symbol}
+        )
