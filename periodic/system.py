@@ -334,6 +334,48 @@ class Resetting(System, Protocol):
         """
 
 
+class Jumping(System, Protocol):
+    """A system whose equations jump where some of its switches vanish, as dry friction does.
+
+    Their level is 0 and their direction 0.
+    """
+
+    @property
+    def jumps(self) -> Sequence[int]:
+        """Indices of these switches."""
+
+    def linearise_beside(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        side: Array,
+        free: tuple[int, ...] = (),
+    ) -> LinearisationLike:
+        """Return what `linearise` does, on given sides of the jumps.
+
+        Parameters
+        ----------
+        rate, state, algebraic, phase, parameter, free
+            As in `linearise`.
+        side : ndarray, shape (N, jumps)
+            1 for the equations of a positive switch, -1 for those of a negative one, continued beyond its
+            zero; 0 where the state decides.
+
+        Returns
+        -------
+        LinearisationLike
+            Residual and its derivatives.
+        """
+
+
+def jumps_of(system: System) -> tuple[int, ...]:
+    """Return the indices of the switches at which the equations jump; none of most systems."""
+    return tuple(getattr(system, "jumps", ()))
+
+
 def resets_of(system: System) -> tuple[int, ...]:
     """Return the indices of the switches at which the state is mapped; none of most systems."""
     return tuple(getattr(system, "resets", ()))

@@ -17,12 +17,13 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.collocation.sides import linearise, sides
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, resets_of
+from periodic.system import Resetting, System, jumps_of, resets_of
 
 ITERATIONS = 4
 """Newton steps to the rates at a point; one is enough where the equations are linear in them."""
@@ -40,28 +41,44 @@ def tied(system: System, orbit: Orbit) -> list[int]:
 
 
 def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
-    """Return the impacts of an orbit, linearised. Raises numpy.linalg.LinAlgError where one has no rates."""
-    events = tied(system, orbit)
-    return [_jump(cast(Resetting, system), orbit, i, free) for i in events]
+    """Return the event nodes of an orbit at which its state or its rates jump, linearised.
+
+    Raises numpy.linalg.LinAlgError where one has no rates.
+    """
+    special = (*resets_of(system), *jumps_of(system))
+    return [_jump(system, orbit, i, free) for i, e in enumerate(orbit.mesh.events) if e.switch in special]
 
 
-def _jump(system: Resetting, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
+def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
     switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
     interval, x, phase = before(orbit, index)
-    after = system.reset(switch, x, phase, orbit.parameter)
-    by_state, by_phase, by_parameter = system.reset_gradient(switch, x, phase, orbit.parameter)
+    after, by_state, by_phase, by_parameter = _mapped(system, switch, x, phase, orbit.parameter)
     by_outer = np.zeros((x.shape[1], k + len(free)))
     by_outer[:, index] = by_phase[0]
     by_outer[:, k:] = by_parameter[0][:, list(free)]
 
     start = orbit.mesh.starts[index]
-    arriving = _rate(system, orbit, x, rate_before(orbit, index), orbit.algebraic[interval, -1], phase)
-    leaving = _rate(system, orbit, after, orbit.node_rates[start], orbit.algebraic[start, 0], phase)
+    side = sides(system, orbit.mesh)
+    unknown, known = orbit.algebraic, (rate_before(orbit, index), orbit.node_rates[start])
+    arriving = _rate(system, orbit, x, known[0], unknown[interval, -1], phase, side[interval])
+    leaving = _rate(system, orbit, after, known[1], unknown[start, 0], phase, side[start])
     s_state, s_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
     along = s_state[0, switch] @ arriving + s_phase[0, switch]
     jump = leaving - by_state[0] @ arriving - by_phase[0]
     saltation = by_state[0] + np.outer(jump, s_state[0, switch]) / along
     return Jump(interval, x[0], after[0], by_state[0], by_outer, saltation)
+
+
+def _mapped(
+    system: System, switch: int, x: Array, phase: Array, parameter: Array
+) -> tuple[Array, Array, Array, Array]:
+    """x+ with its derivatives in state, phase and parameters; x- itself where only the equations jump."""
+    if switch not in resets_of(system):
+        n = x.shape[1]
+        return x, np.eye(n)[None], np.zeros((1, n)), np.zeros((1, n, len(parameter)))
+    resetting = cast(Resetting, system)
+    after = resetting.reset(switch, x, phase, parameter)
+    return after, *resetting.reset_gradient(switch, x, phase, parameter)
 
 
 def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
@@ -76,11 +93,13 @@ def rate_before(orbit: Orbit, index: int) -> Array:
     return orbit.mesh.scheme.end @ orbit.knot_rates[interval]
 
 
-def _rate(system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array) -> Array:
+def _rate(
+    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
+) -> Array:
     """x' from the equations at a state (1, n), by Newton's method from a guess of it and of the unknowns."""
     n, found = x.shape[1], np.append(rate, algebraic)[None]
     for _ in range(ITERATIONS):
-        line = system.linearise(found[:, :n], x, found[:, n:], phase, orbit.parameter)
+        line = linearise(system, found[:, :n], x, found[:, n:], phase, orbit.parameter, side[None])
         matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
         found = found - np.linalg.solve(matrix, line.residual[0])
     return found[0, :n]

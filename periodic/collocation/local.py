@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from periodic.collocation.condensation import solve_stages
 from periodic.collocation.residual import Rows, eliminate, finite
+from periodic.collocation.sides import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
@@ -27,21 +28,29 @@ CLOSE = 1e-9
 
 @dataclass
 class _Pieces:
-    """Some intervals of an orbit: left mesh points, widths, stage phases, stages and unknowns."""
+    """Some intervals of an orbit: left ends, widths, stage phases, stages, unknowns, sides of jumps."""
 
     start: Array
     width: Array
     tau: Array
     stages: Array
     algebraic: Array
+    side: Array
 
     def take(self, chosen: NDArray[np.bool_]) -> _Pieces:
-        return _Pieces(*[a[chosen] for a in (self.start, self.width, self.tau, self.stages, self.algebraic)])
+        return _Pieces(*[a[chosen] for a in vars(self).values()])
 
 
 def relax(system: System, orbit: Orbit) -> Orbit:
     """Return the orbit with its hard intervals solved locally, as far as they converge."""
-    pieces = _Pieces(orbit.nodes[:-1], orbit.grid.width, orbit.stage_phases, orbit.stages, orbit.algebraic)
+    pieces = _Pieces(
+        orbit.nodes[:-1],
+        orbit.grid.width,
+        orbit.stage_phases,
+        orbit.stages,
+        orbit.algebraic,
+        sides(system, orbit.mesh),
+    )
     stages, algebraic = orbit.stages.copy(), orbit.algebraic.copy()
     index = np.arange(orbit.mesh.ntst)
     for iteration in range(ITERATIONS):
@@ -65,12 +74,14 @@ def _iterate(system: System, orbit: Orbit, pieces: _Pieces) -> Array:
     m = pieces.algebraic.shape[2]
     knots = np.concatenate([pieces.start[:, None, :], pieces.stages], axis=1)
     weights = scheme.stage_rates / pieces.width[:, None, None]
-    line = system.linearise(
+    line = linearise(
+        system,
         (weights @ knots).reshape(-1, n),
         pieces.stages.reshape(-1, n),
         pieces.algebraic.reshape(count * ncol, m),
         pieces.tau.ravel(),
         orbit.parameter,
+        np.repeat(pieces.side, ncol, axis=0),
     )
     columns = np.concatenate([line.residual[:, :, None], line.d_rate, line.d_state], axis=2)
     reduced, map_z = eliminate(finite(Rows(columns, line.d_algebraic)), n)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.collocation.sides import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System
@@ -39,12 +40,14 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linearisat
     count, ncol, n = orbit.stages.shape
     rate = orbit.knot_rates[:, 1:]
     tau, stages = _before_kinks(orbit, rate)
-    return system.linearise(
+    return linearise(
+        system,
         rate.reshape(-1, n),
         stages.reshape(-1, n),
         orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
         tau.ravel(),
         orbit.parameter,
+        np.repeat(sides(system, orbit.mesh), ncol, axis=0),
         free,
     )
 

@@ -80,7 +80,7 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
         parameters alone, or are positive by their form.
     """
     known, found = _Known(given, {}), []
-    for node in _nodes(rows):
+    for node in nodes(rows):
         known.add(node)
         if node.op() not in COMPARED + SIGNED:
             continue
@@ -96,8 +96,19 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
     return [s.dep(0) if s.op() == ca.OP_NEG else s for s in found]
 
 
-def _nodes(rows: ca.SX) -> Iterator[ca.SX]:
-    """The operations of a graph, each once and after what it is made of."""
+def nodes(rows: ca.SX) -> Iterator[ca.SX]:
+    """Yield the operations of a graph, each once and after what it is made of.
+
+    Parameters
+    ----------
+    rows : casadi.SX
+        A column of expressions.
+
+    Yields
+    ------
+    casadi.SX
+        One operation.
+    """
     seen: set[int] = set()
     pending = [(rows[i], False) for i in reversed(range(rows.numel()))]
     while pending:

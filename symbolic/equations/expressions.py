@@ -16,6 +16,8 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.packed import Packed
+from symbolic.equations.sides import Sided, sided
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Expressions:
     phase: ca.SX
     parameter: ca.SX
     residual: ca.SX
+    sided: Sided
     unexcited: ca.SX
     harmonics: tuple[int, ...]
     waves: ca.SX
@@ -59,13 +62,16 @@ def expressed(assembly: Assembly) -> Expressions:
     outputs = [expression for _, expression in assembly.described]
     unknowns, excitation = assembly.unknowns, assembly.excitation
     moved = packed.scaled([u.moved for u in unknowns])
+    residual = packed.scaled(rows)
+    switches = packed.scaled([expression for _, expression in assembly.switches])
     return Expressions(
         rate=packed.rate,
         state=packed.state,
         algebraic=packed.unknown,
         phase=packed.phase,
         parameter=packed.parameter,
-        residual=packed.scaled(rows),
+        residual=residual,
+        sided=sided(packed, residual, switches, tuple(assembly.resets)),
         unexcited=ca.substitute(
             packed.scaled(rows, ca.SX.zeros(packed.waves.size1())), packed.phase, ca.SX(0)
         ),
@@ -74,7 +80,7 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=packed.scaled([expression for _, expression in assembly.switches]),
+        switches=switches,
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()
@@ -84,54 +90,6 @@ def expressed(assembly: Assembly) -> Expressions:
         increment=packed.increment,
         moved=ca.substitute(moved, ca.vertcat(*[u.increment for u in unknowns]), packed.increment),
     )
-
-
-class Packed:
-    """The vectors that take the place of an assembly's single symbols.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The workbench of a model, all its parts laid and closed.
-    """
-
-    def __init__(self, assembly: Assembly) -> None:
-        self.assembly = assembly
-        states, unknowns = assembly.states, assembly.unknowns
-        parameters = [symbols for _, symbols in assembly.numbers.named().values()]
-        self.phase = ca.SX.sym("tau")
-        self.rate, self.state = ca.SX.sym("rate", len(states)), ca.SX.sym("state", len(states))
-        self.parameter = ca.SX.sym("parameter", len(parameters))
-        self.unknown = ca.SX.sym("algebraic", len(unknowns))
-        self.increment = ca.SX.sym("increment", len(unknowns))
-        self.waves = assembly.excitation.symbols
-        scales = ca.vertcat(*[s.scale for s in states])
-        old = [s.derivative for s in states] + [s.symbol for s in states]
-        old += [u.symbol for u in unknowns] + [symbol for symbols in parameters for symbol in symbols]
-        values = [self.parameter[k] for k, symbols in enumerate(parameters) for _ in symbols]
-        self.old = ca.vertcat(*old)
-        self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, *values)
-
-    def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None) -> ca.SX:
-        """Stack expressions in SI as one in the vectors.
-
-        Parameters
-        ----------
-        expressions : list of casadi.SX
-            In the assembly's symbols.
-        waved : casadi.SX, optional
-            What stands for the waves of the excitation; by default their values at the phase.
-
-        Returns
-        -------
-        casadi.SX
-            A column in the vectors.
-        """
-        excitation = self.assembly.excitation
-        stacked = self.assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
-        stacked = excitation.timed(stacked, self.phase)
-        given = excitation.values(self.phase) if waved is None else waved
-        return ca.substitute(ca.substitute(stacked, self.waves, given), self.old, self.new)
 
 
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:

@@ -16,6 +16,7 @@ import casadi as ca
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.branches import Traits, switching
+from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, constant, multiples
 from symbolic.equations.variables import SwitchInfo
 
@@ -38,7 +39,8 @@ def find(assembly: Assembly) -> None:
     candidates = switching(rows, _traits(assembly))
     if not candidates:
         return
-    samples = Samples(assembly)
+    assembly.with_frequency(assembly.omega)  # an omega of its own is a parameter like any other
+    samples = Samples(Packed(assembly))
     usable = _hashes(_moving(assembly)) | _hashes(_fixed(assembly))
     smooth = [s for s in assembly.smooth if _hashes(ca.symvar(s)) <= usable]
     declared = [s for _, s in assembly.switches]

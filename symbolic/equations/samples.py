@@ -6,8 +6,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
-from symbolic.equations.assembly import Assembly
-from symbolic.equations.expressions import Packed
+from symbolic.equations.packed import Packed
 
 SAME = 1e-12
 """Ratios of two functions that differ by less are equal."""
@@ -24,13 +23,12 @@ class Samples:
 
     Parameters
     ----------
-    assembly : Assembly
-        The workbench of a model, all its parts laid and closed.
+    packed : Packed
+        The variables of a model, whose omega is a parameter or has been replaced.
     """
 
-    def __init__(self, assembly: Assembly) -> None:
-        assembly.with_frequency(assembly.omega)  # an omega of its own is a parameter like any other
-        self.packed = packed = Packed(assembly)
+    def __init__(self, packed: Packed) -> None:
+        self.packed, assembly = packed, packed.assembly
         draw = np.random.default_rng(1)
         nominal = np.array([p.value for p in assembly.parameters.values()])
         rest = packed.scaled([s.rest / s.scale for s in assembly.states])
@@ -50,7 +48,11 @@ class Samples:
 
     def values(self, expressions: list[ca.SX]) -> list[list[Array]]:
         """Values of each function in the assembly's symbols, a row for each set of parameters."""
-        return [list(rows) for rows in zip(*self._evaluated(self.packed.scaled(expressions)), strict=True)]
+        return self.rows(self.packed.scaled(expressions))
+
+    def rows(self, column: ca.SX) -> list[list[Array]]:
+        """Values of each row of a column in the vectors, a row for each set of parameters."""
+        return [list(rows) for rows in zip(*self._evaluated(column), strict=True)]
 
     def size(self, expression: ca.SX) -> float:
         """How much a function changes with states of their scales and with the phase: its order."""

@@ -70,6 +70,7 @@ class CompiledSystem:
     _gradients: dict[tuple[int, ...], Callable[..., None]] = field(
         default_factory=dict, init=False, repr=False
     )
+    _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -165,6 +166,28 @@ class CompiledSystem:
         kernel = self._derivatives(self._jacobians, self.expressions.residual, free)
         rows = len(self.states) + len(self.algebraics)
         return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter))
+
+    @property
+    def jumps(self) -> tuple[int, ...]:
+        """Indices of the switches at which the equations jump: see `periodic.system.Jumping`."""
+        return self.expressions.sided.jumps
+
+    def linearise_beside(
+        self,
+        rate: Array,
+        state: Array,
+        algebraic: Array,
+        phase: Array,
+        parameter: Array,
+        side: Array,
+        free: tuple[int, ...] = (),
+    ) -> Linearisation:
+        """Return residual and derivatives on given sides (N, jumps) of the jumps: 1, -1, or 0 as it is."""
+        sided = self.expressions.sided
+        arguments = [*self._arguments, batch(sided.side, "side")]
+        kernel = self._derivatives(self._besides, sided.residual, free, arguments)
+        rows = len(self.states) + len(self.algebraics)
+        return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter, side))
 
     def output_gradient(
         self,
@@ -321,14 +344,19 @@ class CompiledSystem:
         }
 
     def _derivatives(
-        self, known: dict[tuple[int, ...], Callable[..., None]], rows: ca.SX, free: tuple[int, ...]
+        self,
+        known: dict[tuple[int, ...], Callable[..., None]],
+        rows: ca.SX,
+        free: tuple[int, ...],
+        arguments: list[Argument] | None = None,
     ) -> Callable[..., None]:
         """The kernel of some rows and their derivatives, made once for each choice of free parameters."""
         if free not in known:
             e = self.expressions
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
-            known[free] = self._build(self._arguments, [rows, *(ca.jacobian(rows, v) for v in variables)])
+            results = [rows, *(ca.jacobian(rows, v) for v in variables)]
+            known[free] = self._build(arguments or self._arguments, results)
         return known[free]
 
     def _linearised(

@@ -1,0 +1,93 @@
+"""Equations that jump: dry friction by `sign`, a square wave, a force that sets in at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from reference.hybrid import Hybrid, Signs, Surface, periodic_orbit
+from reference.shooting import in_order
+
+import periodic as per
+import symbolic as sym
+
+F = sym.functions
+C, MU = 0.1, 0.1
+VALUES = {"F": 0.5, "w": 1.0, "mu": MU}
+
+
+def friction(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+    """x'' + c x' + x + mu sign(x') = F cos w t."""
+    return {"x": x.v, "v": p.F * wave.cos - C * x.v - x.x - p.mu * F.sign(x.v)}
+
+
+def latch(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+    """A force 2 mu that sets in where x passes 0.2: a condition, nested in a product."""
+    return {"x": x.v, "v": p.F * wave.cos - C * x.v - x.x - 2 * p.mu * F.if_else(x.x > 0.2, 1 + x.v, 0)}
+
+
+def square(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+    """A square wave as the force."""
+    return {"x": x.v, "v": p.F * F.sign(wave.cos) - C * x.v - x.x}
+
+
+def compiled(function: Any) -> sym.CompiledSystem:
+    """The equations of an oscillator."""
+    return sym.compile(sym.Equations(function, {"x": 0.0, "v": 0.0}, VALUES, frequency="w"))
+
+
+def exact(name: str, force: float, w: float) -> Hybrid:
+    """The same in tau, y = (x, v), mode by mode."""
+
+    def rates(t: float, y: Any, signs: Signs) -> list[float]:
+        (s,), passive = signs, -C * y[1] - y[0]
+        jumping = {
+            "friction": force * np.cos(t) - MU * s,
+            "latch": force * np.cos(t) - 2 * MU * (1 + y[1]) * (s > 0),
+            "square": force * s,
+        }[name]
+        return [y[1] / w, (passive + jumping) / w]
+
+    def jacobian(t: float, y: Any, signs: Signs) -> list[list[float]]:
+        return [[0, 1 / w], [-1 / w, (-C - 2 * MU * (name == "latch" and signs[0] > 0)) / w]]
+
+    surface = {
+        "friction": Surface(lambda t, y: y[1], lambda t, y: (0.0, np.array([0.0, 1.0]))),
+        "latch": Surface(lambda t, y: y[0] - 0.2, lambda t, y: (0.0, np.array([1.0, 0.0]))),
+        "square": Surface(lambda t, y: np.cos(t), lambda t, y: (-np.sin(t), np.zeros(2))),
+    }[name]
+    return Hybrid(rates, jacobian, [surface])
+
+
+@pytest.mark.parametrize("function", [friction, latch, square], ids=lambda f: f.__name__)
+def test_orbits_and_multipliers_of_equations_that_jump(function: Any) -> None:
+    """Assert orbits and multipliers to 1e-9 against event-exact shooting with saltation, over frequencies."""
+    system = compiled(function)
+    assert system.jumps == (0,)
+    branch = per.trace(system, "w", (1.2, 1.3), tol=1e-9, at=1.25)
+    for point in branch.special_points:
+        found = periodic_orbit(
+            exact(function.__name__, 0.5, point.parameter), point.orbit.state(np.zeros(1))[0]
+        )
+        phase = np.linspace(0.05, 6.2, 30)
+        np.testing.assert_allclose(point.orbit.state(phase), found.state(phase), atol=1e-9)
+        np.testing.assert_allclose(in_order(point.multipliers), found.multipliers, atol=1e-9)
+    assert len(branch.special_points) == 3
+
+
+def test_what_is_continuous_does_not_jump() -> None:
+    """Assert that a sign or condition between branches that meet is a kink and no jump."""
+    for kinked in (lambda x: F.sign(x.v) * x.v, lambda x: F.if_else(x.x > 0.3, x.x - 0.3, 0)):
+        system = compiled(lambda x, p, w, kinked=kinked: {"x": x.v, "v": w.cos - x.x - kinked(x)})
+        assert len(system.switches) == 1
+        assert system.jumps == ()
+
+
+def test_sides_of_a_jump() -> None:
+    """Assert the equations beyond the zero of their switch on a given side, and the state's own with 0."""
+    system = compiled(friction)
+    state, side = np.array([[0.0, 0.7], [0.0, 0.7], [0.0, 0.7]]), np.array([[1.0], [0.0], [-1.0]])
+    zero = np.zeros((3, 2))
+    line = system.linearise_beside(zero, state, np.zeros((3, 0)), np.zeros(3), system.nominal, side)
+    np.testing.assert_allclose(line.residual[:, 1], -0.5 + 0.07 + MU * np.array([1.0, 1.0, -1.0]))
