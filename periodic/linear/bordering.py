@@ -36,8 +36,8 @@ class Condensed(Protocol):
 
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
-    orbit is the one linearised at, residual the largest of its equations; compiled chains in C. perturbed
-    (N, n, n) are the steps of perturbations at fixed tau where the state jumps, None where it does not.
+    orbit is the one linearised at, residual the largest of its equations; compiled chains in C. It
+    may have `perturbed` (N, n, n), the steps of perturbations at fixed tau where the state jumps.
     """
 
     @property
@@ -50,8 +50,6 @@ class Condensed(Protocol):
     def residual(self) -> float: ...
     @property
     def compiled(self) -> Compiled | None: ...
-    @property
-    def perturbed(self) -> Array | None: ...
 
     def reduced(self, row: Row) -> Row:
         """Return a row in mesh-point states and y alone, its stages eliminated."""
@@ -91,7 +89,7 @@ class Chain:
     @cached_property
     def fundamental(self) -> Array:
         """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
-        steps = self.condensed.perturbed
+        steps: Array | None = getattr(self.condensed, "perturbed", None)
         if steps is not None:
             return np.array(list(accumulate(steps, lambda m, step: step @ m, initial=np.eye(steps.shape[1]))))
         return self.maps[:, :, 1 : 1 + self.maps.shape[1]]

@@ -37,7 +37,6 @@ class Condensed:
     algebraic: Array
     residual: float
     compiled = None
-    perturbed = None
 
     def reduced(self, row: Row) -> Row:
         """Return a row in mesh-point states and y alone, its stages eliminated."""
