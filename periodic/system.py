@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 class VariableLike(Protocol):
@@ -397,6 +398,61 @@ class Timed(System, Protocol):
 
         A system may have `frequency_factor` too, by which that product is then multiplied.
         """
+
+
+class ModesLike(Protocol):
+    """Modes of the linear part: dz/dtau = exponents z + inputs f, x = Re outputs z + direct f + direct_rate f'.
+
+    J modes, k forces f, s states x: exponents (J,), inputs (J, k), outputs (s, J), complex; one of each
+    conjugate pair stands for both. direct, direct_rate (s, k). All scaled.
+    """
+
+    @property
+    def exponents(self) -> Complex: ...
+    @property
+    def inputs(self) -> Complex: ...
+    @property
+    def outputs(self) -> Complex: ...
+    @property
+    def direct(self) -> Array: ...
+    @property
+    def direct_rate(self) -> Array: ...
+
+
+class LinearPart(Protocol):
+    """The linear part of a system that is split, x_L = L f: any number of states behind a few places.
+
+    `states` are the indices of the states that it gives, `forces` those of the unknowns that act on it. The
+    system's own rows say nothing of these states: as many of its n differential rows are empty. Position and
+    velocity of a place follow each other in `states`.
+    """
+
+    @property
+    def states(self) -> tuple[int, ...]: ...
+    @property
+    def forces(self) -> tuple[int, ...]: ...
+    @property
+    def size(self) -> int:
+        """Number of its states."""
+
+    def modes(self, parameter: Array) -> ModesLike:
+        """Its modes at parameters (p,). Raises ArithmeticError where they do not span its motion."""
+
+    def slope(self, parameter: Array, index: int) -> ModesLike | None:
+        """Their derivative in a parameter; None where they do not depend on it."""
+
+
+class Split(System, Protocol):
+    """A system whose linear part is given by its modes."""
+
+    @property
+    def linear(self) -> LinearPart | None:
+        """The linear part; None of a system that is not split."""
+
+
+def linear_of(system: System) -> LinearPart | None:
+    """Return the linear part of a system that is split, None of any other."""
+    return cast(Split, system).linear if hasattr(system, "linear") else None
 
 
 def frequency_of(system: System) -> tuple[str, ...]:

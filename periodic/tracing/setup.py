@@ -10,6 +10,7 @@ import numpy as np
 
 from periodic.checks import named, number
 from periodic.collocation.method import Collocation
+from periodic.condensed.method import suited
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.solver import Solver, Work
@@ -36,12 +37,13 @@ class Method:
     @classmethod
     def of(
         cls,
+        system: System,
         tol: float | Tolerance,
         discretisation: Discretisation | None,
         control: ArclengthControl | None,
         watch: Watch | None,
     ) -> Method:
-        """Return it with defaults for what is not given, all made for the tolerance.
+        """Return it with defaults for what is not given, all made for the system and the tolerance.
 
         Raises ValueError for what is none of these.
         """
@@ -56,7 +58,7 @@ class Method:
                 raise ValueError(f"{name} is {given!r}; it must be {kind.__name__}(...)")
         tolerance = Tolerance.of(tol)
         return cls(
-            discretisation=(discretisation or Collocation()).at(tolerance.orbit),
+            discretisation=suited(discretisation or Collocation(), system).at(tolerance.orbit),
             tolerance=tolerance,
             control=control or ArclengthControl(),
             watch=watch or Watch(),

@@ -79,7 +79,7 @@ def continuation(
     if not isinstance(problem, Problem):
         raise ValueError(f"problem is {problem!r}; it must be a Problem(system, parameter, bounds)")
     guess, place = (start, None) if isinstance(start, Orbit) else (None, start)
-    chosen = Method.of(tol, method, control, watch)
+    chosen = Method.of(problem.system, tol, method, control, watch)
     if chosen.watch.journal is not None:
         raise ValueError(f"watch.journal is {str(chosen.watch.journal)!r}; only trace keeps a journal")
     ready = setup(problem, chosen, start=place, at=at, guess=guess, values=values)
@@ -158,7 +158,7 @@ def trace(
         A KeyboardInterrupt (Ctrl-C) with the branch so far as `branch`.
     """
     problem = Problem(system, parameter, bounds, {} if determined is None else determined)
-    chosen, before = Method.of(tol, method, control, watch), None
+    chosen, before = Method.of(system, tol, method, control, watch), None
     if isinstance(guess, Branch):
         before = guess
         guess = None if begun_from_rest(before) else start_of(before).orbit

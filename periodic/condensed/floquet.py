@@ -1,0 +1,159 @@
+"""The leading Floquet multipliers of a split system, whatever the number of its states.
+
+Over a period free motion (z_0, s_0) of modes and own states makes forces at the places, and these add to it:
+
+    M = exp(lambda T) + L_T (1 - F' L)^-1 F' R,
+
+a diagonal and a product as thin as the unknowns of the places are few.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+from scipy.sparse.linalg import ArpackError, eigs
+
+from periodic.condensed.coupled import Coupled
+from periodic.condensed.linearised import Linearised
+from periodic.orbit.scheme import Array
+
+LEADING = 8
+"""Multipliers that are kept of many."""
+
+SMALL = 48
+"""Up to so many states all of them are computed."""
+
+
+@dataclass(frozen=True)
+class Floquet:
+    """Free motion about an orbit, in the real coordinates (Re z, Im z, s) of which the redundant are left out.
+
+    Parameters
+    ----------
+    given : Linearised
+        The system about its orbit.
+    """
+
+    given: Linearised
+
+    @cached_property
+    def kept(self) -> NDArray[np.int_]:
+        """The coordinates: modes that do not oscillate have no imaginary part."""
+        oscillates = self.given.response.modes.exponents.imag != 0
+        own = np.ones(len(self.given.others), dtype=bool)
+        return np.flatnonzero(np.concatenate([np.ones(len(oscillates), dtype=bool), oscillates, own]))
+
+    @cached_property
+    def _free(self) -> tuple[Array, NDArray[np.complex128]]:
+        return self.given.response.free()
+
+    @cached_property
+    def answers(self) -> Array:
+        """Forces and own states at the points, (P ka + P o, coordinates)."""
+        given = self.given
+        system = Coupled(given, given.flexibility[1], wraps=False)
+        n, modes = system.n, 2 * len(given.response.modes.exponents)
+        shown = self._free[0].reshape(system.points, len(system.places), modes)
+        places = [1 + n + k for k in system.places]
+        right = np.zeros((system.size, modes + len(system.others)))
+        forces = given.local.forces[:, system.active]
+        right[: system.count, :modes] = (forces[:, :, places] @ shown).reshape(system.count, modes)
+        if len(system.others):
+            own = given.local.own
+            right[system.count :, :modes] = -(own[:, :, places] @ shown).reshape(-1, modes)
+            right[system.count :, modes:] = -self._begun(own[:, :, 1 + system.others])
+        return np.asarray(np.linalg.solve(system.matrix, right[:, self.kept]))
+
+    def _begun(self, rates: Array) -> Array:
+        """What the own states' start adds to their rows in the first interval, (P o, o)."""
+        orbit = self.given.orbit
+        weights = orbit.mesh.scheme.stage_rates[:, 0] / orbit.grid.width[0]
+        found = np.zeros_like(rates)
+        found[: len(weights)] = weights[:, None, None] * rates[: len(weights)]
+        return found.reshape(-1, rates.shape[2])
+
+    def _forces(self, answers: Array) -> Array:
+        """All forces at the points, (N, b, k, r), of the active ones."""
+        given = self.given
+        system = Coupled(given, given.flexibility[1], wraps=False)
+        count, points, _ = given.orbit.stages.shape
+        found = np.zeros((count, points, system.k, answers.shape[1]))
+        found[:, :, system.active] = answers[: system.count].reshape(count, points, -1, answers.shape[1])
+        return found
+
+    @cached_property
+    def monodromy(self) -> Array:
+        """M, (coordinates, coordinates)."""
+        given, kept = self.given, self.kept
+        growth = self._free[1][-1]
+        modes, own = 2 * len(growth), len(given.others)
+        whole = np.zeros((modes + own, modes + own))
+        each = np.arange(len(growth))
+        whole[each, each] = whole[each + len(growth), each + len(growth)] = growth.real
+        whole[each, each + len(growth)], whole[each + len(growth), each] = -growth.imag, growth.imag
+        found = whole[np.ix_(kept, kept)]
+        final = np.zeros((modes + own, self.answers.shape[1]))
+        forces = self._forces(self.answers)
+        final[:modes] = given.response.final().reshape(modes, -1) @ forces.reshape(-1, forces.shape[3])
+        if own:
+            found[-own:, -own:] = 0.0
+            final[modes:] = self.answers[-own:]
+        return np.asarray(found + final[kept])
+
+    def motion(self, basis: Array) -> Array:
+        """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
+        growth, own = self._free[1], len(self.given.others)
+        whole = np.zeros((2 * growth.shape[1] + own, basis.shape[1]))
+        whole[self.kept] = basis
+        modes = whole[: growth.shape[1]] + 1j * whole[growth.shape[1] : 2 * growth.shape[1]]
+        answers = self.answers @ basis
+        moved = growth[:, :, None] * modes + self.given.response.driven(self._forces(answers))
+        parts = [moved.real, moved.imag]
+        if own:
+            count, points, _ = self.given.orbit.stages.shape
+            ends = answers[-count * points * own :].reshape(count, points, own, -1)[:, -1]
+            parts.append(np.concatenate([whole[None, -own:], ends]))
+        return np.concatenate(parts, axis=1)[:, self.kept]
+
+
+def leading(given: Linearised) -> Array:
+    """Return free motion in the invariant subspace of the leading multipliers, (N+1, r, r)."""
+    floquet = Floquet(given)
+    basis = invariant(floquet.monodromy, LEADING)
+    return np.asarray(basis.T @ floquet.motion(basis))
+
+
+def invariant(matrix: Array, count: int) -> Array:
+    """Return an orthonormal basis of the subspace of the `count` largest eigenvalues, (n, count).
+
+    Where the last of these would tear a pair apart it takes real eigenvalues below, else what is left.
+    """
+    size = len(matrix)
+    if size <= count:
+        return np.eye(size)
+    if not np.isfinite(matrix).all():
+        raise FloatingPointError("the monodromy matrix is not finite")
+    values, vectors = _largest(matrix, count)
+    columns: list[Array] = []
+    for k in np.argsort(-np.abs(values), kind="stable"):
+        if values[k].imag == 0 and len(columns) < count:
+            columns.append(vectors[:, k].real)
+        if values[k].imag > 0 and len(columns) < count - 1:
+            columns += [vectors[:, k].real, vectors[:, k].imag]
+    return np.linalg.qr(np.array(columns).T)[0]
+
+
+def _largest(matrix: Array, count: int) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Some more than `count` of the largest eigenvalues."""
+    if len(matrix) > SMALL:
+        try:
+            values, vectors = eigs(matrix, count + 3, v0=np.ones(len(matrix)), ncv=4 * count, maxiter=60)
+            return values, vectors
+        except ArpackError:
+            pass  # those next to each other in size are told apart by all of them
+    values, vectors = scipy.linalg.eig(matrix)
+    return values.astype(np.complex128), vectors.astype(np.complex128)

@@ -1,0 +1,99 @@
+"""The rows of a split system at the collocation points, and its linear part on the orbit's mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.collocation.residual import eliminate, evaluated, rows_of
+from periodic.condensed.response import Response
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import LinearPart, ModesLike, System
+
+
+@dataclass(frozen=True)
+class Local:
+    """The rows at the points, each a map of (1, d rate, d state, dy) with y the event phases and parameters.
+
+    forces (P, k, w): the increments of the forces; own (P, o, w): rows of the own states; unknowns (P, m, w):
+    increments of all unknowns; residual the largest one.
+    """
+
+    forces: Array
+    own: Array
+    unknowns: Array
+    residual: float
+
+
+def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...]) -> Local:
+    """Linearise and eliminate the unknowns point by point. Raises as `condense` does."""
+    n = orbit.nodes.shape[1]
+    rows = rows_of(orbit, evaluated(system, orbit, free))
+    reduced, unknowns = eliminate(rows, n)
+    filled = np.abs(reduced).max(axis=(0, 2)) > 0
+    own = reduced[:, filled]
+    states = list(part.states)
+    if own.shape[1] != n - len(states):
+        raise ValueError(
+            f"the system has {own.shape[1]} rows for its {n - len(states)} own states; each needs one"
+        )
+    rates = [1 + k for k in states]
+    if unknowns[:, list(part.forces)][:, :, rates].any() or own[:, :, rates].any():
+        raise ValueError("forces at the places depend on accelerations there; a condensed system has none")
+    return Local(-unknowns[:, list(part.forces)], own, -unknowns, rows.residual)
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A split system about an orbit.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Where it is linearised.
+    part : LinearPart
+        The linear part.
+    response : Response
+        Its modes on the orbit's mesh.
+    changes : list of ModesLike or None
+        Their derivatives in the free parameters.
+    local : Local
+        The system's own rows.
+    """
+
+    orbit: Orbit
+    part: LinearPart
+    response: Response
+    changes: list[ModesLike | None]
+    local: Local
+
+    @cached_property
+    def others(self) -> NDArray[np.int_]:
+        """Indices of the own states."""
+        return np.setdiff1d(np.arange(self.orbit.nodes.shape[1]), self.part.states)
+
+    @cached_property
+    def flexibility(self) -> tuple[Array, Array]:
+        """The periodic response and that from rest, (P s, P k)."""
+        size = self.orbit.stages.shape[0] * self.orbit.stages.shape[1]
+        both = self.response.flexibility()
+        rows, columns = size * len(self.part.states), size * len(self.part.forces)
+        return both[0].reshape(rows, columns), both[1].reshape(rows, columns)
+
+    @cached_property
+    def forces(self) -> Array:
+        """The forces at the points, (N, b, k)."""
+        return np.ascontiguousarray(self.orbit.algebraic[:, :, list(self.part.forces)])
+
+    @cached_property
+    def affine(self) -> Array:
+        """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
+        stages = self.orbit.stages[:, :, list(self.part.states)]
+        count, points, s = stages.shape
+        made = (self.flexibility[0] @ self.forces.ravel()).reshape(stages.shape)
+        moved = self.response.slopes(self.forces, self.orbit.grid.width_gradient, self.changes)
+        return np.concatenate([(made - stages)[..., None], moved], axis=3).reshape(count * points, s, -1)

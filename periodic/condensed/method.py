@@ -1,0 +1,131 @@
+"""Collocation of a system that is split: its linear part integrated exactly, unknowns at the places alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.collocation.event import event_rows
+from periodic.collocation.method import Collocation, CollocationRefinement
+from periodic.condensed.linearised import Linearised, local_rows
+from periodic.condensed.operator import Condensed
+from periodic.condensed.reduction import audible, reduced, reduced_slope
+from periodic.condensed.response import Response
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.meshes import Refinement
+from periodic.correction.newton import Correction, in_order
+from periodic.correction.outcome import EventsCrossedError
+from periodic.correction.problem import Problem
+from periodic.linear.operator import Operator
+from periodic.linear.unknowns import Increment
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.stability.spectrum import Spectrum
+from periodic.system import LinearPart, System, linear_of
+
+
+@dataclass(frozen=True)
+class CondensedCollocation(Collocation):
+    """Collocation for a system with a linear part (`periodic.system.Split`).
+
+    Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
+    fast its modes; event nodes, error estimate and meshes are those of `Collocation`, whose settings it has.
+    """
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
+        """Return the equations of the places, and those of the event nodes."""
+        if not in_order(orbit):
+            raise EventsCrossedError
+        part = _linear(system)
+        whole = part.modes(orbit.parameter)
+        kept = audible(whole, orbit.mesh.period, self.tolerance)
+        changes = [reduced_slope(whole, part.slope(orbit.parameter, k), kept) for k in free]
+        response = Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period)
+        local = local_rows(system, part, orbit, free)
+        return Condensed(
+            Linearised(orbit, part, response, changes, local), event_rows(system, orbit, free)
+        )
+
+    @property
+    def alternatives(self) -> tuple[Discretisation, ...]:
+        """The same with other numbers of points."""
+        return tuple(replace(self, scheme=Scheme(Family.RADAU, ncol)) for ncol in (3, 5))
+
+    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
+        """Return the orbit at rest, or one carried to this scheme."""
+        if near is None or near.equilibrium:
+            return super().guess(system, parameter, near)
+        old = near.mesh
+        mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period)
+        return replace(transfer(near, mesh, near.phases), parameter=parameter)
+
+    def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
+        """Yield the orbit on the other mesh."""
+        yield transfer(orbit, mesh, phases)
+
+    def error(
+        self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
+    ) -> ErrorEstimate:
+        """Estimate the errors by a Newton step on the halved mesh."""
+        return deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
+
+    def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
+        """Say to which events the mesh should be tied, and how many intervals it needs."""
+        return CondensedRefinement(self, system, orbit, error)
+
+
+class CondensedRefinement(CollocationRefinement):
+    """Meshes of equal intervals where no kink asks for others: there all is known of one interval."""
+
+    def refined(self) -> Mesh:
+        """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
+        if self.orbit.mesh.events:
+            return super().refined()
+        return self._even()
+
+    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
+        """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        if self.wanted:
+            yield from super().meshes()
+        else:
+            yield self._even(), np.zeros(0)
+
+    def _even(self) -> Mesh:
+        mesh = self.orbit.mesh
+        return Mesh(mesh.scheme, (np.linspace(0, 1, self._ntst + 1),), (), mesh.period)
+
+
+def _linear(system: System) -> LinearPart:
+    part = linear_of(system)
+    if part is None:
+        raise ValueError("the system has no linear part; CondensedCollocation needs one")
+    return part
+
+
+def suited(method: Discretisation, system: System) -> Discretisation:
+    """Return collocation as it suits a system: condensed where it is split. Raises ValueError for others.
+
+    A split system's rows are not all of its equations, so that no other method can solve them.
+    """
+    if linear_of(system) is None:
+        return method
+    if type(method) is Collocation:
+        given = {name: getattr(method, name) for name in ("ntst", "ntst_min", "ntst_max", "kinks", "tolerance")}
+        return CondensedCollocation(scheme=_stiff(method.scheme), **given)
+    if isinstance(method, CondensedCollocation):
+        return method
+    raise ValueError(
+        f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
+        f"compiled with condense=False for it"
+    )
+
+
+def _stiff(scheme: Scheme | None) -> Scheme | None:
+    if scheme is not None and scheme.family is not Family.RADAU:
+        raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
+    return scheme

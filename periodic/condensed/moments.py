@@ -1,0 +1,104 @@
+"""Exponentials and their moments: how a mode answers forces that are polynomials within an interval.
+
+With l_b the Lagrange polynomials of the collocation points c_a on the unit interval,
+
+    moment_ab(x) = int_0^{c_a} exp(x (c_a - s)) l_b(s) ds,
+
+by its Taylor series where |x| is small, else in closed form by the derivatives of l_b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.scheme import Array, Scheme
+
+Complex = NDArray[np.complex128]
+
+NEAR, TERMS = 3.0, 32
+"""|x| up to which the Taylor series is taken, and its terms."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """exp(c_a x), moments and their derivatives in x at M values of x.
+
+    growth (M, a), moment and slope (M, a, b).
+    """
+
+    growth: Complex
+    moment: Complex
+    slope: Complex
+
+    def take(self, chosen: NDArray[np.int_], modes: int) -> Table:
+        """Return it for intervals, (N, J, ...), from that of their widths, `modes` values of x for each."""
+        arrays = (a.reshape(-1, modes, *a.shape[1:])[chosen] for a in (self.growth, self.moment, self.slope))
+        return Table(*arrays)
+
+
+@dataclass(frozen=True)
+class Moments:
+    """The tables of a scheme."""
+
+    scheme: Scheme
+
+    @cached_property
+    def _monomials(self) -> Array:
+        """l_b(s) = sum_p monomials[p, b] s^p."""
+        points = self.scheme.points
+        return np.linalg.inv(np.vander(points, increasing=True)).astype(float)
+
+    @cached_property
+    def _taylor(self) -> Array:
+        """Coefficients of x^m, shape (TERMS, a, b)."""
+        points = self.scheme.points
+        found = np.zeros((TERMS, len(points), len(points)))
+        for m in range(TERMS):
+            for p, row in enumerate(self._monomials):
+                power = points ** (p + m + 1) * (factorial(p) / factorial(p + m + 1))
+                found[m] += power[:, None] * row
+        return found
+
+    @cached_property
+    def derivatives(self) -> Array:
+        """Derivatives of l_b at 0 and at the collocation points, shape (order, 1+a, b)."""
+        points = np.append(0.0, self.scheme.points)
+        count = len(points) - 1
+        found = np.zeros((count, count + 1, count))
+        for order in range(count):
+            for p in range(order, count):
+                factor = factorial(p) / factorial(p - order)
+                found[order] += factor * points[:, None] ** (p - order) * self._monomials[p]
+        return found
+
+    def table(self, x: Complex) -> Table:
+        """Return the table at values x, shape (M,)."""
+        points = self.scheme.points
+        count = len(points)
+        growth = np.exp(x[:, None] * points)
+        shape = (len(x), count, count)
+        moment, slope = np.empty(shape, dtype=complex), np.empty(shape, dtype=complex)
+        near = np.abs(x) <= NEAR
+        if near.any():
+            powers = x[near, None] ** np.arange(TERMS)
+            series = self._taylor.reshape(TERMS, -1)
+            order = np.arange(1, TERMS)[:, None]
+            moment[near] = (powers @ series).reshape(-1, count, count)
+            slope[near] = (powers[:, :-1] @ (order * series[1:])).reshape(-1, count, count)
+        if not near.all():
+            far = x[~near]
+            inverse = far[:, None] ** -np.arange(1.0, count + 1)
+            steep = -inverse * np.arange(1, count + 1) / far[:, None]
+            series = self.derivatives.reshape(count, -1)
+            value = (inverse @ series).reshape(-1, count + 1, count)
+            change = (steep @ series).reshape(-1, count + 1, count)
+            grown = growth[~near, :, None]
+            moment[~near] = grown * value[:, :1] - value[:, 1:]
+            begun = points[:, None] * value[:, :1] + change[:, :1]
+            slope[~near] = grown * begun - change[:, 1:]
+        return Table(growth, moment, slope)

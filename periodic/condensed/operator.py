@@ -1,0 +1,117 @@
+"""The operator of a split system's orbit: as many unknowns as its places have, whatever stands behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from periodic.condensed.coupled import Coupled
+from periodic.condensed.floquet import leading
+from periodic.condensed.linearised import Linearised
+from periodic.linear.unknowns import Increment
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """The linearised equations of a split system; see `periodic.linear.operator.Operator`.
+
+    Parameters
+    ----------
+    given : Linearised
+        The system about the orbit.
+    own : sequence of Row
+        The rows of the event nodes.
+    """
+
+    given: Linearised
+    own: Sequence[Row] = ()
+
+    @property
+    def orbit(self) -> Orbit:
+        """The orbit that the equations are linearised at."""
+        return self.given.orbit
+
+    @property
+    def residual(self) -> float:
+        """The largest residual."""
+        return max(self.given.local.residual, float(np.abs(self.given.affine[:, :, 0]).max()))
+
+    @cached_property
+    def system(self) -> Coupled:
+        """The equations of forces and own states in periodic motion."""
+        return Coupled(self.given, self.given.flexibility[0], wraps=True)
+
+    @property
+    def effect(self) -> Array:
+        """About how much the states change with each free parameter over a period, shape (q,)."""
+        k, width = len(self.orbit.phases), self.given.local.forces.shape[2]
+        n = self.orbit.nodes.shape[1]
+        whole = self.given.flexibility[0] @ self.given.local.forces[:, :, 1 + 2 * n + k :].reshape(
+            self.given.flexibility[0].shape[1], width - 1 - 2 * n - k
+        )
+        states = np.abs(whole).max(axis=0, initial=0.0)
+        states += np.abs(self.given.affine[:, :, 1 + k :]).max(axis=(0, 1), initial=0.0)
+        return np.asarray(states + np.abs(self.given.local.own[:, :, 1 + 2 * n + k :]).max(axis=(0, 1), initial=0.0))
+
+    def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
+        """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
+        system, k = self.system, len(self.orbit.phases)
+        every = [self._folded(row) for row in (*self.own, *rows)]
+        border = [system.restricted(*row) for row in every]
+        width = system.right.shape[1]
+        inner = np.array([row[0] for row in border]).reshape(len(border), system.size)
+        outer = np.array([row[1] for row in border]).reshape(len(border), width)
+        matrix = np.block([[system.matrix, -system.right[:, 1:]], [inner, outer[:, 1:]]])
+        aim = np.concatenate([system.right[:, :1], -outer[:, :1]]) * right[:1]
+        aim[system.size + len(self.own) :] += right[1:]
+        found = np.linalg.solve(matrix, aim)
+        if not np.isfinite(found).all():
+            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        pairs = zip(right[0], found.T, strict=True)
+        return tuple(self._recovered(float(s), u[: system.size], u[system.size :], k) for s, u in pairs)
+
+    def _folded(self, row: Row) -> tuple[Array, Array]:
+        """A row in the states at the points, (P, n), and in (1, dy): mesh points are the ends of intervals."""
+        orbit = self.orbit
+        stages = np.zeros_like(orbit.stages) if row.stages is None else row.stages.copy()
+        stages[:, -1] += row.nodes[1:]
+        stages[-1, -1] += row.nodes[0]
+        gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:, -1]]) - orbit.nodes
+        value = row.value + float(np.vdot(row.nodes, gap))
+        return stages.reshape(-1, orbit.nodes.shape[1]), np.append(value, row.outer)
+
+    def _recovered(self, constant: float, inner: Array, outer: Array, k: int) -> Increment:
+        """The increment of forces and own states, and dy."""
+        orbit, scheme = self.orbit, self.orbit.mesh.scheme
+        given = np.append(constant, outer)
+        stages = self.system.stages(inner, given).reshape(orbit.stages.shape)
+        gap = constant * (orbit.stages[:, -1] - orbit.nodes[1:])
+        nodes = np.empty_like(orbit.nodes)
+        nodes[1:] = stages[:, -1] + gap
+        nodes[0] = stages[-1, -1] + constant * (orbit.stages[-1, -1] - orbit.nodes[0])
+        knots = np.concatenate([nodes[:-1, None], stages], axis=1)
+        rates = scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
+        n, points = orbit.nodes.shape[1], orbit.stages.shape[0] * orbit.stages.shape[1]
+        shape = (points, n)
+        columns = np.concatenate(
+            [
+                np.full((points, 1), constant),
+                rates.reshape(shape),
+                stages.reshape(shape),
+                np.tile(outer, (points, 1)),
+            ],
+            axis=1,
+        )
+        unknowns = np.einsum("pmw,pw->pm", self.given.local.unknowns, columns).reshape(orbit.algebraic.shape)
+        return Increment.of(orbit, nodes, stages, unknowns, outer[:k], outer[k:])
+
+    @cached_property
+    def fundamental(self) -> Array:
+        """Free motion that begins in the invariant subspace of the leading multipliers, (N+1, r, r)."""
+        return leading(self.given)

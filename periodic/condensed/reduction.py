@@ -1,0 +1,78 @@
+"""Modes too fast and too weak to be heard, which then follow the forces with their flexibility."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.condensed.moments import Complex
+from periodic.orbit.scheme import Array
+from periodic.system import ModesLike
+
+SLOW = 20.0
+"""|exponent| (per rad) below which no mode is left out."""
+
+SHARE = 1e-2
+"""Part of the tolerance that all modes left out may contribute."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """See `periodic.system.ModesLike`."""
+
+    exponents: Complex
+    inputs: Complex
+    outputs: Complex
+    direct: Array
+    direct_rate: Array
+
+
+def audible(modes: ModesLike, period: float, tolerance: float) -> np.ndarray:
+    """Return which modes are to be integrated, shape (J,)."""
+    exponents = modes.exponents
+    with np.errstate(all="ignore"):
+        resonance = np.maximum(1.0, np.abs(1 / np.expm1(exponents * period)))
+    strength = np.abs(modes.outputs[::2]).max(axis=0) * np.abs(modes.inputs).max(axis=1) / np.abs(exponents)
+    weight = strength * resonance
+    order = np.argsort(weight)
+    quiet = np.cumsum(weight[order]) <= SHARE * tolerance * strength.sum()
+    kept = np.ones(len(exponents), dtype=bool)
+    kept[order[quiet]] = False
+    return kept | (np.abs(exponents) < SLOW)
+
+
+def reduced(modes: ModesLike, kept: np.ndarray) -> ModesLike:
+    """Return the modes kept; the others follow with f/lambda + f'/lambda^2 but for their free vibrations."""
+    if kept.all():
+        return modes
+    left = ~kept
+    inputs = modes.inputs[left] / modes.exponents[left, None]
+    direct = -(modes.outputs[:, left] @ inputs).real
+    rate = -(modes.outputs[:, left] @ (inputs / modes.exponents[left, None])).real
+    return Modes(
+        modes.exponents[kept],
+        modes.inputs[kept],
+        modes.outputs[:, kept],
+        modes.direct + direct,
+        modes.direct_rate + rate,
+    )
+
+
+def reduced_slope(modes: ModesLike, slope: ModesLike | None, kept: np.ndarray) -> ModesLike | None:
+    """Return the derivative of the modes kept, that of the others' flexibility by the product rule."""
+    if slope is None or kept.all():
+        return slope
+    left = ~kept
+    value, out = modes.exponents[left, None], modes.outputs[:, left]
+    inputs, changed, faster = modes.inputs[left], slope.inputs[left], slope.exponents[left, None]
+    shown = slope.outputs[:, left]
+    direct = -(shown @ (inputs / value) + out @ (changed / value - inputs * faster / value**2)).real
+    rate = -(shown @ (inputs / value**2) + out @ (changed / value**2 - 2 * inputs * faster / value**3)).real
+    return Modes(
+        slope.exponents[kept],
+        slope.inputs[kept],
+        slope.outputs[:, kept],
+        slope.direct + direct,
+        slope.direct_rate + rate,
+    )

@@ -1,0 +1,293 @@
+"""The exact response of the modes to forces that are polynomials in each interval of a mesh.
+
+    dz/dtau = lambda z + input f,   x = Re output z + direct f + direct_rate df/dtau
+
+at the collocation points, either periodic, z(T) = z(0), or from a given start. Radau's last point is the end
+of the interval.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.condensed.moments import Complex, Moments, Table
+from periodic.orbit.mesh import Grid
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import ModesLike
+
+SPREAD = 300.0
+"""Decay over a period (nepers) up to which the modes' way between any two intervals is one product."""
+
+
+@dataclass(frozen=True)
+class Response:
+    """The modes on a mesh of N intervals with a points each, k forces and s = 2k states.
+
+    Parameters
+    ----------
+    modes : ModesLike
+        J modes.
+    scheme : Scheme
+        Collocation points.
+    grid : Grid
+        The intervals.
+    period : float
+        Period in rad.
+    """
+
+    modes: ModesLike
+    scheme: Scheme
+    grid: Grid
+    period: float
+
+    @cached_property
+    def moments(self) -> Moments:
+        """The scheme's moments."""
+        return Moments(self.scheme)
+
+    @cached_property
+    def _distinct(self) -> tuple[Array, NDArray[np.int_]]:
+        """Widths that differ by more than rounding, and which of them each interval has."""
+        rounded = np.round(self.grid.width / self.period, 13)
+        _, first, which = np.unique(rounded, return_index=True, return_inverse=True)
+        return self.grid.width[first], which
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all intervals are of one width."""
+        return len(self._distinct[0]) == 1
+
+    @cached_property
+    def _table(self) -> Table:
+        """Of the distinct widths, (U J, ...)."""
+        return self.moments.table((self._distinct[0][:, None] * self.modes.exponents).ravel())
+
+    @cached_property
+    def table(self) -> Table:
+        """Of all intervals, (N, J, ...)."""
+        return self._table.take(self._distinct[1], len(self.modes.exponents))
+
+    @cached_property
+    def closing(self) -> Complex:
+        """1/(1 - exp(lambda T)): how a mode's periodic motion follows from that of one period, (J,)."""
+        with np.errstate(all="ignore"):
+            return np.asarray(-1 / np.expm1(self.modes.exponents * self.period))
+
+    @property
+    def start(self) -> Array:
+        """Phases of the intervals' left ends after that of the first, (N,)."""
+        return self.grid.left - self.grid.left[0]
+
+    @cached_property
+    def local(self) -> Array:
+        """States at the points of an interval by its own forces, (N, a, s, b, k)."""
+        widths, which = self._distinct
+        modes, count = self.modes, self.scheme.ncol
+        s, k = modes.direct.shape
+        weights = (modes.outputs.T[:, :, None] * modes.inputs[:, None, :]).reshape(-1, s * k)
+        moment = self._table.moment.reshape(len(widths), len(modes.exponents), -1)
+        found = (np.swapaxes(moment, 1, 2) @ weights).real.reshape(len(widths), count, count, s, k)
+        found = widths[:, None, None, None, None] * found.transpose(0, 1, 3, 2, 4)
+        each = np.arange(count)
+        found[:, each, :, each] += modes.direct
+        slope = self.moments.derivatives[1, 1:] if count > 1 else np.zeros((count, count))
+        rates = slope[None, :, None, :, None] * modes.direct_rate[:, None, :]
+        found += rates / widths[:, None, None, None, None]
+        return np.asarray(found[which])
+
+    @cached_property
+    def impulse(self) -> Complex:
+        """What forces leave in the modes at the end of their interval, (N, J, b, k)."""
+        moment = self.table.moment[:, :, -1, :, None]
+        driven = moment * self.modes.inputs[:, None, :]
+        return np.asarray(self.grid.width[:, None, None, None] * driven)
+
+    def flexibility(self) -> tuple[Array, Array]:
+        """Return the periodic response and that from z(0) = 0, each (N, a, s, N, b, k)."""
+        if self.uniform:
+            return self._circulant()
+        s, k = self.modes.direct.shape
+        count, points = len(self.grid.width), self.scheme.ncol
+        later = np.tril(np.ones((count, count), dtype=bool), -1)[:, None, None, :, None, None]
+        past, before = np.zeros((2, count, points, s, count, points, k))
+        spread = np.abs(self.modes.exponents.real) * self.period <= SPREAD
+        for chosen, way in ((spread, self._spread), (~spread, self._chained)):
+            if chosen.any():
+                own, wrapped = way(np.flatnonzero(chosen))
+                past += np.where(later, own, 0.0)
+                before += wrapped
+        each = np.arange(count)
+        past[each, :, :, each] += self.local
+        return past + before, past
+
+    def _spread(self, chosen: NDArray[np.int_]) -> tuple[Array, Array]:
+        """Responses to earlier intervals of this period and to the periods before, by one product each."""
+        exponents = self.modes.exponents[chosen]
+        ahead = np.exp(exponents * self.start[:, None])
+        back = np.exp(-exponents * (self.start + self.grid.width)[:, None])
+        shown = self._shown(chosen) * ahead[:, None, None]
+        left = self.impulse[:, chosen] * back[:, :, None, None]
+        s, k = self.modes.direct.shape
+        count, points = len(self.grid.width), self.scheme.ncol
+        rows, size = shown.reshape(-1, len(chosen)), len(chosen)
+        columns = np.moveaxis(left, 1, 0).reshape(size, -1)
+        turned = (np.exp(exponents * self.period) * self.closing[chosen])[:, None] * columns
+        shape = (count, points, s, count, points, k)
+        return _real_product(rows, columns).reshape(shape), _real_product(rows, turned).reshape(shape)
+
+    def _shown(self, chosen: NDArray[np.int_]) -> Complex:
+        """States at the points by the modes at the left end, (N, a, s, J)."""
+        growth = np.swapaxes(self.table.growth[:, chosen], 1, 2)
+        return np.asarray(growth[:, :, None, :] * self.modes.outputs[:, chosen])
+
+    def _chained(self, chosen: NDArray[np.int_]) -> tuple[Array, Array]:
+        """The same interval after interval, for modes that decay too fast for one product."""
+        count, size = len(self.grid.width), len(chosen)
+        shown, left = self._shown(chosen), np.moveaxis(self.impulse[:, chosen], 1, 0)
+        decay = self.table.growth[:, chosen, -1]
+        after = self.period - self.start - self.grid.width
+        exponents = self.modes.exponents[chosen]
+        held = np.exp(exponents[:, None] * after)[:, :, None, None] * left
+        held = (held * self.closing[chosen][:, None, None, None]).reshape(size, -1)
+        own = np.zeros_like(left).reshape(size, -1)
+        found = []
+        width = left[0, 0].size
+        for i in range(count):
+            rows = shown[i].reshape(-1, size)
+            found.append([_real_product(rows, own), _real_product(rows, held)])
+            own, held = decay[i][:, None] * own, decay[i][:, None] * held
+            own[:, i * width : (i + 1) * width] = left[:, i].reshape(size, -1)
+        both = np.array(found).reshape(count, 2, *shown.shape[1:3], count, *left.shape[2:])
+        return both[:, 0], both[:, 1]
+
+    def _circulant(self) -> tuple[Array, Array]:
+        """On a uniform mesh only how many intervals later counts."""
+        modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
+        s, k = modes.direct.shape
+        width = self.grid.width[0]
+        table = self._table
+        impulse = width * table.moment[:, -1, :, None] * modes.inputs[:, None, :]
+        ahead = np.exp(modes.exponents * (width * np.arange(count))[:, None])
+        shown = (table.growth.T[:, None, :] * modes.outputs).reshape(points * s, -1)
+        moved = ahead[:, :, None] * impulse.reshape(1, len(modes.exponents), -1)
+        moved = np.concatenate([moved, moved * self.closing[None, :, None]], axis=2)
+        size = points * k
+        columns = np.moveaxis(moved, 1, 0).reshape(len(modes.exponents), -1)
+        found = _real_product(shown, columns).reshape(points, s, count, 2, points, k)
+        later = np.mod(np.arange(count)[:, None] - np.arange(count) - 1, count)
+        every = np.moveaxis(found, 2, 0)  # (later, a, s, 2, b, k)
+        whole = np.ascontiguousarray(np.moveaxis(every[:, :, :, 1][later], 1, 3))
+        first = np.ascontiguousarray(np.moveaxis(every[:, :, :, 0][later], 1, 3))
+        first[np.triu_indices(count)[0], :, :, np.triu_indices(count)[1]] = 0.0
+        each = np.arange(count)
+        for response in (whole, first):
+            response[each, :, :, each] += self.local
+        return whole, first
+
+    def history(self, forces: Array) -> Complex:
+        """Return the modes at the left ends and at the end in periodic motion, (N+1, J); forces (N, b, k)."""
+        left = np.einsum("njbk,nbk->nj", self.impulse, forces)
+        return self._closed(left)
+
+    def _closed(self, left: Complex) -> Complex:
+        """The periodic history of what each interval leaves in the modes, (N, J, ...)."""
+        decay = self.table.growth[:, :, -1].reshape(*left.shape[:2], *[1] * (left.ndim - 2))
+        found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
+        for i in range(len(left)):
+            found[i + 1] = decay[i] * found[i] + left[i]
+        closing = self.closing.reshape(-1, *[1] * (left.ndim - 2))
+        found[0] = closing * found[-1]
+        for i in range(len(left)):
+            found[i + 1] = decay[i] * found[i] + left[i]
+        return found
+
+    def slopes(self, forces: Array, widths: Array, changes: list[ModesLike | None]) -> Array:
+        """Return how the states at the points change with widths and modes, forces held, (N, a, s, q).
+
+        Parameters
+        ----------
+        forces : ndarray, shape (N, b, k)
+            The forces.
+        widths : ndarray, shape (N, q1)
+            Changes of the widths in the first q1 directions.
+        changes : list of ModesLike or None
+            Changes of the modes in further ones.
+        """
+        count, points = len(self.grid.width), self.scheme.ncol
+        s = self.modes.direct.shape[0]
+        found = np.zeros((count, points, s, widths.shape[1] + len(changes)))
+        active = [i for i, change in enumerate(changes) if change is not None]
+        given = [change for change in changes if change is not None]
+        if widths.shape[1] + len(given) == 0:
+            return found
+        columns = [*range(widths.shape[1]), *(widths.shape[1] + i for i in active)]
+        found[..., columns] = self._slopes(forces, widths, given)
+        return found
+
+    def _slopes(self, forces: Array, widths: Array, changes: list[ModesLike]) -> Array:
+        modes, table, width = self.modes, self.table, self.grid.width
+        first, q = widths.shape[1], widths.shape[1] + len(changes)
+        stretch = np.zeros((len(width), q))
+        stretch[:, :first] = widths
+        faster = np.zeros((len(modes.exponents), q), dtype=complex)
+        for i, change in enumerate(changes):
+            faster[:, first + i] = change.exponents
+        # x = lambda h
+        shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
+        history = self.history(forces)
+        driven = np.einsum("nbk,jk->njb", forces, modes.inputs)
+        answer = np.einsum("njab,njb->nja", table.moment, driven)
+        steeper = np.einsum("njab,njb->nja", table.slope, driven)
+        inner = stretch[:, None, None, :] * answer[..., None]
+        inner += (width[:, None, None] * steeper)[..., None] * shift[:, :, None, :]
+        turn = self.scheme.points[:, None] * shift[:, :, None, :]
+        inner += (table.growth * history[:-1, :, None])[..., None] * turn
+        for i, change in enumerate(changes):
+            other = np.einsum("nbk,jk->njb", forces, change.inputs)
+            inner[..., first + i] += width[:, None, None] * np.einsum("njab,njb->nja", table.moment, other)
+        moved = self._closed(inner[:, :, -1])
+        states = inner + table.growth[..., None] * moved[:-1, :, None]
+        found = np.einsum("sj,njaq->nasq", modes.outputs, states, optimize=True).real
+        stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
+        rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
+        for i, change in enumerate(changes):
+            found[..., first + i] += np.einsum("sj,nja->nas", change.outputs, stages).real
+            found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
+        lost = rates @ modes.direct_rate.T
+        found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
+        return np.asarray(found)
+
+    def free(self) -> tuple[Array, Complex]:
+        """Return free motion: states at the points by (Re z, Im z) of the start, (N, a, s, 2J), and how the
+        modes have grown at the mesh points, (N+1, J).
+        """
+        exponents = self.modes.exponents
+        ahead = np.exp(exponents * np.append(self.start, self.period)[:, None])
+        shown = self._shown(np.arange(len(exponents))) * ahead[:-1, None, None]
+        return np.concatenate([shown.real, -shown.imag], axis=-1), ahead
+
+    def driven(self, forces: Array) -> Complex:
+        """Return the modes at the mesh points from z(0) = 0, (N+1, J, r); forces (N, b, k, r)."""
+        left = np.einsum("njbk,nbkr->njr", self.impulse, forces, optimize=True)
+        found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
+        decay = self.table.growth[:, :, -1, None]
+        for i in range(len(left)):
+            found[i + 1] = decay[i] * found[i] + left[i]
+        return found
+
+    def final(self) -> Array:
+        """Return what forces leave in (Re z, Im z) at the end of the period, (2J, N, b, k)."""
+        after = self.period - self.start - self.grid.width
+        left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse
+        left = np.moveaxis(left, 1, 0)
+        return np.concatenate([left.real, left.imag])
+
+
+def _real_product(rows: Complex, columns: Complex) -> Array:
+    """Re rows @ columns."""
+    left = np.concatenate([rows.real, -rows.imag], axis=1)
+    return np.asarray(left @ np.concatenate([columns.real, columns.imag]))
