@@ -9,7 +9,7 @@ a diagonal and a product as thin as the unknowns of the places are few.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,10 +19,18 @@ from scipy.sparse.linalg import ArpackError, eigs
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import Linearised
+from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Complex, Pair, Spectrum
 
 LEADING = 8
 """Multipliers that are kept of many."""
+
+LIGHT = 0.8
+"""Modulus below which a pair of multipliers makes no narrow peak."""
+
+LASTING = 0.3
+"""Modulus below which the error of a multiplier does not count: what it belongs to is gone in a few periods."""
 
 SMALL = 48
 """Up to so many states all of them are computed."""
@@ -48,7 +56,7 @@ class Floquet:
         return np.flatnonzero(np.concatenate([np.ones(len(oscillates), dtype=bool), oscillates, own]))
 
     @cached_property
-    def _free(self) -> tuple[Array, NDArray[np.complex128]]:
+    def _free(self) -> tuple[Array, Complex]:
         return self.given.response.free()
 
     @cached_property
@@ -120,11 +128,88 @@ class Floquet:
         return np.concatenate(parts, axis=1)[:, self.kept]
 
 
-def leading(given: Linearised) -> Array:
-    """Return free motion in the invariant subspace of the leading multipliers, (N+1, r, r)."""
-    floquet = Floquet(given)
-    basis = invariant(floquet.monodromy, LEADING)
-    return np.asarray(basis.T @ floquet.motion(basis))
+@dataclass(frozen=True)
+class Leading:
+    """Free motion in the invariant subspace of the leading multipliers.
+
+    Parameters
+    ----------
+    floquet : Floquet
+        Free motion about the orbit.
+    """
+
+    floquet: Floquet
+
+    @cached_property
+    def basis(self) -> Array:
+        """Orthonormal basis of the subspace, (coordinates, r)."""
+        return invariant(self.floquet.monodromy, LEADING)
+
+    @cached_property
+    def _motion(self) -> Array:
+        return self.floquet.motion(self.basis)
+
+    @cached_property
+    def fundamental(self) -> Array:
+        """The motion that begins with the basis, in that basis: (N+1, r, r)."""
+        return np.asarray(self.basis.T @ self._motion)
+
+    @cached_property
+    def states(self) -> Array:
+        """The same as states of the system, (N+1, n, r)."""
+        given, kept = self.floquet.given, self.floquet.kept
+        outputs = given.response.modes.outputs
+        shown = np.concatenate([outputs.real, -outputs.imag], axis=1)
+        found = np.zeros((len(self._motion), given.orbit.nodes.shape[1], self.basis.shape[1]))
+        own = len(given.others)
+        modes = len(kept) - own
+        found[:, list(given.part.states)] = shown[:, kept[:modes]] @ self._motion[:, :modes]
+        found[:, given.others] = self._motion[:, modes:]
+        return found
+
+    def start(self, change: Increment) -> Array:
+        """Return what a change of the orbit changes at the beginning of the period, in the basis (r,)."""
+        given = self.floquet.given
+        forces = change.algebraic[:, :, list(given.part.forces)]
+        modes = given.response.history(forces)[0]
+        modes = modes + given.begun @ np.append(change.phases, change.parameters)
+        whole = np.concatenate([modes.real, modes.imag, change.nodes[0, given.others]])
+        return np.asarray(self.basis.T @ whole[self.floquet.kept])
+
+
+@dataclass(frozen=True, eq=False)
+class LeadingSpectrum(Spectrum):
+    """The leading multipliers of a split system; see `Spectrum`. leading: the subspace that they are of."""
+
+    leading: Leading | None = None
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        """The pairs that are damped so little that they matter to the course of the branch."""
+        return [pair for pair in super().pairs if pair.modulus > LIGHT]
+
+    def _pair(self, k: int) -> Pair:
+        pair = super()._pair(k)
+        if self.leading is None or pair.left is None:
+            return pair
+        size = np.abs(self.leading.states @ self.vectors[:, k]).max()
+        own = np.abs(self.fundamental @ self.vectors[:, k]).max()
+        return replace(pair, left=pair.left * (size / own))
+
+    def apart(self, monodromy: Array) -> float:
+        """Distance from another spectrum of those that are not damped strongly, in the sums of their powers."""
+        count = int((np.abs(self.multipliers) > LASTING).sum())
+        both = (self.multipliers, np.linalg.eigvals(monodromy))
+        largest = [values[np.argsort(-np.abs(values))[:count]] for values in both]
+        sums = [[(values**power).sum() for power in (1, 2)] for values in largest]
+        first, second = (abs(complex(a - b)) for a, b in zip(*sums, strict=True))
+        return float(max(first / self.radius, second / (2 * self.radius**2)))
+
+    def start(self, change: Increment) -> Array:
+        """Return what a change of the orbit changes at the beginning of the period, in the subspace."""
+        if self.leading is None:
+            return np.zeros(len(self.multipliers))
+        return self.leading.start(change)
 
 
 def invariant(matrix: Array, count: int) -> Array:
@@ -147,7 +232,7 @@ def invariant(matrix: Array, count: int) -> Array:
     return np.linalg.qr(np.array(columns).T)[0]
 
 
-def _largest(matrix: Array, count: int) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+def _largest(matrix: Array, count: int) -> tuple[Complex, Complex]:
     """Some more than `count` of the largest eigenvalues."""
     if len(matrix) > SMALL:
         try:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
+from periodic.condensed.moments import Complex
 from periodic.condensed.response import Response
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -90,10 +91,18 @@ class Linearised:
         return np.ascontiguousarray(self.orbit.algebraic[:, :, list(self.part.forces)])
 
     @cached_property
+    def _slopes(self) -> tuple[Array, Complex]:
+        return self.response.slopes(self.forces, self.orbit.grid.width_gradient, self.changes)
+
+    @property
+    def begun(self) -> Complex:
+        """How the modes at the beginning change with dy, the forces held: (J, q)."""
+        return self._slopes[1]
+
+    @cached_property
     def affine(self) -> Array:
         """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
         made = (self.flexibility[0] @ self.forces.ravel()).reshape(stages.shape)
-        moved = self.response.slopes(self.forces, self.orbit.grid.width_gradient, self.changes)
-        return np.concatenate([(made - stages)[..., None], moved], axis=3).reshape(count * points, s, -1)
+        return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(count * points, s, -1)

@@ -9,6 +9,7 @@ import numpy as np
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, CollocationRefinement
+from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised, local_rows
 from periodic.condensed.operator import Condensed
 from periodic.condensed.reduction import audible, reduced, reduced_slope
@@ -74,6 +75,12 @@ class CondensedCollocation(Collocation):
         """Estimate the errors by a Newton step on the halved mesh."""
         return deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
 
+    def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
+        """Return the leading Floquet multipliers."""
+        operator = correction.operator
+        leading = operator.leading if isinstance(operator, Condensed) else None
+        return LeadingSpectrum(correction.fundamental, trivial, leading)
+
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""
         return CondensedRefinement(self, system, orbit, error)
@@ -84,13 +91,13 @@ class CondensedRefinement(CollocationRefinement):
 
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
-        if self.orbit.mesh.events:
+        if self.system.switches:
             return super().refined()
         return self._even()
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
-        if self.wanted:
+        if self.system.switches:
             yield from super().meshes()
         else:
             yield self._even(), np.zeros(0)

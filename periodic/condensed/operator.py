@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from periodic.condensed.coupled import Coupled
-from periodic.condensed.floquet import leading
+from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
@@ -112,6 +112,11 @@ class Condensed:
         return Increment.of(orbit, nodes, stages, unknowns, outer[:k], outer[k:])
 
     @cached_property
+    def leading(self) -> Leading:
+        """Free motion in the invariant subspace of the leading multipliers."""
+        return Leading(Floquet(self.given))
+
+    @property
     def fundamental(self) -> Array:
-        """Free motion that begins in the invariant subspace of the leading multipliers, (N+1, r, r)."""
-        return leading(self.given)
+        """The same in the subspace's own basis, (N+1, r, r)."""
+        return self.leading.fundamental

@@ -9,7 +9,7 @@ of the interval.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,11 @@ from periodic.system import ModesLike
 
 SPREAD = 300.0
 """Decay over a period (nepers) up to which the modes' way between any two intervals is one product."""
+
+
+@cache
+def _moments(scheme: Scheme) -> Moments:
+    return Moments(scheme)
 
 
 @dataclass(frozen=True)
@@ -44,10 +49,10 @@ class Response:
     grid: Grid
     period: float
 
-    @cached_property
+    @property
     def moments(self) -> Moments:
         """The scheme's moments."""
-        return Moments(self.scheme)
+        return _moments(self.scheme)
 
     @cached_property
     def _distinct(self) -> tuple[Array, NDArray[np.int_]]:
@@ -205,8 +210,12 @@ class Response:
             found[i + 1] = decay[i] * found[i] + left[i]
         return found
 
-    def slopes(self, forces: Array, widths: Array, changes: list[ModesLike | None]) -> Array:
-        """Return how the states at the points change with widths and modes, forces held, (N, a, s, q).
+    def slopes(
+        self, forces: Array, widths: Array, changes: list[ModesLike | None]
+    ) -> tuple[Array, Complex]:
+        """Return how the motion changes with widths and modes, forces held.
+
+        The states at the points, (N, a, s, q), and the modes at the beginning, (J, q).
 
         Parameters
         ----------
@@ -218,17 +227,18 @@ class Response:
             Changes of the modes in further ones.
         """
         count, points = len(self.grid.width), self.scheme.ncol
-        s = self.modes.direct.shape[0]
-        found = np.zeros((count, points, s, widths.shape[1] + len(changes)))
+        s, q = self.modes.direct.shape[0], widths.shape[1] + len(changes)
+        found = np.zeros((count, points, s, q))
+        begun = np.zeros((len(self.modes.exponents), q), dtype=complex)
         active = [i for i, change in enumerate(changes) if change is not None]
         given = [change for change in changes if change is not None]
         if widths.shape[1] + len(given) == 0:
-            return found
+            return found, begun
         columns = [*range(widths.shape[1]), *(widths.shape[1] + i for i in active)]
-        found[..., columns] = self._slopes(forces, widths, given)
-        return found
+        found[..., columns], begun[:, columns] = self._slopes(forces, widths, given)
+        return found, begun
 
-    def _slopes(self, forces: Array, widths: Array, changes: list[ModesLike]) -> Array:
+    def _slopes(self, forces: Array, widths: Array, changes: list[ModesLike]) -> tuple[Array, Complex]:
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
         stretch = np.zeros((len(width), q))
@@ -259,7 +269,7 @@ class Response:
             found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
         lost = rates @ modes.direct_rate.T
         found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
-        return np.asarray(found)
+        return np.asarray(found), moved[0]
 
     def free(self) -> tuple[Array, Complex]:
         """Return free motion: states at the points by (Re z, Im z) of the start, (N, a, s, 2J), and how the

@@ -80,7 +80,7 @@ def deferred(
     closing = [*problem.side_conditions(fine), across]
     try:
         step = newton_step(linearise, problem.system, fine, problem.free, closing, NewtonSettings())
-        multiplier = spectral_distance(step.operator.fundamental[-1], spectrum)
+        multiplier = spectrum.apart(step.operator.fundamental[-1])
     except FAILURES:
         return UNKNOWN
     change = step.increment
@@ -98,17 +98,6 @@ def _stage_shift(orbit: Orbit, moved: Array) -> Array:
     grid, points = orbit.grid, orbit.mesh.scheme.points
     left, stretch = grid.left_gradient @ moved, grid.width_gradient @ moved
     return (left[:, None] + stretch[:, None] * points)[:, :, None]
-
-
-def spectral_distance(monodromy: Array, spectrum: Spectrum) -> float:
-    """Distance of two spectra in the sums of their first and second powers, over the largest multiplier.
-
-    Unlike the multipliers themselves these stay smooth where two of them meet.
-    """
-    other, scale = spectrum.monodromy, spectrum.radius
-    first = abs(np.trace(monodromy) - np.trace(other)) / scale
-    second = abs(np.trace(monodromy @ monodromy) - np.trace(other @ other)) / (2 * scale**2)
-    return float(max(first, second))
 
 
 def _onto(tangent: Increment, fine: Orbit) -> Increment:

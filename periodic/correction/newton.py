@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -67,7 +67,7 @@ class Correction:
     """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
 
     fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). kernel: the tangent of the
-    branch, of any length; None where no side condition closes the equations.
+    branch, of any length; None where no side condition closes the equations. operator: that linearisation.
     """
 
     orbit: Orbit
@@ -77,6 +77,7 @@ class Correction:
     residual: float
     fundamental: Array
     kernel: Increment | None
+    operator: Operator | None = field(default=None, repr=False, compare=False)
 
     @property
     def ok(self) -> bool:
@@ -133,7 +134,8 @@ def correct(
         except FAILURES as error:
             outcome = outcome_of(error)
     residual = last.operator.residual
-    return Correction(orbit, outcome, found.iterations, size, residual, fundamental, last.kernel)
+    ended = (outcome, found.iterations, size, residual, fundamental, last.kernel, last.operator)
+    return Correction(orbit, *ended)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
 
 Complex = NDArray[np.complex128]
@@ -126,6 +127,20 @@ class Spectrum:
             return np.linalg.inv(self.vectors).astype(np.complex128)
         except np.linalg.LinAlgError:
             return None
+
+    def apart(self, monodromy: Array) -> float:
+        """Distance from another spectrum in the sums of first and second powers, over the largest multiplier.
+
+        Unlike the multipliers themselves these stay smooth where two of them meet.
+        """
+        own, scale = self.monodromy, self.radius
+        first = abs(np.trace(monodromy) - np.trace(own)) / scale
+        second = abs(np.trace(monodromy @ monodromy) - np.trace(own @ own)) / (2 * scale**2)
+        return float(max(first, second))
+
+    def start(self, change: Increment) -> Array:
+        """Return the states' part of a change of the orbit at the beginning of the period, (n,)."""
+        return change.profile[0]
 
     @property
     def radius(self) -> float:

@@ -48,9 +48,8 @@ def strains(
 
 
 def _motion(solution: Solution, ds: float) -> Motion:
-    return Motion(
-        solution.spectrum, ds * solution.tangent.profile[0] / max(solution.orbit.span(), LEAST_SPAN)
-    )
+    change = solution.spectrum.start(solution.tangent)
+    return Motion(solution.spectrum, ds * change / max(solution.orbit.span(), LEAST_SPAN))
 
 
 def _angle(cosine: float, least: float) -> float:

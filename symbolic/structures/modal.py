@@ -22,7 +22,7 @@ from symbolic.structures.matrices import DENSE, Matrices, dense, modes, sparse
 MODES = 200
 """How many modes of a structure of more than DENSE degrees of freedom are kept by default."""
 
-RIGID = 1e-10
+RIGID = 1e-14
 """Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
 
 DEFECTIVE = 1e-6
@@ -86,7 +86,7 @@ def modal_form(
     symmetric = abs(matrices.K - matrices.K.T).max() <= 1e-10 * abs(matrices.K).max()
     wanted = count or (n if n <= DENSE else min(MODES, n // 2))
     if symmetric:
-        squares, shapes = modes(matrices.K, matrices.M, wanted)
+        squares, shapes = _undamped(matrices, wanted)
         coupled = shapes.T @ (own @ shapes)
         rates = np.diag(coupled)
         size = np.abs(coupled).max(initial=0.0)
@@ -101,6 +101,19 @@ def modal_form(
     if not damping.none:
         own = dense(own) + damping.matrix(matrices)
     return _coupled(name, matrices, dense(own))
+
+
+def _undamped(matrices: Matrices, count: int) -> tuple[Array, Array]:
+    """The `count` lowest undamped modes; from M phi = omega^-2 K phi the lowest are the most accurate."""
+    n = matrices.size
+    if n <= DENSE or count > n // 2:
+        try:
+            inverse, shapes = scipy.linalg.eigh(dense(matrices.M), dense(matrices.K))
+        except np.linalg.LinAlgError:  # K is not positive definite
+            return modes(matrices.K, matrices.M, count)
+        squares = 1 / inverse[::-1][:count]
+        return squares, shapes[:, ::-1][:, :count] * np.sqrt(squares)
+    return modes(matrices.K, matrices.M, count)
 
 
 def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shapes: Array) -> ModalForm:

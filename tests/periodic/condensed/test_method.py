@@ -1,0 +1,81 @@
+"""A condensed structure against full collocation of all its states, and against itself with more states."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import periodic as per
+import symbolic as sym
+from support.cantilevers import cantilever, cubic
+
+
+@cache
+def branch(elements: int, condense: bool = True) -> per.Branch:
+    """The first resonance of a cantilever with a cubic spring at its tip."""
+    return per.trace(cantilever(elements, cubic, condense=condense), "Omega", (3.0, 8.0), tol=1e-6)
+
+
+def folds(of: per.Branch) -> list[float]:
+    """Where the branch turns."""
+    return [p.parameter for p in of.points if p.label is per.Label.FOLD]
+
+
+def test_folds_are_those_of_all_states() -> None:
+    """Assert both folds of 4 states to 9 digits against full collocation, their motions to 8."""
+    ours, full = branch(1), branch(1, condense=False)
+    assert ours.stop.reason is full.stop.reason is per.Reason.BOUND
+    assert folds(ours) == pytest.approx(folds(full), rel=1e-9)
+    for a, b in zip(folds(ours), folds(full), strict=True):
+        largest = [max(p.maximum["tip"] for p in of.points if p.parameter == at) for of, at in ((ours, a), (full, b))]
+        assert largest[0] == pytest.approx(largest[1], rel=1e-7)
+
+
+def test_multipliers_are_those_of_all_states() -> None:
+    """Assert all four multipliers at a value of the parameter to 6 digits."""
+    at = [
+        per.trace(cantilever(1, cubic, condense=c), "Omega", (3.0, 3.2), at=3.1, tol=1e-8) for c in (True, False)
+    ]
+    found = [next(p for p in of.points if p.parameter == 3.1) for of in at]
+    both = [np.sort_complex(p.multipliers) for p in found]
+    assert np.allclose(*both, rtol=0, atol=1e-6)
+
+
+def test_work_does_not_grow_with_the_structure() -> None:
+    """Assert the folds of 20 degrees of freedom to what the mesh of elements leaves, with as many points."""
+    small, large = branch(3), branch(10)
+    assert folds(small) == pytest.approx(folds(large), rel=2e-3)
+    assert len(large.points) < 1.5 * len(small.points)
+    assert large.newton_iterations < 1.5 * small.newton_iterations
+
+
+def test_other_methods_are_refused() -> None:
+    """Assert one sentence."""
+    with pytest.raises(ValueError, match="a structure must be compiled with condense=False"):
+        per.trace(cantilever(2, cubic), "Omega", (3.0, 8.0), method=per.Shooting())
+    with pytest.raises(ValueError, match="scheme is Gauss; condensation takes Radau IIA"):
+        gauss = per.Collocation(scheme=per.Scheme(per.Family.GAUSS, 4))
+        per.trace(cantilever(2, cubic), "Omega", (3.0, 8.0), method=gauss)
+
+
+def oscillator(condense: bool) -> sym.CompiledSystem:
+    """Two masses, the first driven, the second held by a cubic spring as well."""
+    structure = sym.Structure(
+        np.diag([1.0, 0.5]), np.diag([0.05, 0.02]), [[2.0, -1.0], [-1.0, 1.5]], at={"a": 0, "b": 1}
+    )
+    a, b = structure["a"], structure["b"]
+    return sym.compile(
+        structure + sym.CubicSpring(b, 0.5) + sym.HarmonicForce(a, 0.3, 1.0), condense=condense
+    )
+
+
+def test_two_places_of_which_one_is_driven_alone() -> None:
+    """Assert the motion of both at a value of the parameter to 8 digits against full collocation."""
+    found = []
+    for condense in (True, False):
+        of = per.trace(oscillator(condense), "Omega", (0.5, 0.9), at=0.8, tol=1e-8)
+        found.append(next(p for p in of.points if p.parameter == 0.8))
+    for name in ("a", "b"):
+        assert found[0].maximum[name] == pytest.approx(found[1].maximum[name], rel=1e-8)
