@@ -401,7 +401,7 @@ class Timed(System, Protocol):
 
 
 class ModesLike(Protocol):
-    """Modes of the linear part: dz/dtau = exponents z + inputs f, x = Re outputs z + direct f + direct_rate f'.
+    """Modes: dz/dtau = exponents z + inputs f, x = Re outputs z + direct f + direct_rate df/dtau.
 
     J modes, k forces f, s states x: exponents (J,), inputs (J, k), outputs (s, J), complex; one of each
     conjugate pair stands for both. direct, direct_rate (s, k). All scaled.

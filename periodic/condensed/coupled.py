@@ -47,9 +47,11 @@ class Coupled:
 
     @cached_property
     def affine(self) -> Array:
-        """States of the linear part by (1, dy), with the forces that do not depend on the motion: (P, s, 1+q)."""
+        """States of the linear part by (1, dy), forces that do not depend on them included: (P, s, 1+q)."""
         driven = self.given.local.forces[:, self.passive][:, :, self.columns]
-        return self.given.affine + self._onto(self.passive) @ driven.reshape(self.points * len(self.passive), len(self.columns))
+        return self.given.affine + self._onto(self.passive) @ driven.reshape(
+            self.points * len(self.passive), len(self.columns)
+        )
 
     def _rate_blocks(self, rates: Array) -> Array:
         """Rows (P, r, o) that multiply the own states' rates, as rows in the own states, (P, r, P, o)."""

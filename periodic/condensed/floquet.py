@@ -30,7 +30,7 @@ LIGHT = 0.8
 """Modulus below which a pair of multipliers makes no narrow peak."""
 
 LASTING = 0.3
-"""Modulus below which the error of a multiplier does not count: what it belongs to is gone in a few periods."""
+"""Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
 SMALL = 48
 """Up to so many states all of them are computed."""
@@ -38,7 +38,7 @@ SMALL = 48
 
 @dataclass(frozen=True)
 class Floquet:
-    """Free motion about an orbit, in the real coordinates (Re z, Im z, s) of which the redundant are left out.
+    """Free motion about an orbit, in the real coordinates (Re z, Im z, s), redundant ones left out.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ class LeadingSpectrum(Spectrum):
         return replace(pair, left=pair.left * (size / own))
 
     def apart(self, monodromy: Array) -> float:
-        """Distance from another spectrum of those that are not damped strongly, in the sums of their powers."""
+        """Distance from another spectrum, in the sums of powers of those that are not damped strongly."""
         count = int((np.abs(self.multipliers) > LASTING).sum())
         both = (self.multipliers, np.linalg.eigvals(monodromy))
         largest = [values[np.argsort(-np.abs(values))[:count]] for values in both]

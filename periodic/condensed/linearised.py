@@ -105,4 +105,6 @@ class Linearised:
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
         made = (self.flexibility[0] @ self.forces.ravel()).reshape(stages.shape)
-        return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(count * points, s, -1)
+        return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(
+            count * points, s, -1
+        )

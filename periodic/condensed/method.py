@@ -48,9 +48,7 @@ class CondensedCollocation(Collocation):
         changes = [reduced_slope(whole, part.slope(orbit.parameter, k), kept) for k in free]
         response = Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period)
         local = local_rows(system, part, orbit, free)
-        return Condensed(
-            Linearised(orbit, part, response, changes, local), event_rows(system, orbit, free)
-        )
+        return Condensed(Linearised(orbit, part, response, changes, local), event_rows(system, orbit, free))
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
@@ -122,7 +120,9 @@ def suited(method: Discretisation, system: System) -> Discretisation:
     if linear_of(system) is None:
         return method
     if type(method) is Collocation:
-        given = {name: getattr(method, name) for name in ("ntst", "ntst_min", "ntst_max", "kinks", "tolerance")}
+        given = {
+            name: getattr(method, name) for name in ("ntst", "ntst_min", "ntst_max", "kinks", "tolerance")
+        }
         return CondensedCollocation(scheme=_stiff(method.scheme), **given)
     if isinstance(method, CondensedCollocation):
         return method

@@ -1,4 +1,4 @@
-"""The operator of a split system's orbit: as many unknowns as its places have, whatever stands behind them."""
+"""The operator of a split system's orbit: as many unknowns as its places have."""
 
 from __future__ import annotations
 
@@ -57,7 +57,9 @@ class Condensed:
         )
         states = np.abs(whole).max(axis=0, initial=0.0)
         states += np.abs(self.given.affine[:, :, 1 + k :]).max(axis=(0, 1), initial=0.0)
-        return np.asarray(states + np.abs(self.given.local.own[:, :, 1 + 2 * n + k :]).max(axis=(0, 1), initial=0.0))
+        return np.asarray(
+            states + np.abs(self.given.local.own[:, :, 1 + 2 * n + k :]).max(axis=(0, 1), initial=0.0)
+        )
 
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
@@ -77,7 +79,7 @@ class Condensed:
         return tuple(self._recovered(float(s), u[: system.size], u[system.size :], k) for s, u in pairs)
 
     def _folded(self, row: Row) -> tuple[Array, Array]:
-        """A row in the states at the points, (P, n), and in (1, dy): mesh points are the ends of intervals."""
+        """A row in the states at the points, (P, n), and in (1, dy); mesh points are ends of intervals."""
         orbit = self.orbit
         stages = np.zeros_like(orbit.stages) if row.stages is None else row.stages.copy()
         stages[:, -1] += row.nodes[1:]

@@ -180,7 +180,6 @@ class Response:
         shown = (table.growth.T[:, None, :] * modes.outputs).reshape(points * s, -1)
         moved = ahead[:, :, None] * impulse.reshape(1, len(modes.exponents), -1)
         moved = np.concatenate([moved, moved * self.closing[None, :, None]], axis=2)
-        size = points * k
         columns = np.moveaxis(moved, 1, 0).reshape(len(modes.exponents), -1)
         found = _real_product(shown, columns).reshape(points, s, count, 2, points, k)
         later = np.mod(np.arange(count)[:, None] - np.arange(count) - 1, count)
@@ -210,9 +209,7 @@ class Response:
             found[i + 1] = decay[i] * found[i] + left[i]
         return found
 
-    def slopes(
-        self, forces: Array, widths: Array, changes: list[ModesLike | None]
-    ) -> tuple[Array, Complex]:
+    def slopes(self, forces: Array, widths: Array, changes: list[ModesLike | None]) -> tuple[Array, Complex]:
         """Return how the motion changes with widths and modes, forces held.
 
         The states at the points, (N, a, s, q), and the modes at the beginning, (J, q).

@@ -6,10 +6,10 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.cantilevers import cantilever, cubic
 
 import periodic as per
 import symbolic as sym
-from support.cantilevers import cantilever, cubic
 
 
 @cache
@@ -29,14 +29,17 @@ def test_folds_are_those_of_all_states() -> None:
     assert ours.stop.reason is full.stop.reason is per.Reason.BOUND
     assert folds(ours) == pytest.approx(folds(full), rel=1e-9)
     for a, b in zip(folds(ours), folds(full), strict=True):
-        largest = [max(p.maximum["tip"] for p in of.points if p.parameter == at) for of, at in ((ours, a), (full, b))]
+        largest = [
+            max(p.maximum["tip"] for p in of.points if p.parameter == at) for of, at in ((ours, a), (full, b))
+        ]
         assert largest[0] == pytest.approx(largest[1], rel=1e-7)
 
 
 def test_multipliers_are_those_of_all_states() -> None:
     """Assert all four multipliers at a value of the parameter to 6 digits."""
     at = [
-        per.trace(cantilever(1, cubic, condense=c), "Omega", (3.0, 3.2), at=3.1, tol=1e-8) for c in (True, False)
+        per.trace(cantilever(1, cubic, condense=c), "Omega", (3.0, 3.2), at=3.1, tol=1e-8)
+        for c in (True, False)
     ]
     found = [next(p for p in of.points if p.parameter == 3.1) for of in at]
     both = [np.sort_complex(p.multipliers) for p in found]
