@@ -70,8 +70,13 @@ class CondensedCollocation(Collocation):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by a Newton step on the halved mesh."""
-        return deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
+        """Estimate the errors by a Newton step on the halved mesh.
+
+        Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
+        the forces, however fast they change between them.
+        """
+        velocities = _linear(problem.system).states[1::2]
+        return deferred(self.linearise, problem, correction.orbit, tangent, spectrum, velocities)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""
@@ -110,29 +115,3 @@ def _linear(system: System) -> LinearPart:
     if part is None:
         raise ValueError("the system has no linear part; CondensedCollocation needs one")
     return part
-
-
-def suited(method: Discretisation, system: System) -> Discretisation:
-    """Return collocation as it suits a system: condensed where it is split. Raises ValueError for others.
-
-    A split system's rows are not all of its equations, so that no other method can solve them.
-    """
-    if linear_of(system) is None:
-        return method
-    if type(method) is Collocation:
-        given = {
-            name: getattr(method, name) for name in ("ntst", "ntst_min", "ntst_max", "kinks", "tolerance")
-        }
-        return CondensedCollocation(scheme=_stiff(method.scheme), **given)
-    if isinstance(method, CondensedCollocation):
-        return method
-    raise ValueError(
-        f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
-        f"compiled with condense=False for it"
-    )
-
-
-def _stiff(scheme: Scheme | None) -> Scheme | None:
-    if scheme is not None and scheme.family is not Family.RADAU:
-        raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
-    return scheme

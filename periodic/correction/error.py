@@ -69,11 +69,17 @@ SMALL = 0.1
 
 
 def deferred(
-    linearise: Linearise, problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spectrum
+    linearise: Linearise,
+    problem: Problem,
+    orbit: Orbit,
+    tangent: Increment,
+    spectrum: Spectrum,
+    only_at_points: tuple[int, ...] = (),
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
-    `linearise` has the equations that it is held against on the halved mesh.
+    `linearise` has the equations that it is held against on the halved mesh. The states `only_at_points`
+    count at the orbit's mesh points alone, not between them.
     """
     fine = bisect(orbit)
     across = ArclengthConstraint(fine, _onto(tangent, fine), 0.0, problem.scale, problem.index)
@@ -86,8 +92,10 @@ def deferred(
     change = step.increment
     nodes = step.operator.orbit.nodes - fine.nodes + change.nodes
     stages = step.operator.orbit.stages - fine.stages + change.stages
-    moved = np.abs(at_fixed_phase(fine, nodes, change.phases)).max()
-    moved = max(moved, np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases)).max())
+    at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
+    between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
+    at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0
+    moved = max(at_nodes.max(), between.max())
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     parameter = float(abs(change.parameter) / largest)
     return ErrorEstimate(float(moved) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)

@@ -57,11 +57,11 @@ def sampled(system: System, orbit: FourierOrbit, free: tuple[int, ...]) -> Sampl
 
 
 def projected(d_rate: Array, d_state: Array, frequency: float) -> Array:
-    """Coefficients of E x' + A x from those of x: real matrix of size (2H+1) n, harmonic by harmonic.
+    """Coefficients of E x' + A x from those of x: real matrix ((2H+1) rows, (2H+1) n), harmonic by harmonic.
 
     In complex coefficients its blocks are A_(k-l) + i l w E_(k-l).
     """
-    count, n, _ = d_rate.shape
+    count = len(d_rate)
     harmonics = count // 4 - 1
     E, A = (np.fft.fft(np.roll(a, 1, axis=0), axis=0) / count for a in (d_rate, d_state))
     column = np.arange(-harmonics, harmonics + 1)
@@ -72,8 +72,8 @@ def projected(d_rate: Array, d_state: Array, frequency: float) -> Array:
         [blocks[:, harmonics : harmonics + 1], (plus + minus) / 2, (plus - minus) / 2j], axis=1
     )
     rows = np.concatenate([columns[:1].real, 2 * columns[1:].real, -2 * columns[1:].imag])
-    size = (2 * harmonics + 1) * n
-    return np.ascontiguousarray(rows.transpose(0, 2, 1, 3)).reshape(size, size)
+    height, width = ((2 * harmonics + 1) * each for each in d_rate.shape[1:])
+    return np.ascontiguousarray(rows.transpose(0, 2, 1, 3)).reshape(height, width)
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ class HarmonicBalance(Discretisation):
         large = np.flatnonzero(full.amplitudes > ROUGHLY * max(full.span(), LEAST_SPAN))
         wanted = int(np.clip(1 + large.max(initial=0), least, most))
         fitted = series(full, mesh_for(wanted, near.mesh.period))
-        return _with_unknowns(system, replace(fitted, parameter=parameter))
+        return with_unknowns(system, replace(fitted, parameter=parameter))
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the balanced equations."""
@@ -123,7 +123,7 @@ class HarmonicBalance(Discretisation):
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the series cut or filled up with zeros, its unknowns solved for."""
-        yield _with_unknowns(system, series(orbit, mesh))
+        yield with_unknowns(system, series(orbit, mesh))
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
@@ -132,7 +132,7 @@ class HarmonicBalance(Discretisation):
         assert isinstance(correction, FourierCorrection)
         system, orbit = problem.system, correction.orbit
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
-        fine = _with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
+        fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)
         across = ArclengthConstraint(fine, direction, 0.0, problem.scale, problem.index)
         closing, newton = [*problem.side_conditions(fine), across], NewtonSettings()
@@ -221,10 +221,10 @@ def _at_least(system: System, orbit: FourierOrbit, harmonics: int) -> FourierOrb
     """The same orbit with at least so many harmonics, the further ones zero."""
     if orbit.harmonics >= harmonics:
         return orbit
-    return _with_unknowns(system, series(orbit, mesh_for(harmonics, orbit.mesh.period)))
+    return with_unknowns(system, series(orbit, mesh_for(harmonics, orbit.mesh.period)))
 
 
-def _with_unknowns(system: System, orbit: FourierOrbit) -> FourierOrbit:
+def with_unknowns(system: System, orbit: FourierOrbit) -> FourierOrbit:
     """Solve for the unknowns at the samples."""
     unknowns = algebraic_at(system, orbit, orbit.stage_phases.ravel())
     return replace(orbit, algebraic=unknowns.reshape(orbit.algebraic.shape))

@@ -10,7 +10,6 @@ import numpy as np
 
 from periodic.checks import named, number
 from periodic.collocation.method import Collocation
-from periodic.condensed.method import suited
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.solver import Solver, Work
@@ -22,6 +21,7 @@ from periodic.results.frames import reserved
 from periodic.system import System, index_of
 from periodic.tracing.continuation import Continuation
 from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.suited import suited
 from periodic.tracing.watch import Watch
 
 

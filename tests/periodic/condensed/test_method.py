@@ -82,3 +82,18 @@ def test_two_places_of_which_one_is_driven_alone() -> None:
         found.append(next(p for p in of.points if p.parameter == 0.8))
     for name in ("a", "b"):
         assert found[0].maximum[name] == pytest.approx(found[1].maximum[name], rel=1e-8)
+
+
+@pytest.mark.parametrize("condense", [True, False])
+def test_three_methods_agree(condense: bool) -> None:
+    """Assert the largest motion by harmonic balance, of the places or of all states, to 11 digits."""
+    given = {"at": 3.1, "tol": 1e-9}
+    found = []
+    for system, method in (
+        (cantilever(1, cubic, condense=condense), per.HarmonicBalance()),
+        (cantilever(1, cubic), per.Collocation()),
+    ):
+        of = per.trace(system, "Omega", (3.0, 3.3), method=method, **given)
+        found.append(next(p for p in of.points if p.parameter == 3.1))
+    assert found[0].maximum["tip"] == pytest.approx(found[1].maximum["tip"], rel=1e-11)
+    assert np.abs(np.abs(found[0].multipliers) - np.abs(found[1].multipliers)).max() < 1e-8
