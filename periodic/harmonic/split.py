@@ -115,7 +115,7 @@ class SplitBalance:
         n, harmonics = orbit.nodes.shape[1], orbit.harmonics
         analysis, size = transform(harmonics).analysis, 2 * harmonics + 1
         modes = part.modes(orbit.parameter)
-        frequency = orbit.frequency * np.arange(harmonics + 1)
+        frequency = orbit.frequency * np.arange(harmonics + 1.0)
         states, k = list(part.states), len(part.forces)
         others = np.setdiff1d(np.arange(n), states)
         factors = on_harmonics(flexibility(modes, frequency)).reshape(size * len(states), size * k)
