@@ -73,6 +73,9 @@ class Parameter:
         object.__setattr__(self, "value", finite(f"parameter {self.name!r}", self.value))
         object.__setattr__(self, "symbol", ca.SX.sym(self.name))
 
+    def __reduce__(self) -> tuple[type[Parameter], tuple[str, float, str]]:
+        return Parameter, (self.name, self.value, self.unit)  # its symbol is CasADi's and made anew
+
 
 Value = float | Parameter
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from symbolic.checks import refusal, typed
 from symbolic.equations import kinks
 from symbolic.equations.assembly import Assembly
@@ -48,7 +50,7 @@ def compile(  # noqa: A001
     assembly.lay(model.parts if isinstance(model, Model) else (model,))
     assembly.close(typed("condense", condense, bool, "True or False"))
     kinks.find(assembly)
-    system = _system(assembly, back_end)
+    system = _system(assembly, Recipe(model, back_end, condense))
     for variable in (*system.states, *system.algebraics):
         if variable.name in [p.name for p in system.parameters]:
             raise ValueError(
@@ -57,7 +59,19 @@ def compile(  # noqa: A001
     return system
 
 
-def _system(assembly: Assembly, kernels: Kernels) -> CompiledSystem:
+@dataclass(frozen=True)
+class Recipe:
+    """What a system is made from. It is pickled in the system's place: its parts, and functions by name."""
+
+    model: Model | Part
+    kernels: Kernels
+    condense: bool
+
+    def __call__(self) -> CompiledSystem:
+        return compile(self.model, self.kernels, condense=self.condense)
+
+
+def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
     expressions = expressed(assembly)  # first: a model without excitation gets its parameter omega here
     return CompiledSystem(
         states=tuple(Variable(s.name, s.unit, s.scale) for s in assembly.states),
@@ -66,7 +80,8 @@ def _system(assembly: Assembly, kernels: Kernels) -> CompiledSystem:
         outputs=tuple(variable for variable, _ in assembly.described),
         switches=tuple(info for info, _ in assembly.switches),
         expressions=expressions,
-        kernels=kernels,
+        kernels=recipe.kernels,
+        recipe=recipe,
         held=_held(assembly),
     )
 

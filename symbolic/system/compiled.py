@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -54,6 +55,8 @@ class CompiledSystem:
         The back end.
     held : tuple of Held
         Places of condensed structures.
+    recipe : callable, optional
+        What compiles it again: how it is pickled. CasADi's expressions and loaded libraries stay behind.
     """
 
     states: tuple[Variable, ...]
@@ -64,6 +67,7 @@ class CompiledSystem:
     expressions: Expressions = field(repr=False)
     kernels: Kernels = Kernels.NUMPY
     held: tuple[Held, ...] = ()
+    recipe: Callable[[], CompiledSystem] | None = field(default=None, repr=False)
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
         default_factory=dict, init=False, repr=False
     )
@@ -72,6 +76,13 @@ class CompiledSystem:
     )
     _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
+
+    def __reduce__(self) -> tuple[Callable[[], CompiledSystem], tuple[()]]:
+        if self.recipe is None:
+            raise pickle.PicklingError(
+                "system has no model to be compiled from again; it must come from symbolic.compile"
+            )
+        return self.recipe, ()
 
     @property
     def frequency(self) -> tuple[str, ...]:
