@@ -25,6 +25,15 @@ from periodic.equilibrium.method import Equilibrium
 from periodic.harmonic.method import HarmonicBalance
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment, Unknowns
+from periodic.maps.adaptive import Adaptive
+from periodic.maps.grid import Grid
+from periodic.maps.map import MapInterrupted, MapStoppedError, map
+from periodic.maps.numbers.extremes import Highest, Lowest
+from periodic.maps.numbers.places import Places, StableRanges
+from periodic.maps.numbers.sheets import Sheets
+from periodic.maps.progress import Progress
+from periodic.maps.store import MapFileError
+from periodic.maps.task import Number, Task
 from periodic.orbit.extrema import extrema, outputs
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -49,6 +58,7 @@ from periodic.tracing.watch import Watch
 __all__ = [
     "__version__",
     "Accuracy",
+    "Adaptive",
     "Amplitude",
     "ArclengthControl",
     "Branch",
@@ -64,35 +74,47 @@ __all__ = [
     "Family",
     "FoldCondition",
     "Given",
+    "Grid",
     "HarmonicBalance",
+    "Highest",
     "Increment",
     "Interrupted",
     "JournalError",
     "KinkSettings",
     "Label",
     "Level",
+    "Lowest",
+    "MapFileError",
+    "MapInterrupted",
+    "MapStoppedError",
     "Maximum",
     "Minimum",
     "Multiplier",
     "NewtonSettings",
+    "Number",
     "Operator",
     "Orbit",
     "Peak",
     "PeakToPeak",
     "PhaseCondition",
     "PhaseLag",
+    "Places",
     "Point",
     "Problem",
+    "Progress",
     "Reason",
     "ResumeError",
     "Row",
     "Scheme",
+    "Sheets",
     "Shooting",
     "SideCondition",
     "Solution",
+    "StableRanges",
     "Stop",
     "SwitchError",
     "System",
+    "Task",
     "TestFunction",
     "Tolerance",
     "TorusCondition",
@@ -107,6 +129,7 @@ __all__ = [
     "extrema",
     "first_lyapunov",
     "hopf",
+    "map",
     "mean",
     "mode",
     "outputs",

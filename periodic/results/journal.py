@@ -78,7 +78,7 @@ class Journal:
             begin = file.read(len(MAGIC))
         if begin not in (b"", MAGIC):
             raise JournalError(f"journal is {str(path)!r}; it is another file, which is not written over")
-        self._base = _locked(path)
+        self._base = locked(path)
 
     def __enter__(self) -> Journal:
         return self
@@ -139,7 +139,7 @@ class Journal:
                 raise
             self._base.close()
             self._path.unlink()
-            self._base = _locked(self._path)
+            self._base = locked(self._path)
         self._base.execute(TABLE)
 
     def _reason(self, error: Exception, content: bytes) -> str:
@@ -154,10 +154,23 @@ class Journal:
         return str(error)
 
 
-def _locked(path: Path) -> sqlite3.Connection:
-    """Connect with the write lock; without it where the first step will fail or replace the file.
+def locked(path: Path) -> sqlite3.Connection:
+    """Return a connection with the write lock, or one without where the first step will replace the file.
 
-    Raises JournalError where somebody else has the lock.
+    Parameters
+    ----------
+    path : Path
+        The file of a journal.
+
+    Returns
+    -------
+    sqlite3.Connection
+        In a transaction.
+
+    Raises
+    ------
+    JournalError
+        Where somebody else has the lock.
     """
     base = sqlite3.connect(path, timeout=0.0, isolation_level=None)
     try:

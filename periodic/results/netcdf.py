@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import io
 import json
+import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,11 +54,11 @@ def save(record: Record, path: Path) -> None:
         raise BranchFileError(
             f"branch file is {str(path.resolve())!r}, which is no ordinary file; choose another"
         )
-    memory, data = io.BytesIO(), dataset(record)
+    data = dataset(record)
     data.attrs["checksum"] = checksum(data)
-    data.to_netcdf(memory, engine="h5netcdf")
+    content = packed(data)
     with replacing(path) as part:
-        part.write_bytes(sealed(memory.getvalue()))
+        part.write_bytes(content)
 
 
 def load(path: Path) -> Record:
@@ -105,6 +107,19 @@ def _read(path: Path) -> Record:
         if data.attrs.pop("checksum", None) != checksum(data.load()):
             raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
         return record_of({str(name): data[name].values for name in data.variables}, data.attrs)
+
+
+def packed(data: xr.Dataset) -> bytes:
+    """Return the bytes of a NetCDF file, sealed.
+
+    Of no scheduler's making: where a client of dask.distributed is connected xarray would ask it for a lock,
+    even for a file in memory.
+    """
+    memory = io.BytesIO()
+    alone = nullcontext() if "dask" not in sys.modules else sys.modules["dask"].config.set(scheduler="sync")
+    with alone:
+        data.to_netcdf(memory, engine="h5netcdf")
+    return sealed(memory.getvalue())
 
 
 def sealed(content: bytes) -> bytes:

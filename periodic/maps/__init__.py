@@ -1,0 +1,1 @@
+"""Many branches: numbers of whole branches over a grid of parameters, on any executor."""

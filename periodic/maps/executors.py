@@ -1,0 +1,138 @@
+"""Where chunks are computed: here, in processes of our own, or wherever a given executor computes."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future
+from typing import Any, Protocol
+
+from periodic.checks import whole
+
+AHEAD = 1000
+"""Chunks given to somebody else's executor before the first is done: more than it has workers."""
+
+THREADS = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
+)
+"""What processes of our own have in their environment."""
+
+
+class Workers(Protocol):
+    """What computes chunks."""
+
+    @property
+    def ahead(self) -> int:
+        """How many chunks it is given before the first is done."""
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Give it work."""
+
+    @property
+    def own(self) -> bool:
+        """Whether they are ours: when one has died `close` makes room for others."""
+
+    def close(self) -> None:
+        """Let go of what is its own, work under way included."""
+
+
+class Here:
+    """This process, one chunk after the other."""
+
+    ahead, own = 1, False
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Compute, and return the finished future."""
+        done: Future[Any] = Future()
+        try:
+            done.set_result(function(*arguments))
+        except Exception as error:
+            done.set_exception(error)
+        return done
+
+    def close(self) -> None:
+        """Nothing is left."""
+
+
+class Processes:
+    """Processes of our own by loky, with one thread each, started when there is work."""
+
+    own = True
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self._pool: Executor | None = None
+
+    @property
+    def ahead(self) -> int:
+        """Each has its next chunk at hand."""
+        return 2 * self.count
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Give them work."""
+        if self._pool is None:
+            from loky import ProcessPoolExecutor
+
+            self._pool = ProcessPoolExecutor(self.count, env=THREADS, initializer=_deaf)
+        return self._pool.submit(function, *arguments)
+
+    def close(self) -> None:
+        """End the processes."""
+        if self._pool is not None:
+            self._pool.shutdown(wait=True, kill_workers=True)  # type: ignore[call-arg]
+            self._pool = None
+
+
+class Given:
+    """Somebody else's executor, as of dask.distributed or mpi4py.futures; it is not ours to end."""
+
+    ahead, own = AHEAD, False
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._under_way: set[Future[Any]] = set()
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Give it work."""
+        future = self._executor.submit(function, *arguments)
+        self._under_way.add(future)
+        future.add_done_callback(self._under_way.discard)
+        return future
+
+    def close(self) -> None:
+        """Call off what it has not begun."""
+        for future in list(self._under_way):
+            future.cancel()
+
+
+def _deaf() -> None:
+    """Leave Ctrl-C to the process that has the map: a terminal sends it to all."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def workers(executor: Executor | int | None) -> Workers:
+    """Return what computes chunks: a process for each core by default, 1 for this process.
+
+    Raises ValueError for what is neither a number of processes nor an executor.
+    """
+    if isinstance(executor, Executor):
+        return Given(executor)
+    if executor is not None and (isinstance(executor, bool) or not isinstance(executor, int)):
+        raise ValueError(
+            f"executor is {executor!r}; it must be a number of processes or a concurrent.futures.Executor, "
+            f"as Client.get_executor() of dask.distributed and MPIPoolExecutor() of mpi4py.futures are"
+        )
+    count = _cores() if executor is None else whole("executor", executor)
+    return Here() if count == 1 else Processes(count)
+
+
+def _cores() -> int:
+    """Cores that this process may use."""
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed else os.cpu_count() or 1
+
+
+def died(error: BaseException) -> bool:
+    """Whether an exception tells that a worker died, and not that its work failed."""
+    return isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker"
