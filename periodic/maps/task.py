@@ -33,7 +33,7 @@ class Number(Protocol):
     """What a map reads off each branch: a function of (task, branch).
 
     A class may also have `places`, values of the parameter at which it needs a point of the branch on every
-    sheet, and `units(task)`, SI units by the same keys as its result.
+    sheet, and the method of `Measured`.
     """
 
     def __call__(self, task: Task, branch: Branch) -> Read | Mapping[str, Read]:
@@ -53,6 +53,24 @@ class Number(Protocol):
         """
 
 
+class Measured(Protocol):
+    """A number that says its units."""
+
+    def units(self, task: Task) -> Mapping[str, str]:
+        """Return SI units by the keys of its result, "" for one number or one sequence.
+
+        Parameters
+        ----------
+        task : Task
+            What is traced.
+
+        Returns
+        -------
+        mapping of str to str
+            Units, empty where there is none.
+        """
+
+
 @dataclass(frozen=True)
 class Task:
     """A branch to be traced in each cell of a map, and the numbers that are read off it.
@@ -68,10 +86,12 @@ class Task:
     numbers : mapping of str to Number
         {"peak": Highest(PeakToPeak("x")), "folds": Places("LP")}; any function of (task, branch) that gives
         a number, or several, is one.
-    start, tol, values, determined, method, control, watch
+    start, tol
         As in `trace`.
     guess : Orbit, optional
         As in `trace`; it begins the first branch of each chunk of neighbours.
+    values, determined, method, control, watch
+        As in `trace`.
 
     Raises
     ------

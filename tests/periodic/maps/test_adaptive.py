@@ -25,7 +25,7 @@ def kink(task: per.Task, branch: per.Branch) -> float:
 
 
 def test_cells_lie_where_the_number_changes(tmp_path: Path) -> None:
-    """Assert that more cells lie at a front than evenly, the same in any process, and that failures say so."""
+    """Assert that more cells lie at a front than evenly, and that failures say so."""
     plan = per.Adaptive({"F": (1.0, 2.0)}, "kink", cells=32)
     here = per.map(task(kink=kink), plan, 1, store=tmp_path / "map.nc")
     assert here["kink"].dims == ("cell",) and here.sizes["cell"] == 32 and (np.diff(here["F"]) > 0).all()
