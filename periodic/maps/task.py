@@ -156,7 +156,7 @@ class Task:
         """
         return setup(
             self.problem,
-            Method.of(self.tol, self.method, self.control, self.watch),
+            Method.of(self.system, self.tol, self.method, self.control, self.watch),
             start=self.start,
             at=self.places,
             guess=self.guess,
