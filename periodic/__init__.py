@@ -9,6 +9,7 @@ from periodic.bifurcations.switching import SwitchError, branched, doubled
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.collocation.kinks import KinkSettings
 from periodic.collocation.method import Collocation
+from periodic.condensed.motion import motion
 from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
 from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
 from periodic.conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
@@ -132,6 +133,7 @@ __all__ = [
     "map",
     "mean",
     "mode",
+    "motion",
     "outputs",
     "page",
     "plot",

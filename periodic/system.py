@@ -441,6 +441,9 @@ class LinearPart(Protocol):
     def slope(self, parameter: Array, index: int) -> ModesLike | None:
         """Their derivative in a parameter; None where they do not depend on it."""
 
+    def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> ModesLike:
+        """Its modes with displacement and velocity (SI) of other degrees of freedom in turn as `outputs`."""
+
 
 class Split(System, Protocol):
     """A system whose linear part is given by its modes."""

@@ -29,7 +29,7 @@ LEADING = 8
 LIGHT = 0.8
 """Modulus below which a pair of multipliers makes no narrow peak."""
 
-LASTING = 0.3
+LASTING = 0.6
 """Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
 SMALL = 48

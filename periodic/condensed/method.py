@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.collocation.event import event_rows
-from periodic.collocation.method import Collocation, CollocationRefinement
+from periodic.collocation.method import Collocation, CollocationRefinement, scheme_for
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised, local_rows
 from periodic.condensed.operator import Condensed
@@ -37,6 +37,18 @@ class CondensedCollocation(Collocation):
     Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
     fast its modes; event nodes, error estimate and meshes are those of `Collocation`, whose settings it has.
     """
+
+    ntst: int = 12
+    ntst_min: int = 6
+
+    def at(self, tolerance: float) -> CondensedCollocation:
+        """Return it with scheme, depth of event nodes and meshes for a tolerance.
+
+        Unknowns are few and forces smooth: one point more in an interval than where all states are unknown.
+        """
+        more = Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
+        chosen = super().at(tolerance)
+        return replace(self, scheme=self.scheme or more, kinks=chosen.kinks, tolerance=tolerance)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the equations of the places, and those of the event nodes."""

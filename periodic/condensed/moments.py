@@ -2,9 +2,10 @@
 
 With l_b the Lagrange polynomials of the collocation points c_a on the unit interval,
 
-    moment_ab(x) = int_0^{c_a} exp(x (c_a - s)) l_b(s) ds,
+    moment_ab(x) = int_0^{e_a} exp(x (e_a - s)) l_b(s) ds,
 
-by its Taylor series where |x| is small, else in closed form by the derivatives of l_b.
+with e_a the places asked for: the collocation points, unless others are. By its Taylor series where |x| is
+small, else in closed form by the derivatives of l_b.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ NEAR, TERMS = 3.0, 32
 
 @dataclass(frozen=True)
 class Table:
-    """exp(c_a x), moments and their derivatives in x at M values of x.
+    """exp(e_a x), moments and their derivatives in x at M values of x.
 
     growth (M, a), moment and slope (M, a, b).
     """
@@ -43,9 +44,23 @@ class Table:
 
 @dataclass(frozen=True)
 class Moments:
-    """The tables of a scheme."""
+    """The tables of a scheme, at its collocation points or at other places of the unit interval.
+
+    Parameters
+    ----------
+    scheme : Scheme
+        Collocation points.
+    ends : tuple of float
+        The places e_a.
+    """
 
     scheme: Scheme
+    ends: tuple[float, ...] = ()
+
+    @cached_property
+    def places(self) -> Array:
+        """The places e_a, (a,)."""
+        return np.array(self.ends) if self.ends else self.scheme.points
 
     @cached_property
     def _monomials(self) -> Array:
@@ -56,8 +71,8 @@ class Moments:
     @cached_property
     def _taylor(self) -> Array:
         """Coefficients of x^m, shape (TERMS, a, b)."""
-        points = self.scheme.points
-        found = np.zeros((TERMS, len(points), len(points)))
+        points = self.places
+        found = np.zeros((TERMS, len(points), self.scheme.ncol))
         for m in range(TERMS):
             for p, row in enumerate(self._monomials):
                 power = points ** (p + m + 1) * (factorial(p) / factorial(p + m + 1))
@@ -66,10 +81,9 @@ class Moments:
 
     @cached_property
     def derivatives(self) -> Array:
-        """Derivatives of l_b at 0 and at the collocation points, shape (order, 1+a, b)."""
-        points = np.append(0.0, self.scheme.points)
-        count = len(points) - 1
-        found = np.zeros((count, count + 1, count))
+        """Derivatives of l_b at 0 and at the places, shape (order, 1+a, b)."""
+        points, count = np.append(0.0, self.places), self.scheme.ncol
+        found = np.zeros((count, len(points), count))
         for order in range(count):
             for p in range(order, count):
                 factor = factorial(p) / factorial(p - order)
@@ -78,25 +92,24 @@ class Moments:
 
     def table(self, x: Complex) -> Table:
         """Return the table at values x, shape (M,)."""
-        points = self.scheme.points
-        count = len(points)
+        points, count = self.places, self.scheme.ncol
         growth = np.exp(x[:, None] * points)
-        shape = (len(x), count, count)
+        shape = (len(x), len(points), count)
         moment, slope = np.empty(shape, dtype=complex), np.empty(shape, dtype=complex)
         near = np.abs(x) <= NEAR
         if near.any():
             powers = x[near, None] ** np.arange(TERMS)
             series = self._taylor.reshape(TERMS, -1)
             order = np.arange(1, TERMS)[:, None]
-            moment[near] = (powers @ series).reshape(-1, count, count)
-            slope[near] = (powers[:, :-1] @ (order * series[1:])).reshape(-1, count, count)
+            moment[near] = (powers @ series).reshape(-1, *shape[1:])
+            slope[near] = (powers[:, :-1] @ (order * series[1:])).reshape(-1, *shape[1:])
         if not near.all():
             far = x[~near]
             inverse = far[:, None] ** -np.arange(1.0, count + 1)
             steep = -inverse * np.arange(1, count + 1) / far[:, None]
             series = self.derivatives.reshape(count, -1)
-            value = (inverse @ series).reshape(-1, count + 1, count)
-            change = (steep @ series).reshape(-1, count + 1, count)
+            value = (inverse @ series).reshape(-1, 1 + len(points), count)
+            change = (steep @ series).reshape(-1, 1 + len(points), count)
             grown = growth[~near, :, None]
             moment[~near] = grown * value[:, :1] - value[:, 1:]
             begun = points[:, None] * value[:, :1] + change[:, :1]

@@ -13,7 +13,7 @@ from periodic.system import ModesLike
 SLOW = 20.0
 """|exponent| (per rad) below which no mode is left out."""
 
-SHARE = 1e-2
+SHARE = 0.1
 """Part of the tolerance that all modes left out may contribute."""
 
 

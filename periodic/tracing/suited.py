@@ -31,5 +31,6 @@ def suited(method: Discretisation, system: System) -> Discretisation:
     scheme = getattr(method, "scheme", None)
     if scheme is not None and scheme.family is not Family.RADAU:
         raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
-    kind = SPLIT[type(method)]
-    return kind(**{field.name: getattr(method, field.name) for field in fields(method)})  # type: ignore[arg-type]
+    chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
+    usual = type(method)()
+    return SPLIT[type(method)](**{k: value for k, value in chosen.items() if value != getattr(usual, k)})

@@ -9,6 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from symbolic.arrays import Array, Complex
+from symbolic.checks import one_of, refusal
+from symbolic.structures.matrices import index
 from symbolic.structures.modal import ModalForm
 
 STEP = 1e-5
@@ -124,6 +126,54 @@ class LinearPart:
         velocity[1::2] = scale
         zero = np.zeros_like(at.direct)
         return Modes(scale * at.exponents, scale * at.inputs, velocity * at.outputs, zero, zero)
+
+    def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> Modes:
+        """Return the modes with displacement and velocity (SI) of degrees of freedom in turn as outputs.
+
+        Parameters
+        ----------
+        parameter : ndarray, shape (p,)
+            Parameters in SI.
+        freedoms : sequence of int
+            Indices of d degrees of freedom, counted from 0.
+        structure : str, optional
+            Name of the structure, where there are several.
+
+        Returns
+        -------
+        Modes
+            Outputs (2d, J) in SI.
+
+        Raises
+        ------
+        ValueError
+            For a name or an index that is none.
+        """
+        chosen = self._named(structure)
+        at = [index(f"freedom {k}", freedom, chosen.size) for k, freedom in enumerate(freedoms)]
+        omega = self.omega(parameter)
+        modes, count, k = self._at(omega), len(at), len(self.places)
+        form = chosen.modal(omega)
+        before = [s for s in self.structures[: self.structures.index(chosen)]]
+        first = sum(len(s.modal(omega).exponents) for s in before)
+        mine = [i for i, place in enumerate(self.places) if place.structure is chosen]
+        outputs = np.zeros((2 * count, len(modes.exponents)), dtype=complex)
+        own = slice(first, first + len(form.exponents))
+        outputs[::2, own] = form.shapes[at]
+        outputs[1::2, own] = form.shapes[at] * form.exponents
+        forces = np.array([self.places[i].unit_force for i in mine])
+        residual = form.residual([self.places[i].freedom for i in mine])[at] * forces
+        direct, direct_rate = np.zeros((2 * count, k)), np.zeros((2 * count, k))
+        direct[::2, mine], direct_rate[1::2, mine] = residual, residual * omega
+        return Modes(modes.exponents, modes.inputs, outputs, direct, direct_rate)
+
+    def _named(self, name: str | None) -> Modal:
+        names = [structure.name for structure in self.structures]
+        if name is None and len(names) == 1:
+            return self.structures[0]
+        if name is None:
+            raise refusal("structure", name, f"one of {', '.join(names)}")
+        return self.structures[names.index(one_of("structure", name, names))]
 
     def _difference(self, omega: float, rate: float) -> Modes:
         """The same by differences, the modes of the two sides matched and normalised alike."""

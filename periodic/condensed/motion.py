@@ -1,0 +1,97 @@
+"""Motion anywhere in a structure, from the forces at its places: exact between mesh points as well."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from periodic.condensed.moments import Moments
+from periodic.condensed.response import Response
+from periodic.orbit.algebraic import algebraic_at
+from periodic.orbit.construction import as_read_by, transfer
+from periodic.orbit.mesh import uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.system import ModesLike, System, linear_of
+
+SCHEME = Scheme(Family.RADAU, 7)
+"""Collocation points of the forces of a Fourier series."""
+
+
+def motion(
+    system: System, orbit: Orbit, freedoms: Sequence[int], tau: ArrayLike, structure: str | None = None
+) -> tuple[Array, Array]:
+    """Return displacements and velocities of any degrees of freedom of a structure along an orbit.
+
+    Stresses are a recovery matrix times the displacements; an operating deflection shape is those of all
+    degrees of freedom at one phase.
+
+    Parameters
+    ----------
+    system : System
+        A system compiled from a structure.
+    orbit : Orbit
+        An orbit of it.
+    freedoms : sequence of int
+        Indices of d degrees of freedom, counted from 0.
+    tau : array_like, shape (K,)
+        Phases in rad; tau = Omega t.
+    structure : str, optional
+        Name of the structure, where the system has several.
+
+    Returns
+    -------
+    displacement, velocity : ndarray, shape (K, d)
+        In SI: m and m/s of a structure in SI.
+
+    Raises
+    ------
+    ValueError
+        For a system without a structure, names and indices that are none, and an orbit of another system.
+    """
+    part = linear_of(system)
+    if part is None:
+        raise ValueError("system has no structure; motion elsewhere is that of its states, as orbit['x'](t)")
+    orbit = _with_forces(system, as_read_by(system, orbit))
+    seen = part.observed(orbit.parameter, freedoms, structure)
+    phases = np.atleast_1d(np.asarray(tau, dtype=float))
+    forces = np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)])
+    states = _states(seen, orbit, forces, phases)
+    return states[:, ::2], states[:, 1::2]
+
+
+def _with_forces(system: System, orbit: Orbit) -> Orbit:
+    """The orbit as a piecewise polynomial with the forces at its collocation points."""
+    if type(orbit) is Orbit:
+        return orbit
+    pieces = transfer(orbit, uniform(SCHEME, max(2 * orbit.mesh.ntst, 32), orbit.mesh.period), orbit.phases)
+    unknowns = algebraic_at(system, pieces, pieces.stage_phases.ravel())
+    return Orbit(
+        pieces.mesh,
+        pieces.nodes,
+        pieces.stages,
+        unknowns.reshape(pieces.algebraic.shape),
+        pieces.phases,
+        pieces.parameter,
+        layout=orbit.layout,
+    )
+
+
+def _states(modes: ModesLike, orbit: Orbit, forces: Array, tau: Array) -> Array:
+    """Outputs of the modes at phases, (K, s)."""
+    scheme, grid = orbit.mesh.scheme, orbit.grid
+    history = Response(modes, scheme, grid, orbit.mesh.period).history(forces)
+    index, place = orbit.locate(tau)
+    found = np.empty((len(tau), len(modes.outputs)))
+    for interval in np.unique(index):
+        here, width = np.flatnonzero(index == interval), grid.width[interval]
+        moments = Moments(scheme, tuple(place[here]))
+        table = moments.table(width * modes.exponents)
+        driven = modes.inputs @ forces[interval].T
+        z = table.growth * history[interval][:, None] + width * np.einsum("jab,jb->ja", table.moment, driven)
+        force = moments.derivatives[0, 1:] @ forces[interval]
+        rate = moments.derivatives[1, 1:] @ forces[interval] / width
+        found[here] = (modes.outputs @ z).real.T + force @ modes.direct.T + rate @ modes.direct_rate.T
+    return found
