@@ -12,7 +12,7 @@ BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.pro
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long bench report-paper report-trade report-extremes lint types layers wheel clean
+.PHONY: help run test kernels long bench report-paper report-trade report-extremes docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -37,6 +37,9 @@ bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last recor
 report-paper report-trade report-extremes: $(VENV)/.installed-dev ## Compute the page of a study anew
 	$(BIN)/python -m reports.studies.$(@:report-%=%)
 
+docs: $(VENV)/.installed-docs ## Build the site into docs/_build
+	$(ONE_THREAD) $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build
+
 lint: $(VENV)/.installed-dev ## Check style and formatting
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -53,7 +56,7 @@ wheel: $(VENV)/.installed ## Build the wheel into dist/
 
 # Only the default environment: a VENV from outside may hold more than this project.
 clean: ## Remove the environment, caches and builds
-	rm -rf .venv build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf .venv build dist docs/_build docs/gallery docs/reference/generated .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 	find symbolic periodic reports tests -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.installed: pyproject.toml | $(BIN)/pip
@@ -64,6 +67,11 @@ $(VENV)/.installed: pyproject.toml | $(BIN)/pip
 $(VENV)/.installed-dev: pyproject.toml | $(BIN)/pip
 	@echo "Installing orbitrace and its development tools into $(VENV) (a minute or two, once)"
 	@$(INSTALL) --editable '.[dev]'
+	@touch $(VENV)/.installed $@
+
+$(VENV)/.installed-docs: pyproject.toml | $(BIN)/pip
+	@echo "Installing orbitrace and what builds its site into $(VENV) (a minute or two, once)"
+	@$(INSTALL) --editable '.[docs]'
 	@touch $(VENV)/.installed $@
 
 # Each candidate is run, not just looked up: a version manager's shim may be on PATH with nothing behind it.

@@ -1,0 +1,106 @@
+"""The pages of docs/ that hold Python: each is a session of its own, and its numbers are right."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import pytest
+
+import periodic as per
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}
+
+
+def run(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Run the blocks of a page one after another in a folder, and return what they have defined."""
+    plt.switch_backend("Agg")
+    monkeypatch.chdir(folder)
+    said: dict[str, Any] = {"__name__": name}
+    for block in re.findall(r"```python\n(.*?)```", PAGES[name].read_text("utf-8"), re.DOTALL):
+        exec(compile(block, name, "exec", dont_inherit=True), said)
+    plt.close("all")
+    return said
+
+
+def test_first_branch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the folds that the page prints, and its files."""
+    said = run("tutorials/first-branch.md", tmp_path, monkeypatch)
+    folds = [p.parameter for p in said["branch"].labelled(per.Label.FOLD)]
+    assert folds == pytest.approx([2.2119353, 1.4386701], rel=1e-7)
+    assert (tmp_path / "duffing.png").is_file() and (tmp_path / "duffing.nc").is_file()
+    assert said["over_force"].stop.reason is per.Reason.BOUND and said["point"].maximum["x"] > 1
+
+
+def test_two_parameters(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the cusp, the level, and the fold's derivative against two branches."""
+    said = run("tutorials/two-parameters.md", tmp_path, monkeypatch)
+    assert said["cusp"].parameter == pytest.approx(1.0901095, rel=1e-7)
+    assert said["border"].column("F").min() == pytest.approx(0.0513635, rel=1e-6)
+    assert said["level"].peak_to_peak("x") == pytest.approx([3.0] * len(said["level"]), rel=1e-7)
+    first = per.Watch(stop={"LP": 1})
+    folds = [
+        per.trace(said["system"], "Omega", (0.8, 3.0), values={"c": c}, watch=first, tol=1e-8).labelled("LP")[
+            0
+        ]
+        for c in (0.0999, 0.1001)
+    ]
+    difference = (folds[1].parameter - folds[0].parameter) / 2e-4
+    assert said["slopes"]["fold"]["c"] == pytest.approx(difference, rel=1e-4)
+
+
+def test_equations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert pitchfork, Hopf point and the pendulum's energies."""
+    said = run("tutorials/equations.md", tmp_path, monkeypatch)
+    assert said["hopf"].parameter == pytest.approx(470 / 19, rel=1e-10)
+    assert said["pitchfork"].parameter == pytest.approx(1.0, rel=1e-10)
+    for point, energy in zip(said["backbone"], said["energies"], strict=True):
+        assert energy == pytest.approx(point.orbit["v"](0.0) ** 2 / 2 + 1 - cosine(point), rel=1e-6)
+
+
+def cosine(point: per.Point) -> float:
+    """cos q of the pendulum at the beginning of an orbit."""
+    import math
+
+    return math.cos(float(point.orbit["q"](0.0)))
+
+
+def test_structures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the error of the reduction that the page prints."""
+    said = run("tutorials/structures.md", tmp_path, monkeypatch)
+    assert said["reduced"].error(0.0, 130.0) < 1e-4
+    assert said["beam"].first_frequency == pytest.approx(1.8751040687**2 / (2 * 3.14159265359), rel=2e-5)
+
+
+def test_methods(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the three methods find the same folds, to 1e-7."""
+    one, *others = run("howto/methods.md", tmp_path, monkeypatch)["folds"]
+    assert len(one) == 2
+    for other in others:
+        assert other == pytest.approx(one, rel=1e-7)
+
+
+@pytest.mark.parametrize("name", ["howto/own-part.md", "howto/scenes.md"])
+def test_page_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that its blocks run, and that a branch there gets to its end."""
+    said = run(name, tmp_path, monkeypatch)
+    assert "branch" not in said or said["branch"].stop.reason is per.Reason.BOUND
+
+
+def test_every_page_with_python_is_run() -> None:
+    """Assert that no page is left out here."""
+    text = Path(__file__).read_text("utf-8")
+    for name, file in PAGES.items():
+        if not name.startswith("studies/") and "```python" in file.read_text("utf-8"):
+            assert f'"{name}"' in text, name
+
+
+def test_every_reason_is_explained() -> None:
+    """Assert that the page on stops has each reason that a branch can give."""
+    text = PAGES["howto/when-a-trace-stops.md"].read_text("utf-8")
+    for reason in per.Reason:
+        words = reason.value.removesuffix(" reached").removesuffix("largest number of Newton iterations")
+        assert words in text, reason

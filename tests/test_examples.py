@@ -1,0 +1,39 @@
+"""The gallery: every script runs by itself and ends with its key number, to the digits that are known."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+
+KEYS = {
+    "duffing": (2.2119353, 1e-7),
+    "force_cusp": (0.0513635, 1e-6),
+    "parametric": (1.9007661188, 1e-6),
+    "pendulum_backbone": (2.9830777999, 1e-6),
+    "wavy_disc": (237.486586, 1e-6),
+    "cylinder_film": (9.0457, 1e-4),
+}
+"""Key numbers, and to which relative precision they are known: closed forms and references of other tests."""
+
+
+def test_every_example_has_its_number() -> None:
+    """Assert that no script is left out."""
+    assert {file.stem for file in EXAMPLES.glob("*.py")} == set(KEYS)
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_example(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the key number, a picture, and that it is short."""
+    file = EXAMPLES / f"{name}.py"
+    plt.switch_backend("Agg")
+    said = runpy.run_path(str(file))
+    number, precision = KEYS[name]
+    assert said["key"] == pytest.approx(number, rel=precision)
+    assert said["axes"].has_data() and len(plt.get_fignums()) == 1
+    plt.close("all")
+    assert len(file.read_text("utf-8").split('"""', 2)[2].strip().splitlines()) <= 30
