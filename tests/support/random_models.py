@@ -22,7 +22,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.motion.explicit import rates
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.schema import DiscScene
+from symbolic.scenes.schema import HertzDiscScene
 
 Random = np.random.Generator
 
@@ -68,7 +68,7 @@ def _log(random: Random, low: float, high: float) -> float:
 def disc(random: Random) -> Case:
     """Two discs through their resonance."""
     tables = disc_tables(random)
-    scene = DiscScene.model_validate(tables)
+    scene = HertzDiscScene.model_validate(tables)
     begin, end = (value * RPM for value in scene.trace.ends)
     told = repr({k: v for k, v in tables.items() if k not in ("title", "kind")})
     return Case(build(scene), "speed", (min(begin, end), max(begin, end)), begin, told)
