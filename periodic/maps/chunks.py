@@ -48,11 +48,16 @@ def computed(given: Task | bytes, names: Sequence[str], chunk: Chunk) -> list[Ou
 
 
 def _attempted(task: Task, values: Mapping[str, float], near: Orbit | None) -> tuple[Branch | None, str]:
-    """The branch of a cell and why it is not complete: from a neighbour's first orbit, else from scratch."""
-    branch, reason = _branch(task, values, near)
-    if reason and near is not None:
-        return _branch(task, values, None)
-    return branch, reason
+    """The branch of a cell and why it is not complete: from a neighbour's first orbit, else from scratch.
+
+    Where the neighbour's sheet does not reach the start the engine may find an orbit at a turn nearby: from
+    there only a part of the branch would be traced.
+    """
+    if near is not None:
+        branch, reason = _branch(task, values, near)
+        if branch is not None and not reason and start_of(branch).parameter == task.begin:
+            return branch, reason
+    return _branch(task, values, None)
 
 
 def _branch(task: Task, values: Mapping[str, float], near: Orbit | None) -> tuple[Branch | None, str]:

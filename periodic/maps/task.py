@@ -163,6 +163,11 @@ class Task:
             values={**(self.values or {}), **(values or {})},
         )
 
+    @cached_property
+    def begin(self) -> float:
+        """The parameter (SI) at which all branches begin."""
+        return self.ready().begin
+
     def traced(self, values: Mapping[str, float], near: Orbit | None = None) -> Branch:
         """Return the branch of a cell.
 
@@ -182,7 +187,7 @@ class Task:
             self.system,
             self.parameter,
             self.bounds,
-            start=self.start if near is None else self.ready().begin,
+            start=self.start if near is None else self.begin,
             at=self.places,
             tol=self.tol,
             guess=self.guess if near is None else near,
@@ -205,7 +210,7 @@ class Task:
         return {
             "parameter": self.parameter,
             "guess": guess,
-            "start": self.ready().begin,
+            "start": self.begin,
             **made_with(self.ready()),
             "numbers": described(self.numbers),
             "system": {"layout": described(layout_of(self.system)), "residual": _residual(self.system)},

@@ -15,6 +15,7 @@ import typer
 from typer._click.exceptions import ClickException
 
 from reports.app.linear.command import linear
+from reports.app.map.command import map_
 from reports.app.options import BAD_INPUT, DONE, say
 from reports.app.parts.command import new, parts
 from reports.app.scenes import scenes
@@ -29,6 +30,7 @@ app = typer.Typer(
 )
 for command in (scenes, trace, linear, parts, new):
     app.command()(command)
+app.command("map")(map_)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

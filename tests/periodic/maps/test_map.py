@@ -89,6 +89,19 @@ def test_neighbours_spare_work() -> None:
     assert int(warm["newton"].sum()) < int(cold["newton"].sum())
 
 
+def test_neighbour_on_a_sheet_that_ends_misleads_nobody() -> None:
+    """Assert that a branch is traced whole where its neighbour's first orbit has none beside it at the start.
+
+    Of Duffing's oscillator at Omega = 1.3 the orbit from rest is on the lower sheet for F = 0.2; for F = 0.3
+    that sheet turns at 1.324.
+    """
+    numbers = {"folds": per.Places("LP"), "ends": ends}
+    given = per.Task(sym.scene("duffing"), "Omega", (1.3, 1.9), numbers=numbers, tol=1e-4)
+    warm, cold = (per.map(given, {"F": [0.2, 0.3]}, 1, store=None, chunk=size) for size in (2, 1))
+    assert warm["folds"].values == pytest.approx(cold["folds"].values, rel=1e-4, nan_ok=True)
+    assert np.array_equal(warm["ends"], cold["ends"]) and (cold["ends"] == [1.3, 1.9]).all()
+
+
 def test_progress_counts_and_tells_the_time_left() -> None:
     """Assert what is told after each chunk."""
     told: list[per.Progress] = []

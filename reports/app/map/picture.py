@@ -1,0 +1,63 @@
+"""The picture of a map: the peak over one or two parameters, and where branches have folds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reports.app.drawing import BLUE, INK, ORANGE, figure, legend, write
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+
+def draw(path: Path, title: str, data: xr.Dataset, keys: Mapping[str, str]) -> None:
+    """Write the picture of a map over one or two parameters as a PNG file."""
+    drawn = figure(5.0)
+    axes, names = drawn.add_subplot(), list(keys)
+    labels = [f"{keys[name]} ({data[name].attrs['units'] or '-'})" for name in names]
+    if len(names) == 1:
+        _line(axes, data, names[0])
+        axes.set(xlabel=labels[0], ylabel=_named(data, "peak"))
+        axes.grid(alpha=0.25)
+    else:
+        shown = _field(axes, data, names)
+        drawn.colorbar(shown, ax=axes, label=_named(data, "peak"))
+        axes.set(xlabel=labels[0], ylabel=labels[1])
+    legend(axes)
+    write(path, drawn, axes, title)
+
+
+def drawable(keys: Mapping[str, str], data: xr.Dataset) -> bool:
+    """Return whether a map has a picture: of two parameters at most, and something to show."""
+    return len(keys) <= 2 and "peak" in data and bool(np.isfinite(data["peak"]).any())
+
+
+def _named(data: xr.Dataset, name: str) -> str:
+    unit = data[name].attrs["units"]
+    return f"{name}, peak to peak ({unit})" if unit else f"{name}, peak to peak"
+
+
+def _line(axes: Axes, data: xr.Dataset, name: str) -> None:
+    """Draw the peak, and the highest stable orbit, over one parameter."""
+    x = data[name].values
+    order = np.argsort(x)
+    axes.plot(x[order], data["peak"].values[order], ".-", color=BLUE, label="peak")
+    axes.plot(x[order], data["stable peak"].values[order], "--", color=ORANGE, label="highest stable")
+
+
+def _field(axes: Axes, data: xr.Dataset, names: list[str]):  # type: ignore[no-untyped-def]
+    """Draw the peak as a field over two parameters, with a line where branches begin to have folds."""
+    x, y = (data[name].values for name in names)
+    folds = np.isfinite(data["folds"].values).sum(axis=-1) if data["folds"].ndim > data["peak"].ndim else None
+    if data["peak"].dims == ("cell",):
+        axes.plot(x, y, ".", color=INK, markersize=1.5)
+        return axes.tripcolor(x, y, np.nan_to_num(data["peak"].values), shading="gouraud")
+    if folds is not None and min(folds.shape) > 1 and folds.min() < 1 <= folds.max():
+        axes.contour(x, y, folds.T, levels=[0.5], colors=INK, linewidths=1.2)
+        axes.plot([], [], color=INK, linewidth=1.2, label="folds within")
+    return axes.pcolormesh(x, y, data["peak"].values.T, shading="nearest")
