@@ -40,6 +40,8 @@ from .parts.films.series import SeriesFilm
 from .parts.films.squeeze import SqueezeFilm
 from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
+from .parts.friction.jenkins import Iwan, Jenkins
+from .parts.friction.tanh import TanhFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
@@ -49,6 +51,11 @@ from .parts.mechanics.inertia import Mass, ReducedMass
 from .parts.mechanics.piecewise import PiecewiseLinearSpring
 from .parts.mechanics.profiles import FourierSeries, Harmonic, Profile, Samples
 from .parts.mechanics.springs import Coupling, CubicSpring, Damper, Spring, Support
+from .parts.rotors.films import JournalBearing, SqueezeFilmDamper
+from .parts.rotors.gyroscopic import GyroscopicMoment
+from .parts.rotors.internal import InternalDamping
+from .parts.rotors.rub import Rub
+from .parts.rotors.unbalance import Unbalance
 from .parts.structure import Structure
 from .scenes.door import scene, scene_names
 from .scenes.errors import InputError
@@ -96,6 +103,7 @@ __all__ = [
     "Gap",
     "GearMesh",
     "GivenThickness",
+    "GyroscopicMoment",
     "HamrockDowsonThickness",
     "Harmonic",
     "HarmonicForce",
@@ -104,6 +112,10 @@ __all__ = [
     "HuntCrossleyStop",
     "InputError",
     "IntegrationError",
+    "InternalDamping",
+    "Iwan",
+    "Jenkins",
+    "JournalBearing",
     "Kernels",
     "LineFilm",
     "LineReduction",
@@ -132,20 +144,24 @@ __all__ = [
     "RegressionThickness",
     "Rolling",
     "RollingBearing",
+    "Rub",
     "Samples",
     "SeriesFilm",
     "ShaftDisc",
     "Simulation",
     "Spring",
     "SqueezeFilm",
+    "SqueezeFilmDamper",
     "SteadyThickness",
     "RigidStop",
     "Stop",
     "Structure",
     "Support",
+    "TanhFriction",
     "ThicknessLaw",
     "ThirdOrder",
     "TransmissionError",
+    "Unbalance",
     "Variable",
     "VaryingSpring",
     "Waviness",

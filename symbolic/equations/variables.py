@@ -87,6 +87,13 @@ def not_negative(field: str, value: Value) -> None:
         raise refusal(field, number, "a number of at least 0")
 
 
+def above_zero(field: str, value: Value) -> None:
+    """Refuse a part's number that is not positive; what is none, compilation refuses. Raises ValueError."""
+    number = value.value if isinstance(value, Parameter) else value
+    if isinstance(number, int | float) and -math.inf < number <= 0:
+        raise refusal(field, number, "a positive number")
+
+
 @dataclass(frozen=True, eq=False)
 class Coordinate:
     """A mechanical coordinate q; it brings the two states q and dq/dtau where it carries a mass.

@@ -1,0 +1,1 @@
+"""Dry friction: on a speed, and of elastic sliders that remember where they slipped."""

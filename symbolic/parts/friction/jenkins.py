@@ -1,0 +1,135 @@
+"""The elastic slider, and several of them side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from symbolic.checks import refusal
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative
+from symbolic.parts.mechanics.ends import deflection, resist
+
+CREEP = 1e-3
+"""Default of the angle within which a slider comes to slip, in rad of the excitation's phase."""
+
+LEAK = 1e-5
+"""Part of its force by which a stuck slider yields, per rad of the phase: else its place is anything."""
+
+
+@dataclass(frozen=True)
+class Jenkins(Part):
+    """Elastic slider: force -f, f = k (u - z), a spring in series with a slider that gives way at F.
+
+        k dz/dtau = (max(f - F, 0) + min(f + F, 0))/creep + LEAK f
+
+    One state z, the place of the slider, and two kinks in each slip, where it begins and where it ends. The
+    slider is Coulomb's but for the angle `creep` of the phase within which it comes to slip: f exceeds F by
+    creep k du/dtau, at any frequency (its loops do not depend on the rate, as Coulomb's do not). A stuck
+    slider may stick anywhere; the leak of 1e-5 per rad lets it settle where its mean force is 0.
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    stiffness : float or Parameter
+        k in N/m.
+    limit : float or Parameter
+        F in N: coefficient of friction times normal force.
+    to : Coordinate, optional
+        The coordinate r at the other end, u = q - r; the ground where there is none.
+    creep : float or Parameter
+        In rad of the phase; to 0 the exact slider.
+
+    Raises
+    ------
+    ValueError
+        For a limit that is negative, a stiffness or creep that is not positive.
+
+    References
+    ----------
+    Jenkin, Engineering 114 (1922) 603; Iwan, J. Appl. Mech. 33 (1966) 893-900.
+    """
+
+    q: Coordinate
+    stiffness: Value
+    limit: Value
+    to: Coordinate | None = None
+    creep: Value = CREEP
+
+    def __post_init__(self) -> None:
+        above_zero("stiffness of a slider", self.stiffness)
+        not_negative("limit of a slider", self.limit)
+        above_zero("creep of a slider", self.creep)
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the slider."""
+        k = assembly.parameter(self.stiffness, "k_slider", "N/m")
+        slide(assembly, self, k, assembly.parameter(self.limit, "F_slider", "N"), "z")
+
+
+@dataclass(frozen=True)
+class Iwan(Part):
+    """Elastic sliders side by side, the i-th of stiffness k/n and limit F_i: a joint that slips by degrees.
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    stiffness : float or Parameter
+        k in N/m, of all together while they stick.
+    limits : sequence of float or Parameter
+        F_1, ..., F_n in N.
+    to : Coordinate, optional
+        The coordinate r at the other end, u = q - r; the ground where there is none.
+    creep : float or Parameter
+        As in `Jenkins`.
+
+    Raises
+    ------
+    ValueError
+        For no limit at all, one that is negative, a stiffness or creep that is not positive.
+
+    References
+    ----------
+    Iwan, J. Appl. Mech. 33 (1966) 893-900.
+    """
+
+    q: Coordinate
+    stiffness: Value
+    limits: Sequence[Value]
+    to: Coordinate | None = None
+    creep: Value = CREEP
+
+    def __post_init__(self) -> None:
+        above_zero("stiffness of the sliders", self.stiffness)
+        above_zero("creep of the sliders", self.creep)
+        if len(self.limits) == 0:
+            raise refusal("limits", self.limits, "a sequence of at least one force in N")
+        for limit in self.limits:
+            not_negative("limit of a slider", limit)
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the sliders."""
+        k = assembly.parameter(self.stiffness, "k_sliders", "N/m") / len(self.limits)
+        for count, value in enumerate(self.limits, 1):
+            slide(assembly, self, k, assembly.parameter(value, f"F_slider_{count}", "N"), f"z{count}")
+
+
+def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name: str) -> None:
+    """Add one slider: its force, its state and the row of it."""
+    q, to = part.q, part.to
+    between = q.name if to is None else f"{q.name} - {to.name}"
+    scale = assembly.motion(q).position.scale
+    creep = assembly.parameter(part.creep, "creep", "rad")
+    z = assembly.state(f"{name} of {between}", q.unit, scale, ca.SX(0))
+    force = k * (deflection(assembly, q, to) - z.symbol)
+    over = ca.fmax(force - limit, 0) + ca.fmin(force + limit, 0)
+    resist(assembly, q, to, force)
+    assembly.differential_rows.append((creep * (z.derivative - LEAK * force / k) - over / k) / scale)
+    assembly.output(f"force of {name} of {between}", "N", force)
+    assembly.switch(f"{name} of {between}: f = F", (force - limit) / (k * scale), 0)
+    assembly.switch(f"{name} of {between}: f = -F", (force + limit) / (k * scale), 0)
