@@ -45,6 +45,7 @@ from .parts.friction.tanh import TanhFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
+from .parts.mechanics.cubicdamper import CubicDamper
 from .parts.mechanics.driven import BaseMotion, PeriodicForce, VaryingSpring
 from .parts.mechanics.forces import ConstantForce, HarmonicForce
 from .parts.mechanics.inertia import Mass, ReducedMass
@@ -90,6 +91,7 @@ __all__ = [
     "ContactPair",
     "Coordinate",
     "Coupling",
+    "CubicDamper",
     "CubicSpring",
     "Damper",
     "ElasticContact",
