@@ -13,10 +13,10 @@ from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative
 from symbolic.parts.mechanics.ends import deflection, resist
 
-CREEP = 1e-3
+CREEP = 1e-2
 """Default of the angle within which a slider comes to slip, in rad of the excitation's phase."""
 
-LEAK = 1e-5
+LEAK = 1e-4
 """Part of its force by which a stuck slider yields, per rad of the phase: else its place is anything."""
 
 
@@ -29,7 +29,7 @@ class Jenkins(Part):
     One state z, the place of the slider, and two kinks in each slip, where it begins and where it ends. The
     slider is Coulomb's but for the angle `creep` of the phase within which it comes to slip: f exceeds F by
     creep k du/dtau, at any frequency (its loops do not depend on the rate, as Coulomb's do not). A stuck
-    slider may stick anywhere; the leak of 1e-5 per rad lets it settle where its mean force is 0.
+    slider may stick anywhere; the leak of 1e-4 per rad lets it settle where its mean force is 0.
 
     Parameters
     ----------
