@@ -27,6 +27,10 @@ DEEPEST = 0.1
 """Shallowest switch level worth an event node, in tolerances or errors of the states."""
 
 
+MILD = 0.1
+"""Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
+
+
 @dataclass(frozen=True)
 class Crossing:
     """A passage of a switch through a level along an orbit.
@@ -78,6 +82,22 @@ class KinkSettings:
             raise ValueError(f"exchange is {self.exchange}; it must be a number of at least 1")
         if not 0 <= number("steep", self.steep) <= 1:
             raise ValueError(f"steep is {self.steep}; it must lie between 0 and 1")
+
+    def beside(self, level: float) -> KinkSettings:
+        """Return the settings for a level.
+
+        Parameters
+        ----------
+        level : float
+            Below 0 of a switch where only a derivative of the equations has a kink: it is mild, and its node
+            may come and go with an excursion a tenth as long.
+
+        Returns
+        -------
+        KinkSettings
+            With `appear` and `vanish` for it.
+        """
+        return replace(self, appear=MILD * self.appear, vanish=MILD * self.vanish) if level < 0 else self
 
     def at(self, tolerance: float) -> KinkSettings:
         """Return the settings for a tolerance of the orbits.
@@ -133,7 +153,11 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
     for k, switch in enumerate(system.switches):
         levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
         kept = [
-            _merged([c for c in found if c.event.switch == k and c.event.level == level], orbit, settings)
+            _merged(
+                [c for c in found if c.event.switch == k and c.event.level == level],
+                orbit,
+                settings.beside(level),
+            )
             for level in levels
         ]
         directions = (switch.direction,) if switch.direction else (-1, 1)
@@ -147,7 +171,8 @@ def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list
     kept: list[Crossing] = []
     for crossing in chosen:
         ends = [kept[-1].phase, kept[0].phase + orbit.mesh.period] if kept else []
-        limit = settings.vanish if _is_tied(crossing, orbit) else settings.appear
+        own = settings.beside(crossing.event.level)
+        limit = own.vanish if _is_tied(crossing, orbit) else own.appear
         if all(abs(crossing.phase - end) >= limit for end in ends):
             kept.append(crossing)
     return kept

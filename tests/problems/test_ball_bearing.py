@@ -18,20 +18,16 @@ PEAKS = {7.0: (0.49618627, 0.29072993), 6.0: (2.43086450, 0.41931401)}
 """Known x and y peak to peak in um (another author's integration, its peaks on samples)."""
 
 
-def bearing() -> sym.CompiledSystem:
-    """A rigid shaft under its weight, balls of Hertz's law in a clearance."""
-    x, y = (sym.coordinate(name, scale=1e-6) for name in "xy")
-    m, c = sym.parameter("m", 20.0, "kg"), sym.parameter("c", 200.0, "N s/m")
-    speed = sym.parameter("speed", 10 * KRPM, "rad/s")
-    parts = [sym.Mass(x, m), sym.Mass(y, m), sym.Damper(x, c), sym.Damper(y, c), sym.ConstantForce(x, 196.0)]
-    law = sym.HertzLaw(13.34e9)
-    return sym.compile(sym.combine([*parts, sym.RollingBearing(x, y, 8, law, 6e-6, speed, 40.1e-3, 63.9e-3)]))
-
-
 @cache
 def branch() -> per.Branch:
     """The branch from 10 krpm to beyond the doubling."""
-    return per.trace(bearing(), "speed", (5.4 * KRPM, 10 * KRPM), start=10 * KRPM, at=np.array(PLACES) * KRPM)
+    return per.trace(
+        sym.scene("ball-bearing"),
+        "speed",
+        (5.4 * KRPM, 10 * KRPM),
+        start=10 * KRPM,
+        at=np.array(PLACES) * KRPM,
+    )
 
 
 def rates(krpm: float) -> Rates:

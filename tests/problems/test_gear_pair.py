@@ -18,24 +18,10 @@ FOLDS = (0.598153117, 0.835837679)
 PLACES = (1.1, 0.9, 0.7, 0.62, 0.5)
 
 
-def pair() -> sym.CompiledSystem:
-    """The equations of Kahraman & Singh, dimensionless."""
-    q = sym.coordinate("x", unit="")
-    omega, m = sym.parameter("Omega", 1.2, "rad/s"), sym.parameter("m", 1.0, "kg")
-    model = (
-        sym.Mass(q, m)
-        + sym.Damper(q, 0.1)
-        + sym.ConstantForce(q, 0.1)
-        + sym.GearMesh(q, 1.0, 1.0, (0.2, 0.1, 0.05))
-        + sym.TransmissionError(q, m, (0.01, 0.004, 0.002), omega)
-    )
-    return sym.compile(model)
-
-
 @cache
 def branch() -> per.Branch:
     """The branch from 1.2 down to 0.4."""
-    return per.trace(pair(), "Omega", (0.4, 1.2), start=1.2, at=PLACES)
+    return per.trace(sym.scene("gear-pair"), "Omega", (0.4, 1.2), start=1.2, at=PLACES)
 
 
 def rates(w: float) -> Rates:
@@ -85,5 +71,5 @@ def test_liouville() -> None:
 
 def test_rest_is_where_the_mesh_carries_the_load() -> None:
     """Assert where the search for a rest begins: in mesh, on the side of the load."""
-    system = pair()
+    system = sym.scene("gear-pair")
     assert system.rest(system.nominal)[0] == pytest.approx([1.1, 0.0], abs=1e-15)

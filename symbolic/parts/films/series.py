@@ -4,8 +4,8 @@ The bodies' approach d (beyond that at which dry surfaces touch) and the film ma
 
     delta(W) = d + c h(W),   W = F(delta),
 
-c films one after another. With y = ln W Newton's method, written out, solves it in logarithms:
-ln(c h) = ln(delta - d) where the bodies part (d < 0), ln delta = ln(c h + d) where they press.
+c films one after another. With y = ln W Newton's method, written out, solves it in logarithms,
+ln(delta + max(-d, 0)) = ln(c h + max(d, 0)).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from symbolic.equations.assembly import Assembly
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.films.law import FilmLaw
 
-ITERATIONS = 7
-"""Newton's steps; both equations are nearly straight lines in ln W."""
+ITERATIONS = 6
+"""Newton's steps; both sides are nearly straight lines in ln W, on either side of d = 0."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,10 @@ class SeriesFilm:
         y = ca.SX.sym("log_load")
         log_delta = ca.log(elastic.delta0) + elastic.log_deflection(y)
         log_film = ca.log(self.contacts * self.law.thickness(assembly, self.typical * ca.exp(y)))
-        pressed = log_delta - ca.log(ca.exp(log_film) + ca.fmax(approach, 0))
-        parted = ca.log(ca.exp(log_delta) - ca.fmin(approach, 0)) - log_film
-        return self.typical * ca.exp(_solved(ca.if_else(approach > 0, pressed, parted), y))
+        parting, pressing = ca.fmax(-approach, 0), ca.fmax(approach, 0)
+        assembly.smooth_at(approach)
+        rising = ca.log(ca.exp(log_delta) + parting) - ca.log(ca.exp(log_film) + pressing)
+        return self.typical * ca.exp(_solved(rising, y))
 
 
 def _solved(rising: ca.SX, y: ca.SX) -> ca.SX:

@@ -10,11 +10,21 @@ from symbolic.scenes.files import load, scene_names, short_name
 from symbolic.scenes.schema import DiscScene, OscillatorScene
 
 SIZES = {
+    "ball-bearing": (4, 0),
+    "ball-bearing-lubricated": (4, 0),
     "cavitating-film-810N": (3, 0),
     "dry-810N": (2, 0),
     "duffing": (2, 0),
+    "friction-damper": (2, 0),
+    "gear-pair": (2, 0),
+    "jeffcott-internal-damping": (4, 0),
+    "jeffcott-rub": (4, 0),
+    "jenkins-damper": (3, 0),
+    "journal-bearing": (4, 0),
     "line-contact-810N": (3, 1),
     "quasistatic-film-810N": (2, 1),
+    "squeeze-film-damper": (4, 0),
+    "stop": (2, 0),
     "supports-810N": (5, 1),
     "third-order-810N": (3, 0),
     "turbo33-810N": (3, 1),
