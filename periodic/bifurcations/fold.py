@@ -8,6 +8,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import LEFT, TestFunction
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
+from periodic.linear.unknowns import size_of
 
 VERTICAL = 1e-10
 """Slopes smaller than this, in ranges of the parameter, are rounding."""
@@ -25,7 +26,7 @@ def turns_twice(base: Solution, new: Solution) -> bool:
     Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
     """
     way = difference(base.problem, base.orbit, new.orbit)
-    mean = way.parameter / base.tangent.dot(way, base.orbit, base.problem.scale)
+    mean = way.parameter / base.tangent.dot(way, base.orbit, base.problem.scale, size_of(base.orbit))
     ends = np.array([base.tangent.parameter, new.tangent.parameter])
     sign = np.sign(ends[0])
     return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())

@@ -17,8 +17,8 @@ from periodic.system import System
 class ArclengthConstraint:
     """<u - origin, direction> = distance, a hyperplane across `direction` (Keller 1977).
 
-    The scalar product is the mean over the period of <x, y>, x and y at fixed tau, plus p q / scale^2 of the
-    continuation parameter, whose index is `index`.
+    The scalar product is the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2
+    of the continuation parameter, whose index is `index`.
     """
 
     origin: Orbit
@@ -26,6 +26,7 @@ class ArclengthConstraint:
     distance: float
     scale: float
     index: int
+    size: float = 1.0
 
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
@@ -43,7 +44,8 @@ class ArclengthConstraint:
 
     def _gradient(self, orbit: Orbit, free: tuple[int, ...]) -> tuple[Array, Array]:
         slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
-        weighted = mean_weights(self.origin)[:, None] * self.direction.profile
+        weights = mean_weights(self.origin) / self.size**2
+        weighted = weights[:, None] * self.direction.profile
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
         outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, moving)

@@ -14,7 +14,7 @@ from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.newton import Linearise, NewtonSettings, newton_step
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
-from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only
+from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -82,7 +82,8 @@ def deferred(
     count at the orbit's mesh points alone, not between them.
     """
     fine = bisect(orbit)
-    across = ArclengthConstraint(fine, _onto(tangent, fine), 0.0, problem.scale, problem.index)
+    onto = _onto(tangent, fine)
+    across = ArclengthConstraint(fine, onto, 0.0, problem.scale, problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
     try:
         step = newton_step(linearise, problem.system, fine, problem.free, closing, NewtonSettings())

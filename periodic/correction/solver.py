@@ -13,7 +13,7 @@ from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.tolerance import Tolerance
-from periodic.linear.unknowns import Increment, parameter_only
+from periodic.linear.unknowns import Increment, parameter_only, size_of
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -48,7 +48,8 @@ class Solver:
 
     def constraint(self, origin: Orbit, direction: Increment, distance: float) -> ArclengthConstraint:
         """Return the arclength constraint at a distance from an orbit along a direction."""
-        return ArclengthConstraint(origin, direction, distance, self.problem.scale, self.problem.index)
+        scale, size = self.problem.scale, size_of(origin)
+        return ArclengthConstraint(origin, direction, distance, scale, self.problem.index, size)
 
     def on(
         self, guess: Orbit, constraint: ArclengthConstraint, newton: NewtonSettings | None = None
@@ -71,8 +72,9 @@ class Solver:
         kernel, scale = found.kernel, self.problem.scale
         if kernel is None or not found.ok:
             return constraint.direction
-        length = np.sqrt(kernel.dot(kernel, found.orbit, scale))
-        sign = np.sign(kernel.dot(constraint.direction, found.orbit, scale)) or 1.0
+        size = size_of(found.orbit)
+        length = np.sqrt(kernel.dot(kernel, found.orbit, scale, size))
+        sign = np.sign(kernel.dot(constraint.direction, found.orbit, scale, size)) or 1.0
         return kernel.scaled(sign / length)
 
     def at_parameter(self, guess: Orbit, sign: float) -> Solution:

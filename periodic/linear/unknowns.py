@@ -34,7 +34,7 @@ class Unknowns(Protocol):
             The multiple.
         """
 
-    def dot(self, other: Self, orbit: Orbit, scale: float) -> float:
+    def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
         """Return the scalar product in the metric of continuation.
 
         Parameters
@@ -45,6 +45,8 @@ class Unknowns(Protocol):
             The orbit, whose mesh weights the states.
         scale : float
             Unit of arclength in the continuation parameter (SI).
+        size : float
+            Unit of arclength in the states (scaled).
 
         Returns
         -------
@@ -132,10 +134,10 @@ class Increment:
         """Return the increment times a factor."""
         return type(self)(*(factor * getattr(self, f.name) for f in fields(self)))
 
-    def dot(self, other: Self, orbit: Orbit, scale: float) -> float:
-        """Return mean over the period of <x, y>, x and y at fixed tau, plus the parameters' p q / scale^2."""
+    def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
+        """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2."""
         states = np.einsum("j,jn,jn->", mean_weights(orbit), self.profile, other.profile)
-        return float(states) + self.parameter * other.parameter / scale**2
+        return float(states) / size**2 + self.parameter * other.parameter / scale**2
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
         """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
@@ -155,6 +157,11 @@ def parameter_only(orbit: Orbit, rate: float) -> Increment:
     zero = np.zeros_like(orbit.nodes)
     stages, algebraic = np.zeros_like(orbit.stages), np.zeros_like(orbit.algebraic)
     return Increment(zero, stages, algebraic, np.zeros_like(orbit.phases), np.array([rate]), zero)
+
+
+def size_of(orbit: Orbit) -> float:
+    """The unit of arclength in the states: the amplitude of a large motion, so that it takes no more steps."""
+    return max(1.0, orbit.span() / 2)
 
 
 def mean_weights(orbit: Orbit) -> Array:

@@ -308,7 +308,11 @@ class Orbit:
         float
             1, the size of scaled states, for an equilibrium.
         """
+        return self._span
+
+    @cached_property
+    def _span(self) -> float:
         if self.equilibrium:
             return 1.0
         flat = self.knots.reshape(-1, self.knots.shape[2])
-        return float(np.ptp(flat, axis=0).max())
+        return float((flat.max(axis=0) - flat.min(axis=0)).max())

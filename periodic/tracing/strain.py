@@ -11,7 +11,7 @@ from periodic.bifurcations import codim2
 from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
-from periodic.linear.unknowns import Increment
+from periodic.linear.unknowns import Increment, size_of
 from periodic.stability.spectrum import Stability
 from periodic.stability.winding import Motion, turned
 from periodic.tracing.stepsize import ArclengthControl
@@ -33,12 +33,12 @@ def strains(
     base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
 ) -> Iterator[Strain]:
     """Yield the strains of a step between two solutions on one mesh, the cheapest first."""
-    problem = base.problem
-    cosine = base.tangent.dot(new.tangent, new.orbit, problem.scale)
-    angle = _angle(cosine, control.turn)
+    metric = base.orbit, base.problem.scale, size_of(base.orbit)
+    onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
+    angle = _angle(base.tangent.dot(onward, *metric), control.turn)
     yield Strain(angle, angle, "the branch turns too sharply for the step")
-    noise = control.noise * tolerance * base.orbit.span()
-    bend = float(np.sqrt(max(_bend(base, new, ds) - noise, 0.0) / (control.bend * ds)))
+    noise = control.noise * tolerance * base.orbit.span() / size_of(base.orbit)
+    bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
     yield Strain(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
         turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
@@ -56,10 +56,10 @@ def _angle(cosine: float, least: float) -> float:
     return float(np.arccos(np.clip(cosine, -1, 1)) / np.arccos(least))
 
 
-def _bend(base: Solution, new: Solution, ds: float) -> float:
-    """How far the step's end lies from where the mean of the two tangents leads."""
+def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
+    """How far the step's end lies from where the mean of the tangents at its ends leads."""
     problem = base.problem
-    mean = (base.tangent + new.tangent).scaled(-ds / 2)
+    mean = (base.tangent + onward).scaled(-ds / 2)
     way = difference(problem, base.orbit, new.orbit)
     bend = Increment.of(
         base.orbit,
@@ -69,4 +69,4 @@ def _bend(base: Solution, new: Solution, ds: float) -> float:
         way.phases + mean.phases,
         way.parameters + mean.parameters,
     )
-    return float(np.sqrt(bend.dot(bend, base.orbit, problem.scale)))
+    return float(np.sqrt(bend.dot(bend, base.orbit, problem.scale, size_of(base.orbit))))
