@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.bifurcations.doubling import known, nearest, passing
+from periodic.bifurcations.doubling import dips, known, nearest, passing
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import noise
@@ -41,7 +41,7 @@ BRANCHING = TestFunction(
     value=branching,
     genuine=known,
     twice=branches_twice,
-    dips=lambda base, new: passages(base.spectrum, new.spectrum, 1),
+    dips=lambda base, new: dips(base, new, 1),
     local=lambda solution: nearest(solution.spectrum.nontrivial, 1),
     touches=touches,
 )

@@ -28,6 +28,12 @@ def nearest(found: Complex, at: int) -> float:
     return float(np.sign(passing(found, at)) * np.prod(np.sort(factors)[:2]))
 
 
+def dips(base: Solution, new: Solution, at: int) -> list[tuple[float, float]]:
+    """Where pairs turn past `at` between two orbits, and what `nearest` is there if they stay pairs."""
+    found = passages(base.spectrum, new.spectrum, at)
+    return [(place, ((1 - modulus) / (1 + modulus)) ** 2) for place, modulus in found]
+
+
 def doubling(solution: Solution) -> float:
     """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
     spectrum = solution.spectrum
@@ -60,6 +66,6 @@ DOUBLING = TestFunction(
     value=doubling,
     genuine=known,
     twice=doubles_twice,
-    dips=lambda base, new: passages(base.spectrum, new.spectrum, -1),
+    dips=lambda base, new: dips(base, new, -1),
     local=lambda solution: nearest(solution.spectrum.nontrivial, -1),
 )

@@ -126,8 +126,8 @@ def _between(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> 
 
     ends = {0.0: value(0.0), ds: value(ds)}
     touching = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
-    places = test.dips(stretch.base, new) or [touching]
-    found = (second_change(value, ends, place * ds) for place in places)
+    dips = test.dips(stretch.base, new) or [(touching, np.nan)]
+    found = (second_change(value, ends, place * ds, expected) for place, expected in dips)
     return next((place for place in found if place is not None), None)
 
 

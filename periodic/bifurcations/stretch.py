@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy
 
 from periodic.bifurcations.testfunction import LEFT
 from periodic.correction.outcome import Outcome
 from periodic.correction.predictor import cubic, tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.linear.root import root
 from periodic.orbit.orbit import Orbit
 
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
@@ -99,8 +99,8 @@ class Stretch:
             nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
             return nearest, self.at(nearest)
         try:
-            root = scipy.optimize.brentq(value, *ends, xtol=precision, rtol=1e-12)
-            return root, self.at(root)
+            place = root(value, *ends, precision)
+            return place, self.at(place)
         except _NoOrbitError as failed:
             if not aside:
                 raise
@@ -127,18 +127,22 @@ DISTINCT = 0.1
 """A place to look at lies at least so far on the way from the least value to the next place known."""
 
 
-def second_change(value: Callable[[float], float], known: dict[float, float], place: float) -> float | None:
+def second_change(
+    value: Callable[[float], float], known: dict[float, float], place: float, expected: float = np.nan
+) -> float | None:
     """Return a distance within a step at which a function, positive where it is known, is negative, if any.
 
-    It is first looked for at `place`; then parabolas lead to the minimum until one has predicted it.
+    It is first looked for at `place`, where it is expected to be so large unless it changes sign about there;
+    then parabolas lead to the minimum until one has predicted it.
     """
-    known, expected = dict(known), np.nan
+    known = dict(known)
     for _ in range(TRIALS):
         least = min(known.values())
         known[place] = found = value(place)
         if found < 0:
             return float(place)
-        if abs(found - expected) < CONFIRMED * found and found > LEFT * least:
+        foreseen = abs(found - expected) < CONFIRMED * found
+        if foreseen and (len(known) == 3 or found > LEFT * least):
             return None
         place, expected = _lowest(known)
     return None

@@ -37,7 +37,8 @@ class TestFunction:
     twice : callable
         Whether the function may change sign twice between two solutions at which it has the same.
     dips : callable
-        Where it may do so, as parts of the step; by default where a parabola would touch 0.
+        Where it may do so, as parts of the step, and what it is there if it does not; by default where a
+        parabola would touch 0.
     local : callable, optional
         A function of the same sign that is to be followed there, smooth about a change of sign.
     touches : callable
@@ -51,7 +52,7 @@ class TestFunction:
     precision: float = PRECISION
     genuine: Callable[[Solution], bool] = lambda solution: True
     twice: Callable[[Solution, Solution], bool] = lambda base, new: False
-    dips: Callable[[Solution, Solution], list[float]] = lambda base, new: []
+    dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
     local: Callable[[Solution], float] | None = None
     touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
     name: str = ""

@@ -1,6 +1,7 @@
-"""Condensation in C (`elimination.c`), for small systems that can compile it: see `Compiling`.
+"""Condensation in C (`elimination.c`), for systems that can compile it: see `Compiling`.
 
-NumPy's calls cost more than the work that they do where matrices are small; large ones are BLAS's.
+NumPy's calls cost more than the work that they do where matrices are small, and C leaves zeros out; large
+full ones are BLAS's.
 """
 
 from __future__ import annotations
@@ -12,13 +13,18 @@ from importlib import resources
 
 import numpy as np
 
-from periodic.linear.kinematic import LARGE
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, compiling
 
 NOT_FINITE, SINGULAR = 1, 2
 """What `condense` answers where it fails."""
+
+LARGE = 32
+"""Number of states from which full matrices are BLAS's,"""
+
+FULL = 0.25
+"""... full where more than this part of their elements is not 0."""
 
 _Address = ctypes.c_char * 0
 
@@ -91,13 +97,18 @@ class Routines:
         return stages, algebraic
 
 
-def routines(system: System) -> Routines | None:
-    """Return what a system has compiled, or None where NumPy is to do."""
+def routines(system: System, line: LinearisationLike) -> Routines | None:
+    """Return what a system has compiled, or None where NumPy is to do for its linearised equations."""
     with_compiler = compiling(system)
-    if with_compiler is None or len(system.states) >= LARGE:
+    if with_compiler is None or (len(system.states) >= LARGE and _full(line)):
         return None
     library = with_compiler.library(_source())
     return None if library is None else _routines(library)
+
+
+def _full(line: LinearisationLike) -> bool:
+    """Whether the derivatives in the states at the first point are mostly other than 0."""
+    return bool(np.count_nonzero(line.d_state[:1]) > FULL * line.d_state[:1].size)
 
 
 @cache

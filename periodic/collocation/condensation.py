@@ -89,7 +89,7 @@ def condense(system: System, orbit: Orbit, line: LinearisationLike, jumps: Seque
 
 
 def _condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condensed:
-    compiled = routines(system)
+    compiled = routines(system, line)
     if compiled is not None:
         return Condensed(orbit, *compiled.condense(orbit, line), compiled)
     rows = rows_of(orbit, line)

@@ -41,9 +41,12 @@ static int solve(whole size, whole right, double *restrict both)
     }
     for (whole k = size - 1; k >= 0; k--) {
         double *restrict row = both + k * width;
-        for (whole i = k + 1; i < size; i++)
-            for (whole j = size; j < width; j++)
-                row[j] -= row[i] * both[i * width + j];
+        for (whole i = k + 1; i < size; i++) {
+            const double factor = row[i], *other = both + i * width;
+            if (factor != 0)
+                for (whole j = size; j < width; j++)
+                    row[j] -= factor * other[j];
+        }
         const double inverse = 1 / row[k];
         for (whole j = size; j < width; j++)
             row[j] *= inverse;
@@ -158,22 +161,23 @@ static int solve_stages(whole ncol, whole n, whole w, double h, const double *co
             }
         }
 
+    /* The stages of a state side by side: what is coupled to its neighbours alone stays banded. */
     double *row = both;
-    for (whole l = 0; l < ncol; l++) {
-        const double *weights = stage_rates + l * (ncol + 1);
-        for (whole r = 0; r < n; r++) {
-            if (position[r] >= 0)
-                continue;
+    for (whole r = 0; r < n; r++) {
+        if (position[r] >= 0)
+            continue;
+        for (whole l = 0; l < ncol; l++) {
+            const double *weights = stage_rates + l * (ncol + 1);
             const double *c = columns + (l * n + r) * w1;
             double *right = row + size;
             memset(row, 0, size * sizeof(double));
             for (whole i = 0; i < ncol; i++)
                 for (whole s = 0; s < n; s++)
                     if (place[s] >= 0)
-                        row[i * kept + place[s]] = c[1 + s] * (weights[1 + i] * inverse);
+                        row[place[s] * ncol + i] = c[1 + s] * (weights[1 + i] * inverse);
             for (whole s = 0; s < n; s++)
                 if (place[s] >= 0)
-                    row[l * kept + place[s]] += c[1 + n + s];
+                    row[place[s] * ncol + l] += c[1 + n + s];
             right[0] = -c[0];
             for (whole s = 0; s < n; s++)
                 right[1 + s] = -c[1 + s] * (weights[0] * inverse);
@@ -187,7 +191,7 @@ static int solve_stages(whole ncol, whole n, whole w, double h, const double *co
                 for (whole j = 0; j < w; j++)
                     right[j] -= factor * x[j];
                 for (whole i = 0; i < ncol; i++)
-                    row[i * kept + place[velocity[k]]] -=
+                    row[place[velocity[k]] * ncol + i] -=
                         factor * integral[l * ncol + i] * ratio[k * ncol + i];
             }
             row += width;
@@ -198,7 +202,7 @@ static int solve_stages(whole ncol, whole n, whole w, double h, const double *co
     for (whole l = 0; l < ncol; l++)
         for (whole s = 0; s < n; s++)
             if (place[s] >= 0)
-                memcpy(stages + (l * n + s) * w, both + (l * kept + place[s]) * width + size,
+                memcpy(stages + (l * n + s) * w, both + (place[s] * ncol + l) * width + size,
                        w * sizeof(double));
     for (whole r = 0; r < n; r++)
         for (whole k = 0; position[r] >= 0 && k < ncol; k++) {

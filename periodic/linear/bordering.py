@@ -132,9 +132,9 @@ class Chain:
 
 def chain(condensed: Condensed) -> Array:
     """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
-    if condensed.compiled is not None:
-        return condensed.compiled.chain(condensed.step)
     count, n, width = condensed.step.shape
+    if condensed.compiled is not None and n <= SMALL:
+        return condensed.compiled.chain(condensed.step)
     first = np.zeros((1, n, width))
     first[0, :, 1 : 1 + n] = np.eye(n)
     if n <= SMALL and np.array_equal(condensed.origin, np.arange(count)):

@@ -160,7 +160,7 @@ def parameter_only(orbit: Orbit, rate: float) -> Increment:
 
 
 def size_of(orbit: Orbit) -> float:
-    """The unit of arclength in the states: the amplitude of a large motion, so that it takes no more steps."""
+    """The unit of arclength in the states: the amplitude of a motion, where that is more than 1."""
     return max(1.0, orbit.span() / 2)
 
 

@@ -48,11 +48,6 @@ class Pair:
     turned: float
     left: Complex | None = None
 
-    @property
-    def conjugate(self) -> Pair:
-        """The other member of the pair."""
-        return replace(self, argument=-self.argument, turned=-self.turned)
-
     def turn(self, other: Pair) -> float:
         """Return by how much the multiplier turns to that of another orbit, whole turns included."""
         least = other.argument - self.argument
@@ -61,8 +56,16 @@ class Pair:
 
     def nearest(self, others: Sequence[Pair]) -> Pair:
         """Return the member of another orbit's pairs to which this one leads."""
-        members = [member for other in others for member in (other, other.conjugate)]
-        return min(members, key=lambda other: abs(self.turn(other)) + abs(other.turned - self.turned))
+        angles = np.array([(other.argument, other.turned) for other in others])
+        argument, turned = np.concatenate([angles, -angles]).T
+        least, along = argument - self.argument, turned - self.turned
+        turn = least + 2 * np.pi * np.round((along - least) / (2 * np.pi))
+        chosen = int((np.abs(turn) + np.abs(along)).argmin())
+        found = others[chosen % len(others)]
+        if chosen < len(others):
+            return found
+        left = None if found.left is None else found.left.conj()
+        return replace(found, argument=-found.argument, turned=-found.turned, left=left)
 
 
 @dataclass(frozen=True, eq=False)

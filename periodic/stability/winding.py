@@ -109,14 +109,15 @@ def _unseen(begin: complex, way: complex) -> float:
     return float(np.abs(value - cubic).max())
 
 
-def passages(before: Spectrum, after: Spectrum, sign: int) -> list[float]:
-    """Return where, as parts of the way, pairs turn past `sign` (+1 or -1) between two orbits."""
+def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
+    """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli."""
     offset, found = 0.0 if sign > 0 else np.pi, []
     for a, b in _matched(before, after):
         turn = a.turn(b)
         low, high = sorted((a.argument, a.argument + turn))
         past = np.arange(np.floor((low - offset) / (2 * np.pi)), np.floor((high - offset) / (2 * np.pi))) + 1
-        found += [float(place) for place in (offset + 2 * np.pi * past - a.argument) / turn]
+        places = (offset + 2 * np.pi * past - a.argument) / turn
+        found += [(float(p), float(a.modulus ** (1 - p) * b.modulus**p)) for p in places]
     return found
 
 

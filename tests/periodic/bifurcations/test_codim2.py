@@ -98,6 +98,7 @@ def test_cut_of_an_angle_is_no_event() -> None:
         duffing_system(*DUFFING_A),
         "Omega",
         (0.3, 3.0),
+        control=per.ArclengthControl(ds_max=0.05),
         watch=per.Watch(columns={"lag": lag}, events={"lag": per.Level(lag, 0.5)}),
     )
     lags = branch.column("lag")

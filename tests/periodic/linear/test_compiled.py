@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,13 +15,13 @@ from support.numpy_systems import LinearOscillator, Lines
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation.compiled import LARGE as FULL
 from periodic.collocation.compiled import routines
 from periodic.collocation.condensation import Condensed
 from periodic.collocation.condensation import condensed as condense
 from periodic.correction.newton import correct
 from periodic.correction.outcome import Outcome
 from periodic.linear.bordering import chain
-from periodic.linear.kinematic import LARGE
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
@@ -237,12 +238,19 @@ def test_branch_is_the_same() -> None:
 
 
 def test_who_runs_in_numpy() -> None:
-    """Assert that systems without a compiler, with one that is not to be used, or large ones, do."""
-    assert routines(LinearOscillator()) is None
-    assert routines(Rows(2, 0, compiled=False)) is None
-    assert routines(Rows(LARGE, 0)) is None
-    assert routines(Rows(LARGE - 1, 0)) is not None
-    assert routines(both("duffing")[0]) is None and routines(both("duffing")[1]) is not None
+    """Assert that systems without a compiler, with one that is not to be used, or large full ones, do."""
+
+    def chosen(system: Any, full: bool = True) -> bool:
+        n = len(system.states)
+        slopes = np.ones((3, n, n)) if full else np.broadcast_to(np.eye(n), (3, n, n))
+        none = np.zeros((3, n, 0))
+        return routines(system, Lines(slopes[:, 0], slopes, slopes, none, slopes[:, 0], none)) is not None
+
+    assert not chosen(LinearOscillator())
+    assert not chosen(Rows(2, 0, compiled=False))
+    assert not chosen(Rows(FULL, 0))
+    assert chosen(Rows(FULL - 1, 0)) and chosen(Rows(FULL, 0), full=False)
+    assert not chosen(both("duffing")[0]) and chosen(both("duffing")[1])
 
 
 def test_disc_with_events() -> None:
