@@ -32,7 +32,7 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
     laid = plan.arranged(found)
     outcomes = [found.get(cell, NONE) for cell in laid.cells]
     over, shape = tuple(laid.dimensions), tuple(laid.dimensions.values())
-    units, data = _units(task), {}
+    units, data = task.units, {}
     for name in dict.fromkeys(name for outcome in outcomes for name in outcome.numbers):
         further, values = _column(_owner(task, name), [outcome.numbers.get(name) for outcome in outcomes])
         values = values.reshape(*shape, *values.shape[1:])
@@ -74,15 +74,6 @@ def _column(name: str, given: Sequence[Any]) -> tuple[tuple[str, ...], np.ndarra
         if value is not None:
             row[: len(some)] = some
     return (f"{name} number",), values
-
-
-def _units(task: Task) -> dict[str, str]:
-    """Units of the numbers that say theirs, by name."""
-    found: dict[str, str] = {}
-    for name, number in task.numbers.items():
-        units = getattr(number, "units", None)
-        found |= {f"{name} {key}".strip(): unit for key, unit in (units(task) if units else {}).items()}
-    return found
 
 
 def _status(outcome: Outcome) -> str:

@@ -156,6 +156,8 @@ def check_names(what: str, names: Sequence[str], task: Task) -> None:
 
 
 def _values(name: str, given: Any) -> tuple[float, ...]:
+    if hasattr(given, "__array__"):
+        given = np.asarray(given).tolist()
     if isinstance(given, str | bytes | Mapping) or not np.iterable(given):
         raise ValueError(f"grid has {given!r} for {name}; it must be a sequence of numbers")
     values = tuple(number(f"value of {name}", value) for value in given)

@@ -158,6 +158,10 @@ def map(  # noqa: A001
     plan = grid if isinstance(grid, Grid | Adaptive) else Grid(grid)
     plan.check(task)
     check_numbers(task, plan.names)
+    if not isinstance(resume, bool):
+        raise ValueError(f"resume is {resume!r}; it must be True or False")
+    if progress is not None and not callable(progress):
+        raise ValueError(f"progress is {progress!r}; it must be a function of a Progress, as print is")
     size, where = whole("chunk", chunk), workers(executor)
     made = {**task.described(), "grid": plan.described()}
     keeping = nullcontext() if store is None else Store(_path(store), made, resume)
@@ -184,6 +188,6 @@ def _through(run: Run, execution: Execution) -> xr.Dataset:
 
 def _path(store: object) -> Path:
     """The file of a store. Raises ValueError for what is no name."""
-    if not (isinstance(store, str | os.PathLike) and str(store)):
+    if not (isinstance(store, str | os.PathLike) and Path(store).name and "\0" not in str(store)):
         raise ValueError(f"store is {store!r}; it must be the name of a file, or None")
     return Path(store)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from periodic.maps.cell import Cell, Outcome
 from periodic.results.described import differences
 from periodic.results.files import digest, replacing
-from periodic.results.journal import JournalError, locked
+from periodic.results.journal import MAGIC, JournalError, locked
 from periodic.results.netcdf import packed, sound
 
 if TYPE_CHECKING:
@@ -74,6 +74,8 @@ class Store:
             self._begun(resume)
         except BaseException:
             self._base.close()
+            if self._journal.stat().st_size == 0:
+                self._journal.unlink()
             raise
 
     def __enter__(self) -> Store:
@@ -89,8 +91,10 @@ class Store:
             if path.exists() and not path.is_file():
                 raise MapFileError(f"store is {str(self.path)!r}, which is no ordinary file; choose another")
         try:
-            with self._journal.open("ab"):
-                pass  # SQLite does not say why a file cannot be made
+            with self._journal.open("a+b") as file:  # SQLite does not say why a file cannot be made
+                file.seek(0)
+                if file.read(len(MAGIC)) not in (b"", MAGIC):
+                    raise MapFileError(_foreign(self._journal))
             return locked(self._journal)
         except JournalError:
             raise MapFileError(f"store is {str(self.path)!r}; another map is writing to it") from None
@@ -232,4 +236,4 @@ def loaded(path: Path) -> xr.Dataset:
 
 
 def _foreign(path: Path) -> str:
-    return f"store is {str(path)!r}; it is another file or damaged, and is not written over"
+    return f"store has {str(path)!r}, which is another file or damaged; it is not written over"

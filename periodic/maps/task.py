@@ -114,17 +114,41 @@ class Task:
     watch: Watch | None = None
 
     def __post_init__(self) -> None:
+        self._check_numbers()
+        if self.watch is not None and (self.watch.journal or self.watch.progress):
+            raise ValueError("watch has a journal or progress, which a map has itself; it must have neither")
+        self.ready()
+        columns = [f"{name} {key}".strip() for name in self.numbers for key in self._keys(name) or ("",)]
+        if twice := [column for column in columns if columns.count(column) > 1]:
+            raise ValueError(f"numbers gives {twice[0]!r} twice; it must be the name of one")
+
+    def _check_numbers(self) -> None:
+        """Raise ValueError for what are no numbers of a branch by their names."""
         named("numbers", self.numbers, "functions of a branch")
         if not self.numbers:
             raise ValueError("numbers is empty; it must name what is read off each branch")
         for name, number in self.numbers.items():
             if isinstance(number, type) or not callable(number):
                 raise ValueError(f"number {name} is {number!r}; it must be a function of (task, branch)")
-        if self.watch is not None and (self.watch.journal or self.watch.progress):
-            raise ValueError(
-                "watch has a journal or progress of one branch; a map has its own store and progress"
-            )
-        self.ready()
+            if hasattr(number, "linearise"):
+                raise ValueError(
+                    f"number {name} is {number!r}, of an orbit; it must be of a branch, as Highest is"
+                )
+            if not name.strip() or "/" in name:
+                raise ValueError(f"numbers has {name!r}; names must not be empty and have no /")
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Units of the numbers that say theirs, by the names that they have in the result."""
+        return {
+            f"{name} {key}".strip(): unit for name in self.numbers for key, unit in self._keys(name).items()
+        }
+
+    def _keys(self, name: str) -> Mapping[str, str]:
+        """Units of a number by its own keys; none where it does not say them."""
+        said = getattr(self.numbers[name], "units", None)
+        units: Mapping[str, str] = said(self) if said else {}
+        return units
 
     @cached_property
     def problem(self) -> Problem:

@@ -50,7 +50,10 @@ class Places:
         return [read(task.system, point, self.functional) for point in points]
 
     def units(self, task: Task) -> dict[str, str]:
-        """Return the unit of the values."""
+        """Return the unit of the values. Raises ValueError for a label that branches do not have."""
+        events = task.watch.events if task.watch is not None else {}
+        if self.label not in (known := [*map(str, Label.known()), *events]):
+            raise ValueError(f"label is {self.label!r}; it must be one of {', '.join(known)}")
         given = self.functional
         return {"": parameter_unit(task) if given is None else unit_of(task.system, given)}
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
-from periodic.conditions.functionals import Functional, Value
+from periodic.conditions.functionals import Functional, Value, output_index
 from periodic.maps.task import Task
 from periodic.results.branch import Branch
 from periodic.results.point import Point
-from periodic.system import System
+from periodic.system import System, index_of
 
 
 def check_functional(functional: Any) -> None:
@@ -30,11 +30,11 @@ def read(system: System, point: Point, functional: Functional) -> float:
 
 
 def unit_of(system: System, functional: Functional) -> str:
-    """Return the SI unit of a functional where it is known, else an empty text."""
+    """Return the SI unit of a functional, else an empty text. Raises ValueError for no output."""
     if isinstance(functional, Maximum | Minimum | PeakToPeak):
-        return next((o.unit for o in system.outputs if o.name == functional.output), "")
+        return system.outputs[output_index(system, functional.output)].unit
     if isinstance(functional, Value):
-        return next((p.unit for p in system.parameters if p.name == functional.parameter), "")
+        return system.parameters[index_of(system, functional.parameter)].unit
     return ""
 
 

@@ -51,4 +51,4 @@ class Sheets:
 
     def units(self, task: Task) -> dict[str, str]:
         """Return the unit of the values."""
-        return {"": unit_of(task.system, self.functional)}
+        return {"": unit_of(task.system, self.functional), "stable": ""}

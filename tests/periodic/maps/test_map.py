@@ -178,6 +178,10 @@ def test_grids_that_are_none(grid: Any, said: str) -> None:
         ({"chunk": 0}, "chunk is 0; it must be a whole number"),
         ({"store": 3}, "store is 3; it must be the name of a file, or None"),
         ({"store": ""}, "store is ''; it must be the name of a file, or None"),
+        ({"store": "/"}, "store is '/'; it must be the name of a file, or None"),
+        ({"store": "a\0b"}, "store is 'a.*b'; it must be the name of a file, or None"),
+        ({"resume": "no"}, "resume is 'no'; it must be True or False"),
+        ({"progress": 3}, "progress is 3; it must be a function of a Progress"),
     ],
 )
 def test_arguments_that_are_none(arguments: Any, said: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import cache
 from typing import Any
 
@@ -106,7 +107,13 @@ def test_units() -> None:
     task = per.Task(duffing(), "Omega", (0.3, 3.0), numbers={"peak": per.Highest(SWING)})
     assert per.Highest(SWING).units(task) == {"": "m", "at": "rad/s"}
     assert per.Places("LP").units(task) == {"": "rad/s"}
-    assert per.Places("LP", SWING).units(task) == per.Sheets(SWING, 1.0).units(task) == {"": "m"}
+    assert per.Places("LP", SWING).units(task) == {"": "m"}
+    assert per.Sheets(SWING, 1.0).units(task) == {"": "m", "stable": ""}
+
+
+def asked(numbers: Any) -> per.Task:
+    """A task that reads some numbers."""
+    return per.Task(linear(), "Omega", (1, 2), numbers=numbers)
 
 
 @pytest.mark.parametrize(
@@ -126,12 +133,29 @@ def test_units() -> None:
             "at is 9.0; it must lie within the bounds",
         ),
         (
-            lambda: per.Task(linear(), "Omega", (1, 2), numbers={"p": SWING}, watch=per.Watch(journal="j")),
+            lambda: per.Task(
+                linear(), "Omega", (1, 2), numbers={"p": per.Highest(SWING)}, watch=per.Watch(journal="j")
+            ),
             "watch has a journal or progress",
+        ),
+        (
+            lambda: asked({"p": SWING}),
+            "number p is PeakToPeak(output='x'), of an orbit; it must be of a branch",
+        ),
+        (lambda: asked({"p": per.Highest(per.PeakToPeak("y"))}), "output is 'y'; it must be one of x"),
+        (lambda: asked({"p": per.Places("XX")}), "label is 'XX'; it must be one of EP, LP"),
+        (
+            lambda: asked({"x/y": per.Places("LP")}),
+            "numbers has 'x/y'; names must not be empty and have no /",
+        ),
+        (lambda: asked({" ": per.Places("LP")}), "numbers has ' '; names must not"),
+        (
+            lambda: asked({"p": per.Highest(SWING), "p at": per.Places("LP")}),
+            "numbers gives 'p at' twice; it must be the name of one",
         ),
     ],
 )
 def test_refusals(make: Any, said: str) -> None:
     """Assert the sentence for what cannot be read, before anything is traced."""
-    with pytest.raises(ValueError, match="^" + said.replace("(", r"\(")):
+    with pytest.raises(ValueError, match="^" + re.escape(said)):
         make()

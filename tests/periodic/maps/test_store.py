@@ -146,9 +146,7 @@ def test_foreign_files_are_left_alone(tmp_path: Path) -> None:
     for name in ("text.nc", "other.nc", "damaged.nc"):
         before = (tmp_path / name).read_bytes()
         for resume in (True, False):
-            with pytest.raises(
-                per.MapFileError, match="it is another file or damaged, and is not written over"
-            ):
+            with pytest.raises(per.MapFileError, match="which is another file or damaged; it is not"):
                 per.map(task(), {"F": [1.0]}, 1, store=tmp_path / name, resume=resume)
         assert (tmp_path / name).read_bytes() == before
 
