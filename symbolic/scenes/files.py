@@ -53,29 +53,30 @@ def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
     Raises InputError, in one sentence, for anything that is not as `symbolic.scenes.schema` allows.
     """
     tables = _parsed(source, _text(source))
-    schema = schema_of(tables)
+    schema, folder = schema_of(tables), Path() if source in scene_names() else Path(source).parent
     for key, value in overrides:
-        set_value(tables, _address(schema, key, tables), value)
+        set_value(tables, _address(schema, key, tables, folder), value)
         schema = schema_of(tables)
-    return _validated(schema, tables)
+    return _validated(schema, tables, folder)
 
 
-def _address(schema: type[Scene], key: str, tables: dict[str, Any]) -> Steps:
+def _address(schema: type[Scene], key: str, tables: dict[str, Any], folder: Path) -> Steps:
     """Where a key stands; a parameter of a model by its name goes to its [values]."""
     if not issubclass(schema, ModelScene):
         return address({k: list(k.split(".")) for k in keys_of(schema)}, key, tables)
     keys = model_keys(tables)
     if key not in keys:
-        scene = _validated(schema, tables)
+        scene = _validated(schema, tables, folder)
         assert isinstance(scene, ModelScene)
         if key in [p.name for p in scene.compiled.parameters]:
             return ["values", key]
     return address(keys, key, tables)
 
 
-def _validated(schema: type[Scene], tables: Mapping[str, Any]) -> Scene:
+def _validated(schema: type[Scene], tables: Mapping[str, Any], folder: Path) -> Scene:
+    """The scene of tables; the files that it names lie in a folder. Raises InputError."""
     try:
-        return schema.model_validate(tables)
+        return schema.model_validate(tables, context={"folder": folder})
     except ValidationError as error:
         raise complaint(schema, error) from None
 

@@ -227,7 +227,12 @@ class OscillatorScene(Table):
 
 Scene = DiscScene | OscillatorScene | ModelScene
 
-KINDS: dict[str, type[Scene]] = {"disc": HertzDiscScene, "oscillator": OscillatorScene, "model": ModelScene}
+KINDS: dict[str, type[Scene]] = {
+    "disc": HertzDiscScene,
+    "oscillator": OscillatorScene,
+    "model": ModelScene,
+    "structure": ModelScene,
+}
 
 
 def schema_of(tables: Mapping[str, Any]) -> type[Scene]:

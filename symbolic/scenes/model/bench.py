@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import TypeVar
 
 from symbolic.equations.variables import Coordinate, Parameter
+from symbolic.parts.structure import Structure
 from symbolic.scenes.errors import InputError, listed, shown
 
 T = TypeVar("T")
@@ -18,14 +19,18 @@ MOST = 12
 
 @dataclass(frozen=True)
 class Bench:
-    """Coordinates and parameters by name, and what has been made of equal inline tables."""
+    """Coordinates, structures and parameters by name, and what has been made of equal inline tables."""
 
     coordinates: dict[str, Coordinate] = field(default_factory=dict)
+    structures: dict[str, Structure] = field(default_factory=dict)
     parameters: dict[str, Parameter] = field(default_factory=dict)
     places: dict[str, object] = field(default_factory=dict)
 
     def coordinate(self, where: str, name: str) -> Coordinate:
-        """Return a coordinate by name. Raises InputError."""
+        """Return a coordinate by name, or that of a structure by "STRUCTURE.PLACE". Raises InputError."""
+        owner, dot, place = name.partition(".")
+        if dot and owner in self.structures and name not in self.coordinates:
+            return _freedom(self.structures[owner], where, owner, place)
         return _known(self.coordinates, where, name, "the name of a [[coordinate]]")
 
     def parameter(self, where: str, name: str) -> Parameter:
@@ -38,6 +43,16 @@ class Bench:
         if key not in self.places:
             self.places[key] = make()
         return self.places[key]
+
+
+def _freedom(structure: Structure, where: str, owner: str, place: str) -> Coordinate:
+    """The coordinate of a place with one degree of freedom. Raises InputError."""
+    if place not in structure.at:
+        raise unknown(where, place, list(structure.at), f"a place of the structure {owner}")
+    found = structure[place]
+    if not isinstance(found, Coordinate):
+        raise InputError(where, f"is {shown(place)}, of several coordinates", "it must be a place of one")
+    return found
 
 
 def nearest(name: str, names: list[str]) -> str:

@@ -11,7 +11,7 @@ import importlib
 import inspect
 import pkgutil
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
 from importlib.metadata import entry_points
@@ -53,9 +53,9 @@ class Key:
 
 @dataclass(frozen=True)
 class Entry:
-    """A class that a table can stand for."""
+    """A class that a table can stand for, or a function by whose arguments an object is built."""
 
-    owner: type
+    owner: Callable[..., Any]
     text: Described
     keys: tuple[Key, ...]
 
@@ -175,48 +175,56 @@ def register_module(name: str) -> None:
 
 @cache
 def catalogue() -> dict[str, Entry]:
-    """Return all parts that text can give, by name in alphabetical order."""
+    """Return all parts that text can give, by name in alphabetical order. Raises InputError."""
     for point in entry_points(group=ENTRY_POINT):
-        for part in _parts_in(point.load()):
+        try:
+            given = list(_parts_in(point.load()))
+        except Exception as error:  # whatever another package raises
+            what = f"{point.name} cannot be loaded ({type(error).__name__}: {error})"
+            raise InputError("entry point", what, "its package must be mended or removed") from error
+        for part in given:
             _registered.setdefault(part.__name__, part)
     found = {**_built_in(), **_registered}
     entries = {name: entry for name in sorted(found) if (entry := entry_of(found[name])) is not None}
     return dict(entries)
 
 
-def entry_of(owner: type) -> Entry | None:
-    """Return the keys of a class, None where text cannot give what it must be given."""
+def entry_of(owner: Callable[..., Any]) -> Entry | None:
+    """Return the keys of a class or function, None where text cannot give what it must be given."""
     return _entry(owner, ())
 
 
-def _entry(owner: type, within: tuple[type, ...]) -> Entry | None:
+def _entry(owner: Callable[..., Any], within: tuple[Any, ...]) -> Entry | None:
     """The same for a class inside others, none of which it may hold."""
     text, hints = described(owner), typing.get_type_hints(owner)
     keys = []
-    for field in fields(owner):
-        default = field.default if field.default_factory is MISSING else field.default_factory()
-        if not field.init:
-            continue
+    for name, default in _arguments(owner):
         try:
-            keys.append(
-                Key(
-                    field.name,
-                    text.parameters.get(field.name, ""),
-                    default,
-                    _reader(hints[field.name], (*within, owner)),
-                )
-            )
+            reader = _reader(hints[name], (*within, owner))
+            keys.append(Key(name, text.parameters.get(name, ""), default, reader))
         except UnreadableError:
             if default is MISSING:
                 return None
     return Entry(owner, text, tuple(keys))
 
 
-def _reader(annotation: Any, within: tuple[type, ...]) -> Reader:
+def _arguments(owner: Callable[..., Any]) -> Iterator[tuple[str, Any]]:
+    """The arguments of a dataclass or function with their defaults, MISSING where there is none."""
+    if not dataclasses.is_dataclass(owner):
+        for name, parameter in inspect.signature(owner).parameters.items():
+            yield name, MISSING if parameter.default is parameter.empty else parameter.default
+        return
+    for field in fields(owner):
+        if field.init:
+            made = field.default_factory
+            yield field.name, field.default if made is MISSING else made()
+
+
+def _reader(annotation: Any, within: tuple[Any, ...]) -> Reader:
     return reader_of(annotation, lambda kind: _inline(kind, within))
 
 
-def _inline(kind: type, within: tuple[type, ...]) -> Reader | None:
+def _inline(kind: type, within: tuple[Any, ...]) -> Reader | None:
     """The tables for a class, or for all classes that follow a protocol."""
     if getattr(kind, "_is_protocol", False):
         wanted = {name for name, value in vars(kind).items() if inspect.isfunction(value) and name[0] != "_"}

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from symbolic.equations.model import Model, Part, combine
 from symbolic.equations.variables import Coordinate, Parameter
+from symbolic.parts.structure import Structure
 from symbolic.scenes.errors import InputError, refused, shown
 from symbolic.scenes.model.bench import Bench, unknown
 from symbolic.scenes.model.catalogue import KIND, Entry, catalogue
@@ -17,14 +18,20 @@ NAME = "name"
 
 
 def composed(
-    coordinates: list[Coordinate], parameters: list[Parameter], parts: list[dict[str, Any]]
+    coordinates: Sequence[Coordinate],
+    parameters: Sequence[Parameter],
+    parts: Sequence[dict[str, Any]],
+    structures: Sequence[Structure] = (),
 ) -> Model:
-    """Return the model of tables [[part]]. Raises InputError."""
-    bench = Bench({q.name: q for q in coordinates}, {p.name: p for p in parameters})
+    """Return the model of tables [[part]], with structures. Raises InputError."""
+    bench = Bench(
+        {q.name: q for q in coordinates}, {s.name: s for s in structures}, {p.name: p for p in parameters}
+    )
     if len(bench.coordinates) < len(coordinates):
         names = [q.name for q in coordinates]
         raise refused("[[coordinate]] name", next(n for n in names if names.count(n) > 1), "one of its own")
-    return combine(part for k, table in enumerate(parts) for part in _parts(bench, k, table))
+    laid = [part for k, table in enumerate(parts) for part in _parts(bench, k, table)]
+    return combine([*structures, *laid])
 
 
 def entry_for(k: int, table: Mapping[str, Any]) -> Entry:

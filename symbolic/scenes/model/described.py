@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 HEADING = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
@@ -20,8 +21,8 @@ class Described:
     references: str
 
 
-def described(owner: type) -> Described:
-    """Return what the docstring of a class says."""
+def described(owner: Callable[..., object]) -> Described:
+    """Return what the docstring of a class or function says."""
     text = inspect.cleandoc(owner.__doc__ or "")
     sections = HEADING.split(text)
     summary, _, more = sections[0].strip().partition("\n\n")

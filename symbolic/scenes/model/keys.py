@@ -8,6 +8,7 @@ from typing import Any
 from symbolic.scenes.changing import Steps
 from symbolic.scenes.model.catalogue import KIND
 from symbolic.scenes.model.composing import NAME, entry_for
+from symbolic.scenes.model.structures import StructureTable
 
 LATER = ("parameter", "from", "to", "axis")
 PLACE = ("unit", "scale", "start", "count")
@@ -28,6 +29,11 @@ def _keys(tables: Mapping[str, Any]) -> Iterator[tuple[str, Steps]]:
     for k, table in enumerate(_list(tables.get("coordinate"))):
         for key in PLACE:
             yield f"coordinate.{table.get(NAME)}.{key}", ["coordinate", k, key]
+    for k, table in enumerate(_list(tables.get("structure"))):
+        for key in StructureTable.model_fields:
+            yield f"structure.{table.get(NAME)}.{key}", ["structure", k, key]
+            for inner in _table(table.get(key)):
+                yield f"structure.{table.get(NAME)}.{key}.{inner}", ["structure", k, key, inner]
     parts = _list(tables.get("part"))
     labels = [str(table.get(NAME, table.get(KIND))) for table in parts]
     for k, table in enumerate(parts):

@@ -139,6 +139,29 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class OneOf:
+    """One of several texts."""
+
+    names: tuple[str, ...]
+
+    @property
+    def allowed(self) -> str:
+        """The texts."""
+        return listed([shown(name) for name in self.names])
+
+    @property
+    def example(self) -> str:
+        """The first."""
+        return self.names[0]
+
+    def read(self, bench: Bench, where: str, value: Any) -> str:
+        """Return the text."""
+        if not isinstance(value, str) or value not in self.names:
+            raise refused(where, value, self.allowed)
+        return value
+
+
+@dataclass(frozen=True)
 class Several:
     """A list, each item read in the same way."""
 
@@ -197,6 +220,8 @@ def reader_of(annotation: Any, inner: typing.Callable[[type], Reader | None]) ->
     origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
     if origin in (typing.Union, types.UnionType):
         return _union({a for a in arguments if a is not type(None)}, arguments, inner)
+    if origin is typing.Literal and all(isinstance(a, str) for a in arguments):
+        return OneOf(arguments)
     if origin in (tuple, list, collections.abc.Sequence):
         items = [a for a in arguments if a is not Ellipsis]
         fixed = origin is tuple and Ellipsis not in arguments

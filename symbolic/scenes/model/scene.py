@@ -1,11 +1,12 @@
-"""The scene of the kind "model": tables of coordinates, parts and shared parameters."""
+"""The scene of the kinds "model" and "structure": tables of coordinates, structures and parts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from symbolic.equations.model import Model
 from symbolic.equations.variables import Coordinate, Parameter, Variable, coordinates
@@ -13,6 +14,7 @@ from symbolic.kernels.choice import Kernels
 from symbolic.scenes.errors import InputError, shown
 from symbolic.scenes.model.bench import unknown
 from symbolic.scenes.model.composing import composed
+from symbolic.scenes.model.structures import StructureTable
 from symbolic.scenes.ranges import Range, one_point
 from symbolic.scenes.tables import Table, Title
 from symbolic.system.compile import compile
@@ -80,13 +82,15 @@ class ModelScene(Table):
     """A model composed of coordinates and parts; `values` replace parameters of the model by name."""
 
     title: Title
-    kind: Literal["model"]
+    kind: Literal["model", "structure"]
     parameters: dict[str, float | SharedTable] = Field({}, description="a table of numbers")
     coordinate: list[CoordinateTable] = Field([], description="tables [[coordinate]]")
+    structure: list[StructureTable] = Field([], description="tables [[structure]]")
     part: list[dict[str, Any]] = Field(min_length=1, description="tables [[part]]")
     values: dict[str, float] = Field({}, description="a table of numbers")
     trace: ModelRange
     _compiled: Compiled | None = PrivateAttr(None)
+    _folder: Path = PrivateAttr(Path())
 
     @property
     def compiled(self) -> Compiled:
@@ -103,7 +107,9 @@ class ModelScene(Table):
         """Return the model of the tables. Raises InputError."""
         try:
             places = [q for table in self.coordinate for q in table.coordinates]
-            return composed(places, [_parameter(*item) for item in self.parameters.items()], self.part)
+            shared = [_parameter(*item) for item in self.parameters.items()]
+            structures = [table.structure(self._folder) for table in self.structure]
+            return composed(places, shared, self.part, structures)
         except ValueError as error:
             raise InputError.said(str(error)) from None
 
@@ -111,7 +117,7 @@ class ModelScene(Table):
         """Return the compiled model, `values` put in. Raises InputError."""
         model = self.model()
         try:
-            system = compile(model, kernels)
+            system = compile(model, kernels, condense=False)
         except ValueError as error:
             raise InputError.said(str(error)) from None
         names = [p.name for p in system.parameters]
@@ -122,7 +128,10 @@ class ModelScene(Table):
         return replace(system, parameters=valued)
 
     @model_validator(mode="after")
-    def _sound(self) -> ModelScene:
+    def _sound(self, info: ValidationInfo) -> ModelScene:
+        self._folder = (info.context or {}).get("folder", Path())
+        if self.kind == "structure" and not self.structure:
+            raise InputError("structure", "is missing", "it must be tables [[structure]]")
         system = self.system(Kernels.NUMPY)
         self._compiled = Compiled(system.parameters, system.outputs)
         names = [p.name for p in system.parameters]

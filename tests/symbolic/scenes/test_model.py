@@ -300,3 +300,108 @@ def test_registered_part(tmp_path: Path) -> None:
     assert [key.name for key in catalogue()["Quintic"].keys] == [f.name for f in fields(Quintic)]
     with pytest.raises(ValueError, match="must be a class that inherits from symbolic.Part"):
         sym.register_part(int)  # type: ignore[arg-type]
+
+
+BEAM = """
+[[structure]]
+name = "beam"
+beam = {length = 0.3, bending = 1.4, mass_per_length = 0.16, elements = 2}
+damping = 0.02
+scale = 1e-3
+at = {middle = 0}
+[[part]]
+kind = "Spring"
+q = "beam.tip"
+k = 2000
+[[part]]
+kind = "HarmonicForce"
+q = "beam.middle"
+force = 0.05
+[[part]]
+kind = "Spring"
+q = "beam.tip"
+to = "x"
+k = 10
+[[part]]
+kind = "Mass"
+q = "x"
+m = 0.1
+"""
+STRUCTURE = 'title = "Mine"\nkind = "structure"\n[[coordinate]]\nname = "x"\n' + BEAM + RANGE
+
+
+def test_structure(tmp_path: Path) -> None:
+    """Assert that a built structure, and one from files beside the scene, are those of Python."""
+    matrices = sym.beam(length=0.3, bending=1.4, mass_per_length=0.16, elements=2)
+    s = sym.Structure(matrices, at={"middle": 0}, damping=0.02, name="beam", scale=1e-3)
+    x, k = sym.coordinate("x"), (sym.parameter("k_beam", 2000.0), sym.parameter("k_x", 10.0))
+    parts = [s, sym.Spring(s["tip"], k[0]), sym.HarmonicForce(s["middle"], 0.05, 1.0)]
+    parts += [sym.Spring(s["tip"], k[1], to=x), sym.Mass(x, 0.1)]
+    expected = sym.modes(sym.compile(sym.combine(parts), condense=False)).eigenvalues
+    np.testing.assert_allclose(sym.modes(build(scene(tmp_path, STRUCTURE))).eigenvalues, expected, rtol=1e-10)
+    np.savez(tmp_path / "beam.npz", M=matrices.M, K=matrices.K)
+    line = BEAM.splitlines()[3]
+    tip = matrices.at["tip"]
+    text = STRUCTURE.replace(line, 'file = "beam.npz"').replace("middle = 0", f"middle = 0, tip = {tip}")
+    np.testing.assert_allclose(sym.modes(build(scene(tmp_path, text))).eigenvalues, expected, rtol=1e-10)
+
+
+REFUSED_STRUCTURES = [
+    ("beam.tip", "beam.tp", r'.* q is "tp"; it must be a place of the structure beam; nearest is "tip"'),
+    ("elements = 2", "elements = 0", r"\[\[structure\]\] beam beam: elements is 0; it must be .* least 1"),
+    ("elements = 2", "elements = 501", r"\[\[structure\]\] beam elements is 501; .* from 1 to 500"),
+    (
+        "length = 0.3",
+        "lenth = 0.3",
+        r"\[\[structure\]\] beam beam \"lenth\" is not a key; nearest is length; .*",
+    ),
+    ("damping = 0.02", "damping = -0.02", r"\[\[structure\]\] beam: .*damping.*"),
+    ("middle = 0", "middle = 90", r"\[\[structure\]\] beam: the index of place 'middle' is 90; .*"),
+    (
+        "beam = {",
+        'file = "a.npz"\nbeam = {',
+        r"\[\[structure\]\] beam has file and beam; it must have one .*",
+    ),
+    ("[[structure]]", "[[structur]]", r"structur is not a key of the scene; .*"),
+]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"), REFUSED_STRUCTURES, ids=[row[2] for row in REFUSED_STRUCTURES]
+)
+def test_structure_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+    """Assert that what cannot be of a structure is refused in one sentence."""
+    assert old in STRUCTURE
+    assert re.fullmatch(said, sentence(tmp_path, STRUCTURE.replace(old, new)))
+
+
+@dataclass(frozen=True)
+class Point:
+    """An entry point as an installed package has it."""
+
+    name: str
+    gives: object
+
+    def load(self) -> object:
+        """Return what it names, or fail as an import does."""
+        if isinstance(self.gives, Exception):
+            raise self.gives
+        return self.gives
+
+
+def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that parts of installed packages are in the catalogue, and one that is broken is told."""
+    module = "symbolic.scenes.model.catalogue"
+    catalogue.cache_clear()
+    monkeypatch.setattr(f"{module}.entry_points", lambda group: [Point("mine", Quintic)])
+    try:
+        assert "Quintic" in catalogue()
+        catalogue.cache_clear()
+        monkeypatch.setattr(f"{module}.entry_points", lambda group: [Point("mine", ImportError("no gears"))])
+        with pytest.raises(
+            InputError, match=r"entry point mine cannot be loaded \(ImportError: no gears\); "
+        ):
+            catalogue()
+    finally:
+        monkeypatch.undo()
+        catalogue.cache_clear()

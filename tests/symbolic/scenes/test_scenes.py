@@ -312,7 +312,7 @@ def test_text_in_place_of_number(tmp_path: Path) -> None:
 def test_kind(tmp_path: Path) -> None:
     """Assert that a scene of unknown or no kind is answered with the kinds."""
     text = text_of("duffing")
-    allowed = 'it must be "disc", "oscillator" or "model"'
+    allowed = 'it must be "disc", "oscillator", "model" or "structure"'
     unknown = written(tmp_path, text.replace('"oscillator"', '"pendulum"'))
     assert sentence(unknown) == f'kind is "pendulum"; {allowed}'
     assert sentence(written(tmp_path, text.replace("kind", "# kind"))) == f"kind is missing; {allowed}"
