@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 from symbolic.checks import refusal, typed
 from symbolic.equations import kinks
@@ -69,6 +70,24 @@ class Recipe:
 
     def __call__(self) -> CompiledSystem:
         return compile(self.model, self.kernels, condense=self.condense)
+
+
+@dataclass(frozen=True)
+class Valued:
+    """A recipe whose system then gets other nominal values, by name."""
+
+    recipe: Callable[[], CompiledSystem]
+    values: Mapping[str, float]
+
+    def __call__(self) -> CompiledSystem:
+        return with_nominal(self.recipe(), self.values)
+
+
+def with_nominal(system: CompiledSystem, values: Mapping[str, float]) -> CompiledSystem:
+    """Return a compiled system with other nominal values of some parameters (SI), by name."""
+    assert system.recipe is not None
+    parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in system.parameters)
+    return replace(system, parameters=parameters, recipe=Valued(system.recipe, dict(values)))
 
 
 def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -17,7 +17,7 @@ from symbolic.scenes.model.composing import composed
 from symbolic.scenes.model.structures import StructureTable
 from symbolic.scenes.ranges import Range, one_point
 from symbolic.scenes.tables import Table, Title
-from symbolic.system.compile import compile
+from symbolic.system.compile import compile, with_nominal
 from symbolic.system.compiled import CompiledSystem, with_values
 
 TEXT = "one line of text that is not empty"
@@ -124,8 +124,7 @@ class ModelScene(Table):
         for name in self.values:
             if name not in names:
                 raise unknown("[values]", name, names, "the name of a parameter of the model")
-        valued = tuple(replace(p, value=self.values.get(p.name, p.value)) for p in system.parameters)
-        return replace(system, parameters=valued)
+        return with_nominal(system, self.values) if self.values else system
 
     @model_validator(mode="after")
     def _sound(self, info: ValidationInfo) -> ModelScene:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -162,6 +163,12 @@ def test_override(tmp_path: Path, key: str, text: str, name: str, value: float) 
     """Assert that keys of parts, shared parameters and parameters of the model take other values."""
     system = build(scene(tmp_path, TEXT, (key, text)))
     assert {p.name: p.value for p in system.parameters}[name] == value
+
+
+def test_values_are_pickled(tmp_path: Path) -> None:
+    """Assert that a system keeps the scene's values on its way to another process."""
+    system = build(scene(tmp_path, TEXT, ("c_left", "0.3")))
+    assert pickle.loads(pickle.dumps(system)).parameters == system.parameters
 
 
 def test_override_of_the_range(tmp_path: Path) -> None:
