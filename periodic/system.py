@@ -423,12 +423,14 @@ class LinearPart(Protocol):
     """The linear part of a system that is split, x_L = L f: any number of states behind a few places.
 
     `states` are the indices of the states that it gives, `forces` those of the unknowns that act on it. The
-    system's own rows say nothing of these states: as many of its n differential rows are empty. Position and
-    velocity of a place follow each other in `states`.
+    system's own rows say nothing of these states: as many of its n differential rows are empty. `velocities`
+    are those of them in which all modes are heard.
     """
 
     @property
     def states(self) -> tuple[int, ...]: ...
+    @property
+    def velocities(self) -> tuple[int, ...]: ...
     @property
     def forces(self) -> tuple[int, ...]: ...
     @property

@@ -72,6 +72,7 @@ from .structures.ross import ross_matrices
 from .structures.shaft import ShaftDisc, shaft
 from .system.compile import compile
 from .system.compiled import CompiledSystem
+from .system.split import condensed, structure_of
 
 __all__ = [
     "AmplitudeReduction",
@@ -171,6 +172,7 @@ __all__ = [
     "campbell",
     "combine",
     "compile",
+    "condensed",
     "coordinate",
     "coordinates",
     "craig_bampton",
@@ -190,6 +192,7 @@ __all__ = [
     "scene_names",
     "shaft",
     "simulate",
+    "structure_of",
 ]
 
 __version__: str

@@ -26,6 +26,9 @@ from periodic.stability.spectrum import Complex, Pair, Spectrum
 LEADING = 8
 """Multipliers that are kept of many."""
 
+AMONG = 1.02
+"""Moduli as much larger than the least of the leading ones are surely among them."""
+
 LIGHT = 0.8
 """Modulus below which a pair of multipliers makes no narrow peak."""
 
@@ -33,7 +36,7 @@ LASTING = 0.6
 """Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
 SMALL = 48
-"""Up to so many states all of them are computed."""
+"""Up to so many states all of them are computed and kept."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,8 @@ class Leading:
     @cached_property
     def basis(self) -> Array:
         """Orthonormal basis of the subspace, (coordinates, r)."""
-        return invariant(self.floquet.monodromy, LEADING)
+        matrix = self.floquet.monodromy
+        return invariant(matrix, len(matrix) if len(matrix) <= SMALL else LEADING)
 
     @cached_property
     def _motion(self) -> Array:
@@ -197,13 +201,22 @@ class LeadingSpectrum(Spectrum):
         return replace(pair, left=pair.left * (size / own))
 
     def apart(self, monodromy: Array) -> float:
-        """Distance from another spectrum, in the sums of powers of those that are not damped strongly."""
-        count = int((np.abs(self.multipliers) > LASTING).sum())
+        """Distance from another spectrum of those that are not damped strongly.
+
+        Of all multipliers in the sums of their powers, of the leading ones each from the nearest.
+        """
         both = (self.multipliers, np.linalg.eigvals(monodromy))
-        largest = [values[np.argsort(-np.abs(values))[:count]] for values in both]
-        sums = [[(values**power).sum() for power in (1, 2)] for values in largest]
-        first, second = (abs(complex(a - b)) for a, b in zip(*sums, strict=True))
-        return float(max(first / self.radius, second / (2 * self.radius**2)))
+        if self.leading is None or len(self.leading.floquet.kept) <= max(SMALL, len(self.multipliers)):
+            count = int((np.abs(self.multipliers) > LASTING).sum())
+            largest = [values[np.argsort(-np.abs(values))[:count]] for values in both]
+            sums = [[(values**power).sum() for power in (1, 2)] for values in largest]
+            first, second = (abs(complex(a - b)) for a, b in zip(*sums, strict=True))
+            return float(max(first / self.radius, second / (2 * self.radius**2)))
+        # Which of those as large as the least of them are among the leading is a matter of rounding.
+        least = np.abs(self.multipliers).min() * AMONG
+        sure = self.multipliers[np.abs(self.multipliers) > max(LASTING, least)]
+        apart = np.abs(sure[:, None] - both[1]).min(axis=1, initial=np.inf)
+        return float(apart.max(initial=0.0) / self.radius)
 
     def start(self, change: Increment) -> Array:
         """Return what a change of the orbit changes at the beginning of the period, in the subspace."""

@@ -56,7 +56,8 @@ class CondensedCollocation(Collocation):
             raise EventsCrossedError
         part = _linear(system)
         whole = part.modes(orbit.parameter)
-        kept = audible(whole, orbit.mesh.period, self.tolerance)
+        heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
+        kept = audible(whole, heard, orbit.mesh.period, self.tolerance)
         changes = [reduced_slope(whole, part.slope(orbit.parameter, k), kept) for k in free]
         response = Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period)
         local = local_rows(system, part, orbit, free)
@@ -87,7 +88,7 @@ class CondensedCollocation(Collocation):
         Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
         the forces, however fast they change between them.
         """
-        velocities = _linear(problem.system).states[1::2]
+        velocities = _linear(problem.system).velocities
         return deferred(self.linearise, problem, correction.orbit, tangent, spectrum, velocities)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:

@@ -28,12 +28,16 @@ class Modes:
     direct_rate: Array
 
 
-def audible(modes: ModesLike, period: float, tolerance: float) -> np.ndarray:
-    """Return which modes are to be integrated, shape (J,)."""
+def audible(modes: ModesLike, heard: list[int], period: float, tolerance: float) -> np.ndarray:
+    """Return which modes are to be integrated, shape (J,); `heard` are the outputs that decide, if any."""
     exponents = modes.exponents
     with np.errstate(all="ignore"):
         resonance = np.maximum(1.0, np.abs(1 / np.expm1(exponents * period)))
-    strength = np.abs(modes.outputs[::2]).max(axis=0) * np.abs(modes.inputs).max(axis=1) / np.abs(exponents)
+    strength = (
+        np.abs(modes.outputs[heard or slice(None)]).max(axis=0)
+        * np.abs(modes.inputs).max(axis=1)
+        / np.abs(exponents)
+    )
     weight = strength * resonance
     order = np.argsort(weight)
     quiet = np.cumsum(weight[order]) <= SHARE * tolerance * strength.sum()

@@ -16,7 +16,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.layout import Layout, Quantity
 from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
-from periodic.results.point import Point
+from periodic.results.point import Point, known_of, multipliers_of
 from periodic.results.ragged import Arrays, Tables, orbit_tables, orbits_of, scheme_said
 from periodic.results.record import Record
 from periodic.results.stop import Reason, Stop
@@ -52,12 +52,14 @@ def tables(record: Record) -> Tables:
     data: Tables = {name: (("point",), np.array(column)) for name, column in _per_point(points).items()}
     outputs = [q.name for q in layout.outputs]
     columns = list(points[0].columns) if points else []
+    found = multipliers_of(points, len(layout.states))
+    kind = "state" if found.shape[1] == len(layout.states) else "multiplier"
     wide = {
         "minimum": ("output", [[p.minimum[o] for o in outputs] for p in points], len(outputs)),
         "maximum": ("output", [[p.maximum[o] for o in outputs] for p in points], len(outputs)),
         "columns": ("column", [[*p.columns.values()] for p in points], len(columns)),
-        "multiplier_real": ("state", [p.multipliers.real for p in points], len(layout.states)),
-        "multiplier_imag": ("state", [p.multipliers.imag for p in points], len(layout.states)),
+        "multiplier_real": (kind, found.real, found.shape[1]),
+        "multiplier_imag": (kind, found.imag, found.shape[1]),
     }
     for name, (dimension, rows, width) in wide.items():
         data[name] = (("point", dimension), np.array(rows, dtype=float).reshape(len(points), width))
@@ -218,7 +220,7 @@ def _point(arrays: Arrays, i: int, orbit: Orbit, labels: dict[str, Label], colum
         orbit=orbit,
         parameter=number("value"),
         label=labels[str(arrays["label"][i])],
-        multipliers=arrays["multiplier_real"][i] + 1j * arrays["multiplier_imag"][i],
+        multipliers=known_of(arrays["multiplier_real"][i] + 1j * arrays["multiplier_imag"][i]),
         minimum=by_name(names, "minimum"),
         maximum=by_name(names, "maximum"),
         error=ErrorEstimate(*map(number, ("error_estimate", "multiplier_error", "parameter_error"))),

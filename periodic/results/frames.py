@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.orbit.layout import Layout
-from periodic.results.point import Point
+from periodic.results.point import Point, multipliers_of
 from periodic.results.record import Record
 
 if TYPE_CHECKING:
@@ -90,8 +90,7 @@ def to_xarray(record: Record) -> xr.Dataset:
         name: xr.Variable("point", np.array([found[name] for found in rows], dtype=float), {"units": unit})
         for name, unit in units(record).items()
     }
-    count = len(record.layout.states)
-    multipliers = np.array([p.multipliers for p in record.points], dtype=complex).reshape(len(rows), count)
+    multipliers = multipliers_of(record.points, len(record.layout.states))
     unit = "1/s" if any(point.equilibrium for point in record.points) else ""
     data["multipliers"] = xr.Variable(("point", "multiplier"), multipliers, {"units": unit})
     marks = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -166,3 +167,20 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         event=event,
         columns=columns,
     )
+
+
+def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:
+    """Return the multipliers of points, one row a point, rows with fewer than others filled up with NaN.
+
+    There are as many as states, but of a system with a linear part, of which the leading ones are known.
+    """
+    width = max((len(p.multipliers) for p in points), default=states)
+    found = np.full((len(points), width), complex(np.nan, np.nan))
+    for row, point in zip(found, points, strict=True):
+        row[: len(point.multipliers)] = point.multipliers
+    return found
+
+
+def known_of(multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Return the multipliers of a row without what it is filled up with."""
+    return multipliers[~np.isnan(multipliers.real)]

@@ -10,7 +10,7 @@ from periodic.correction.discretisation import Discretisation
 from periodic.harmonic.method import HarmonicBalance
 from periodic.harmonic.split import SplitHarmonicBalance
 from periodic.orbit.scheme import Family
-from periodic.system import System, linear_of
+from periodic.system import System, jumps_of, linear_of, resets_of
 
 SPLIT: dict[type[Discretisation], type[Discretisation]] = {
     Collocation: CondensedCollocation,
@@ -27,6 +27,11 @@ def suited(method: Discretisation, system: System) -> Discretisation:
         raise ValueError(
             f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
             f"compiled with condense=False for it"
+        )
+    if jumps_of(system) or resets_of(system):
+        raise ValueError(
+            "the equations at the places jump or are reset; a structure must be compiled with condense=False "
+            "for that"
         )
     scheme = getattr(method, "scheme", None)
     if scheme is not None and scheme.family is not Family.RADAU:

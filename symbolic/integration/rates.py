@@ -31,6 +31,8 @@ def explicit_rates(e: Expressions, sensitivity: float = SENSITIVITY) -> ca.SX:
 
     Raises ValueError for a system whose rows are not linear in x'.
     """
+    if any(e.residual[i].is_zero() for i in range(e.residual.size1())):
+        raise ValueError("the system's linear part is condensed; time integration needs condense=False")
     constraints, rate = constraint_rows(e), ca.SX.sym("algebraic_rate", e.algebraic.size1())
     rows = []
     for i in range(e.residual.size1()):

@@ -95,6 +95,11 @@ class LinearPart:
         return tuple(k for place in self.places for k in (place.position, place.velocity))
 
     @property
+    def velocities(self) -> tuple[int, ...]:
+        """Those of them that are velocities."""
+        return tuple(place.velocity for place in self.places)
+
+    @property
     def forces(self) -> tuple[int, ...]:
         """Indices of the unknowns that are the forces on the structures."""
         return tuple(place.force for place in self.places)
@@ -179,7 +184,7 @@ class LinearPart:
         """The same by differences, the modes of the two sides matched and normalised alike."""
         middle = self._at(omega)
         step = STEP * omega
-        ends = [_like(middle, self._at(omega + sign * step)) for sign in (-1, 1)]
+        ends = [like(middle, self._at(omega + sign * step)) for sign in (-1, 1)]
         parts = [
             rate * (getattr(ends[1], name) - getattr(ends[0], name)) / (2 * step)
             for name in ("exponents", "inputs", "outputs", "direct", "direct_rate")
@@ -223,7 +228,7 @@ class LinearPart:
         )
 
 
-def _like(given: Modes, other: Modes) -> Modes:
+def like(given: Modes, other: Modes) -> Modes:
     """Modes near to others in their order and with their factors: of each, the largest input is alike."""
     order = [int(np.abs(other.exponents - value).argmin()) for value in given.exponents]
     if len(set(order)) < len(order):

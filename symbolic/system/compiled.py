@@ -21,6 +21,7 @@ from symbolic.kernels.choice import Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart
+from symbolic.structures.rowspart import RowsPart
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,8 @@ class CompiledSystem:
         The back end.
     held : tuple of Held
         Places of condensed structures.
+    part : RowsPart, optional
+        The linear part of a model that was split.
     recipe : callable, optional
         What compiles it again: how it is pickled. CasADi's expressions and loaded libraries stay behind.
     """
@@ -67,6 +70,7 @@ class CompiledSystem:
     expressions: Expressions = field(repr=False)
     kernels: Kernels = Kernels.NUMPY
     held: tuple[Held, ...] = ()
+    part: RowsPart | None = field(default=None, repr=False)
     recipe: Callable[[], CompiledSystem] | None = field(default=None, repr=False)
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
         default_factory=dict, init=False, repr=False
@@ -125,8 +129,10 @@ class CompiledSystem:
         return float(self._omega(parameter))
 
     @cached_property
-    def linear(self) -> LinearPart | None:
-        """The structures condensed at their places; None of a model without any."""
+    def linear(self) -> LinearPart | RowsPart | None:
+        """The linear part of a system that is split: condensed structures, or what was found."""
+        if self.part is not None:
+            return self.part
         e = self.expressions
         slope = ca.Function("slope", [e.parameter], [ca.jacobian(e.frequency, e.parameter)])
 

@@ -1,0 +1,244 @@
+"""The split of a compiled model into what is linear with constant coefficients and what is not.
+
+CasADi tells which entries of the Jacobian depend on states, unknowns or the phase. Every differential row is
+
+    (E x')_i + (A x)_i + f_i = 0,    f_i = r_i(w, z, tau, p),
+
+with w the states that enter nonlinearly, few as a rule; f_i is 0 in most rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.checks import typed
+from symbolic.equations.expressions import Expressions
+from symbolic.equations.variables import Variable
+from symbolic.structures.rowspart import RowsPart
+from symbolic.system.compiled import CompiledSystem
+
+
+@dataclass(frozen=True)
+class Structure:
+    """How much of a model is linear.
+
+    Parameters
+    ----------
+    states : int
+        Number of its states.
+    nonlinear : tuple of str
+        Names of the states that enter nonlinearly, or together with unknowns or the phase.
+    rows : tuple of int
+        Differential rows with a force f_i.
+    places : int
+        How many of these forces depend on the motion.
+    """
+
+    states: int
+    nonlinear: tuple[str, ...]
+    rows: tuple[int, ...]
+    places: int
+
+    def __str__(self) -> str:
+        linear = self.states - len(self.nonlinear)
+        return f"{self.states} states, {linear} linear, {self.places} place{'s' * (self.places != 1)}"
+
+
+def structure_of(system: CompiledSystem) -> Structure:
+    """Return how much of a model is linear with constant coefficients.
+
+    Parameters
+    ----------
+    system : CompiledSystem
+        A compiled model.
+
+    Returns
+    -------
+    Structure
+        Its text says it: "200 states, 198 linear, 1 place".
+
+    Raises
+    ------
+    ValueError
+        For what is no compiled model, and where rates enter nonlinearly.
+    """
+    return _Split(typed("system", system, CompiledSystem, "a CompiledSystem")).structure
+
+
+def condensed(system: CompiledSystem) -> CompiledSystem:
+    """Return the system of a model's nonlinear places alone, its linear part given by its modes.
+
+    It is traced with as many unknowns as it has places; `periodic.motion` gives all states.
+
+    Parameters
+    ----------
+    system : CompiledSystem
+        A compiled model, of states up to some hundreds.
+
+    Returns
+    -------
+    CompiledSystem
+        States: those that enter nonlinearly. Outputs: those that depend on no other states. A system whose
+        structures are condensed already is returned as it is.
+
+    Raises
+    ------
+    ValueError
+        For what is no compiled model, where rates enter nonlinearly, equations jump or are reset, and where
+        no state enters nonlinearly.
+    """
+    if typed("system", system, CompiledSystem, "a CompiledSystem").linear is not None:
+        return system
+    return _Split(system).system()
+
+
+class _Split:
+    def __init__(self, system: CompiledSystem) -> None:
+        self.whole, self.e = system, system.expressions
+        self.n = len(system.states)
+        e, n = self.e, self.n
+        if system.linear is not None:
+            raise ValueError("the system's structures are condensed already; compile it with condense=False")
+        moving = ca.vertcat(e.rate, e.state, e.algebraic)
+        self.jacobian = ca.jacobian(e.residual, moving)
+        rows, columns = (np.array(k) for k in self.jacobian.sparsity().get_triplet())
+        entries = self.jacobian.nz[:]
+        given = ca.vertcat(moving, e.phase)
+        varies = np.array(
+            [
+                bool(entry.is_constant() is False and ca.depends_on(entry, given))
+                for entry in ca.vertsplit(entries)
+            ],
+            dtype=bool,
+        )
+        if (varies & (columns < n)).any():
+            raise ValueError("rates enter the equations nonlinearly; no linear part can be split off")
+        special = np.unique(np.concatenate([rows[varies], rows[(columns >= 2 * n) & (rows < n)]]))
+        state = (columns >= n) & (columns < 2 * n)
+        named = state & ((rows >= n) | varies)
+        switched = ca.jacobian(e.switches, e.state).sparsity().get_col()
+        self.places = np.unique(np.concatenate([columns[named] - n, np.array(switched, dtype=int)])).astype(
+            int
+        )
+        self.moved = special[special < n].astype(int)
+        at_rest = ca.substitute(e.residual[:n], moving, ca.SX.zeros(moving.numel()))
+        loaded = [i for i in range(n) if not ca.simplify(at_rest[i]).is_zero()]
+        self.rows = np.unique(np.concatenate([self.moved, np.array(loaded, dtype=int)])).astype(int)
+
+    @property
+    def structure(self) -> Structure:
+        names = tuple(self.whole.states[k].name for k in self.places)
+        return Structure(self.n, names, tuple(int(k) for k in self.rows), len(self.moved))
+
+    def system(self) -> CompiledSystem:
+        whole, m = self.whole, len(self.whole.algebraics)
+        if len(self.places) == 0:
+            raise ValueError(
+                "no state enters the equations nonlinearly; their response is known in closed form"
+            )
+        if whole.jumps or whole.resets:
+            raise ValueError("the equations jump or are reset; a system that is split has neither")
+        forces = tuple(range(m, m + len(self.rows)))
+        unknowns = tuple(Variable(f"force on row {k + 1}") for k in self.rows)
+        outputs = self._outputs()
+        chosen = [whole.states[k] for k in self.places]
+        return replace(
+            whole,
+            states=tuple(chosen),
+            algebraics=(*whole.algebraics, *unknowns),
+            outputs=tuple(whole.outputs[k] for k in outputs),
+            expressions=self._expressions(outputs),
+            recipe=None,
+            part=self._part(forces),
+        )
+
+    def _outputs(self) -> list[int]:
+        """The outputs that are functions of the places alone."""
+        e, other = self.e, np.setdiff1d(np.arange(self.n), self.places)
+        elsewhere = ca.vertcat(ca.SX(0, 1), *[v[int(k)] for v in (e.rate, e.state) for k in other])
+        if elsewhere.numel() == 0:
+            return list(range(e.outputs.numel()))
+        return [k for k in range(e.outputs.numel()) if not ca.depends_on(e.outputs[k], elsewhere)]
+
+    def _linear(self) -> tuple[ca.SX, ca.SX]:
+        """E and A as functions of the parameters, in rows with a force about zero."""
+        e, n = self.e, self.n
+        zero = ca.vertcat(e.rate, e.state, e.algebraic, e.phase)
+        about = ca.substitute(self.jacobian[:n, : 2 * n], zero, ca.SX.zeros(zero.numel()))
+        values = ca.Function("about", [e.parameter], [about])(self.whole.nominal)
+        finite = np.isfinite(np.array(ca.DM(values).full()))
+        for i, j in np.argwhere(~finite):
+            about[int(i), int(j)] = 0
+        return about[:, :n], about[:, n:]
+
+    def _part(self, forces: tuple[int, ...]) -> RowsPart:
+        e, whole = self.e, self.whole
+        inertia, stiffness = self._linear()
+        evaluate = ca.Function("linear", [e.parameter], [ca.densify(inertia), ca.densify(stiffness)])
+
+        def matrices(parameter: Array) -> tuple[Array, Array]:
+            found = evaluate(parameter)
+            return np.array(found[0].full()), np.array(found[1].full())
+
+        both = ca.vertcat(ca.vec(inertia), ca.vec(stiffness))
+        varying = sorted(set(ca.jacobian(both, e.parameter).sparsity().get_col()))
+        names = [whole.states[k].name for k in self.places]
+        return RowsPart(
+            matrices=matrices,
+            rows=tuple(int(k) for k in self.rows),
+            places=tuple(int(k) for k in self.places),
+            forces=forces,
+            varying=tuple(varying),
+            scales=np.array([state.scale for state in whole.states]),
+            rates=tuple(k for k, name in enumerate(names) if name.endswith("'")),
+            omega=whole.omega,
+        )
+
+    def _expressions(self, outputs: list[int]) -> Expressions:
+        e, n, s = self.e, self.n, len(self.places)
+        rate, state = ca.SX.sym("rate", s), ca.SX.sym("state", s)
+        algebraic = ca.SX.sym("algebraic", e.algebraic.numel() + len(self.rows))
+        increment = ca.SX.sym("increment", algebraic.numel())
+        m = e.algebraic.numel()
+        full_rate, full_state = ca.SX.zeros(n), ca.SX.zeros(n)
+        for k, place in enumerate(self.places):
+            full_rate[int(place)], full_state[int(place)] = rate[k], state[k]
+        old = ca.vertcat(e.rate, e.state, e.algebraic)
+        still = ca.vertcat(ca.SX.zeros(n), full_state, algebraic[:m])
+        moving = ca.vertcat(full_rate, full_state, algebraic[:m])
+        stiffness = self._linear()[1]
+
+        def reduced(rows: ca.SX) -> ca.SX:
+            here = ca.substitute(rows, old, still)
+            chosen = [int(k) for k in self.rows]
+            left = here[chosen] - (stiffness @ full_state)[chosen]
+            return ca.vertcat(ca.SX.zeros(s), here[n:], algebraic[m:] - left)
+
+        shown = ca.substitute(e.outputs[outputs], old, moving)
+        unexcited, residual = reduced(e.unexcited), reduced(e.residual)
+        whole = e.waved.numel() - e.outputs.numel()
+        waved = ca.vertcat(reduced(e.waved[:whole]), ca.substitute(e.waved[whole:][outputs], old, moving))
+        return replace(
+            e,
+            rate=rate,
+            state=state,
+            algebraic=algebraic,
+            residual=residual,
+            unexcited=unexcited,
+            waved=waved,
+            outputs=shown,
+            switches=ca.substitute(e.switches, e.state, full_state),
+            rest_state=e.rest_state[[int(k) for k in self.places]],
+            rest_algebraic=ca.vertcat(e.rest_algebraic, ca.SX.zeros(len(self.rows))),
+            increment=increment,
+            moved=ca.vertcat(
+                ca.substitute(
+                    e.moved, ca.vertcat(e.algebraic, e.increment), ca.vertcat(algebraic[:m], increment[:m])
+                ),
+                algebraic[m:] + increment[m:],
+            ),
+        )
