@@ -75,6 +75,15 @@ def test_structures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert said["beam"].first_frequency == pytest.approx(1.8751040687**2 / (2 * 3.14159265359), rel=2e-5)
 
 
+def test_maps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the cell at the nominal parameters has the folds of the first tutorial."""
+    found = run("howto/maps.md", tmp_path, monkeypatch)["found"]
+    cell = found.sel(F=0.5, c=0.1)
+    assert cell["folds"].values == pytest.approx([2.2119353, 1.4386701], rel=1e-4)
+    assert (cell["at 1.8 stable"] == [1, 0, 1]).all() and (found["status"] == "done").all()
+    assert (tmp_path / "duffing-map.nc").is_file()
+
+
 def test_methods(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the three methods find the same folds, to 1e-7."""
     one, *others = run("howto/methods.md", tmp_path, monkeypatch)["folds"]

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from periodic.checks import whole
 
-AHEAD = 1000
+AHEAD = 10_000
 """Chunks given to somebody else's executor before the first is done: more than it has workers."""
 
 THREADS = dict.fromkeys(
