@@ -1,13 +1,48 @@
 """The back end that the tests run with: NumPy, unless the environment says otherwise.
 
-The automatic choice depends on what the user's cache holds.
+The automatic choice depends on what the user's cache holds. And the ledger: on every branch that a test
+traces each change of stability and direction must be accounted for by a labelled point.
 """
 
+import functools
 import os
 import signal
+from collections.abc import Callable, Iterator
+
+import pytest
 
 os.environ.setdefault("ORBITRACE_KERNELS", "numpy")
+
+import periodic as per  # noqa: E402
+from periodic.tracing import trace as tracing  # noqa: E402
 
 # A shell has Ctrl-C ignored in what it runs in the background; tests that send it need it heard.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+UNACCOUNTED: list[str] = []
+"""What no labelled point accounts for on the branches that the test under way has traced."""
+
+
+def _noted(join: Callable[..., "per.Branch"]) -> Callable[..., "per.Branch"]:
+    """Let every trace, which ends with joining its halves, note what its ledger leaves open."""
+
+    @functools.wraps(join)
+    def joined(*arguments: object) -> "per.Branch":
+        branch = join(*arguments)
+        UNACCOUNTED.extend(f"{branch!r} {gap}" for gap in branch.unaccounted)
+        return branch
+
+    return joined
+
+
+tracing._joined = _noted(tracing._joined)
+
+
+@pytest.fixture(autouse=True)
+def balanced(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Assert that the ledger of each branch traced balances, where a test does not expect otherwise."""
+    UNACCOUNTED.clear()
+    yield
+    assert not UNACCOUNTED or request.node.get_closest_marker("unaccounted"), UNACCOUNTED

@@ -11,6 +11,7 @@ import numpy as np
 
 from periodic.bifurcations.branch import BRANCHING, branching
 from periodic.bifurcations.doubling import DOUBLING, doubling, passing
+from periodic.bifurcations.fold import FOLD
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stationary import BRANCHING as CROSSING
 from periodic.bifurcations.stationary import HOPF
@@ -104,6 +105,11 @@ def picked(problem: Problem) -> Condition | None:
 def marginal(problem: Problem) -> bool:
     """Whether a multiplier is held on the unit circle."""
     return type(picked(problem)) in CURVES
+
+
+def along(solution: Solution) -> tuple[TestFunction, ...]:
+    """Return all tests for special points on the branch or curve of a solution."""
+    return (FOLD, *sought(solution, turned=False))
 
 
 def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:

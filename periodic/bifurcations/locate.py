@@ -7,11 +7,12 @@ turns, where the parameter is monotone.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from periodic.bifurcations import codim2
+from periodic.bifurcations.course import Course
 from periodic.bifurcations.fold import FOLD, VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
@@ -41,12 +42,14 @@ class Sought:
     """What is looked for in a step: values of the parameter that get a point (UZ), the user's tests.
 
     since: the parameter up to which values have been looked for, that of the last point, from which the base
-    may differ by its error where it was solved again on a new mesh.
+    may differ by its error where it was solved again on a new mesh. course: of the test functions in the step
+    before.
     """
 
     values: Sequence[float]
     since: float
     tests: tuple[TestFunction, ...] = ()
+    course: Course = field(default_factory=Course)
 
 
 def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sought: Sought) -> list[Found]:
@@ -56,13 +59,13 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     """
     stretch = Stretch(solver, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    turns = [] if from_turn else _where(stretch, new, ds, FOLD)
+    turns = [] if from_turn else _where(stretch, new, ds, FOLD, sought.course)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *turns, Found(Label.NONE, ds, new)]
     _check_ways(solver.problem, pieces)
     found = turned = [named(stretch, turn, new, ds) for turn in turns]
     for test in (*codim2.sought(new, bool(turns) or from_turn), *sought.tests):
-        met = _where(stretch, new, ds, test)
+        met = _where(stretch, new, ds, test, sought.course)
         found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
     found = found + _at_values(stretch, pieces, sought)
     found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
@@ -96,7 +99,7 @@ def _check_ways(problem: Problem, pieces: list[Found]) -> None:
             raise RejectedError("the step ends on another part of the branch")
 
 
-def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> list[Found]:
+def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction, course: Course) -> list[Found]:
     """Locate where a test function changes sign within a step, if it does.
 
     Raises RejectedError where it vanishes at the step's end, having fallen to it; it is also 0 where it is
@@ -108,7 +111,7 @@ def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> li
         return _located(stretch, (0.0, ds), ds, test)
     if ends[0] != 0 and ends[1] == 0 and 0 < value(stretch.at(SHORTER * ds)) / ends[0] < LEFT:
         raise RejectedError("the step ends at a special point", SHORTER)
-    if ends[0] * ends[1] == 0 or not test.twice(base, new):
+    if ends[0] * ends[1] == 0 or not (test.twice(base, new) or course.returns(test, base, new, ds)):
         return []
     between = _between(stretch, new, ds, test)
     if between is None:

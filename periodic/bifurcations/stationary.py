@@ -56,6 +56,13 @@ def _crosses_twice(base: Solution, new: Solution) -> bool:
     return False
 
 
+def _growth(solution: Solution) -> float:
+    """Real part of the complex pair nearest the imaginary axis, with the sign of the test; else that itself."""
+    found, value = solution.spectrum.multipliers, hopf(solution)
+    parts = np.abs(found[found.imag > 0].real)
+    return float(np.sign(value) * parts.min()) if len(parts) else value
+
+
 def _matrix(solution: Solution) -> tuple[Array, Array]:
     """R_u and the tangent of length 1, u = (x, z, p), p in ranges of the parameter."""
     problem, orbit, tangent = solution.problem, solution.orbit, solution.tangent
@@ -92,7 +99,14 @@ def _touches_twice(base: Solution, new: Solution) -> bool:
     return False
 
 
-HOPF = TestFunction(label=Label.HOPF, value=hopf, precision=1e-12, genuine=_complex, twice=_crosses_twice)
+HOPF = TestFunction(
+    label=Label.HOPF,
+    value=hopf,
+    precision=1e-12,
+    genuine=_complex,
+    twice=_crosses_twice,
+    local=_growth,
+)
 BRANCHING = TestFunction(
     label=Label.BRANCH, value=branching, genuine=_on_its_way, twice=_touches_twice, touches=crosses
 )

@@ -56,3 +56,23 @@ class TestFunction:
     local: Callable[[Solution], float] | None = None
     touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
     name: str = ""
+
+    @property
+    def key(self) -> str:
+        """What tells it from others along a branch."""
+        return f"{self.label} {self.name}"
+
+    def margin(self, solution: Solution) -> float:
+        """Return how far a solution is from such a point.
+
+        Parameters
+        ----------
+        solution : Solution
+            An orbit.
+
+        Returns
+        -------
+        float
+            `local`, or the function itself.
+        """
+        return (self.local or self.value)(solution)

@@ -47,4 +47,11 @@ def _genuine(solution: Solution) -> bool:
     return known(solution) and complex_pair(solution.spectrum.nontrivial)
 
 
-TORUS = TestFunction(label=Label.TORUS, value=torus, genuine=_genuine)
+def _pair_nearest_the_circle(solution: Solution) -> float:
+    """log |mu| of the complex pair nearest the unit circle, with the sign of the test; else that itself."""
+    found, value = solution.spectrum.nontrivial, torus(solution)
+    sizes = np.abs(found[found.imag > 0])
+    return float(np.sign(value) * np.abs(np.log(sizes)).min()) if len(sizes) else value
+
+
+TORUS = TestFunction(label=Label.TORUS, value=torus, genuine=_genuine, local=_pair_nearest_the_circle)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from periodic.bifurcations.course import Course
 from periodic.bifurcations.label import Label
 from periodic.correction.error import ErrorEstimate
 from periodic.linear.unknowns import Increment
@@ -21,7 +22,7 @@ from periodic.results.ragged import Arrays, Tables, orbit_tables, orbits_of, sch
 from periodic.results.record import Record
 from periodic.results.stop import Reason, Stop
 
-FORMAT = "orbitrace branch 5"
+FORMAT = "orbitrace branch 6"
 
 DAMAGE = (
     *(KeyError, ValueError, IndexError, TypeError, RuntimeError, AttributeError),
@@ -135,7 +136,8 @@ def _progress(checkpoint: Checkpoint) -> dict[str, Any]:
     """A checkpoint without its arrays, but with their shapes."""
     plain = {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint)}
     del plain["tangent"], plain["fundamental"]
-    return {**plain, "shapes": [a.shape for a in _parts(checkpoint)]}
+    course = {"gone": checkpoint.course.gone, "margins": dict(checkpoint.course.margins)}
+    return {**plain, "course": course, "shapes": [a.shape for a in _parts(checkpoint)]}
 
 
 def record_of(arrays: Arrays, attributes: Mapping[str, Any]) -> Record:
@@ -202,7 +204,8 @@ def _checkpoints(values: np.ndarray, said: list[dict[str, Any]]) -> tuple[Checkp
             parts.append(values[: math.prod(shape)].reshape(shape))
             values = values[math.prod(shape) :]
         tangent = Increment(**dict(zip(TANGENT, parts[:-1], strict=True)))
-        found.append(Checkpoint(tangent=tangent, fundamental=parts[-1], **numbers))
+        course = Course(**numbers.pop("course"))
+        found.append(Checkpoint(tangent=tangent, fundamental=parts[-1], course=course, **numbers))
     return tuple(found)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.ledger import Gap, gaps
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.point import Point
@@ -17,6 +18,10 @@ from periodic.results.record import Record
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+
+INTRINSIC = ("PhaseCondition", "Conservative")
+"""Conditions that every orbit of a system meets: others pick points, on curves whose turns have no label."""
 
 
 class Branch(Record):
@@ -90,6 +95,19 @@ class Branch(Record):
         if label and label not in known:
             raise ValueError(f"label is {str(label)!r}; it must be one of {', '.join(known)}")
         return tuple(p for p in self.points if label == p.label or (label and label == p.event))
+
+    @property
+    def unaccounted(self) -> tuple[Gap, ...]:
+        """What no labelled point accounts for: stretches over which the number of unstable multipliers or the
+        direction of the parameter changes all the same. Turns are labelled on branches in one parameter.
+        """
+        picks = [d for d in self.made.get("determined", {}).values() if d.get("is") not in INTRINSIC]
+        return tuple(gaps([point.entry for point in self.points], turns=not picks))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What whoever reads the branch should know: what no labelled point accounts for, in sentences."""
+        return tuple(map(str, self.unaccounted))
 
     @property
     def values(self) -> Array:
@@ -177,7 +195,7 @@ class Branch(Record):
         Returns
         -------
         str
-            A heading and the lines, all of one width.
+            A heading and the lines, all of one width; then the remarks, if there are any.
         """
         names = [q.name for q in self.layout.outputs]
         measured, largest = (" p-p", "|mu| max")
@@ -186,9 +204,8 @@ class Branch(Record):
         head = ["label", self.parameter, *(n + measured for n in names), largest, "stable", "error"]
         rows = [head, *([*_cells(p, names)] for p in self.points)]
         widths = [max(len(row[i]) for row in rows) for i in range(len(head))]
-        return "\n".join(
-            "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows
-        )
+        lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in rows]
+        return "\n".join([*lines, *self.remarks])
 
     def save(self, path: str | Path) -> None:
         """Write the branch, its orbits included, to a NetCDF file, replacing it in one move.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from periodic.bifurcations.course import Course
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
 
@@ -30,6 +31,8 @@ class Checkpoint:
         How many points of each label or event it has had.
     done : bool
         Whether it ended of itself.
+    course : Course
+        Of the test functions in its last step.
     """
 
     sign: int
@@ -41,3 +44,4 @@ class Checkpoint:
     left: bool
     met: dict[str, int]
     done: bool
+    course: Course = field(default_factory=Course)

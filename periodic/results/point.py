@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from periodic.bifurcations.codim2 import marginal
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.orbit.extrema import extrema
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import CONSERVED, ROUNDING, without_trivial
+from periodic.stability.spectrum import CONSERVED, LOST, ROUNDING, without_trivial
 
 NOISE = 30.0
 """How much larger than its estimate the error of a small multiplier may be."""
@@ -110,6 +111,21 @@ class Point:
         """
         largest = float(np.abs(self.multipliers).max(initial=1.0))
         return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
+
+    @property
+    def entry(self) -> Entry:
+        """The point as the ledger of its branch has it."""
+        lost = self.marginal or (self.trivial is not None and self.trivial > LOST)
+        return Entry(
+            label=self.label,
+            value=self.parameter,
+            slope=self.slope,
+            growth=growth(self.nontrivial, self.equilibrium),
+            noise=np.inf if lost else noise(self.error, self.multipliers),
+            blur=self.error.motion * abs(self.parameter),
+            equilibrium=self.equilibrium,
+            conservative=self.conservative,
+        )
 
     def peak_to_peak(self, output: str) -> float:
         """Return maximum minus minimum of an output.

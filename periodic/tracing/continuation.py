@@ -14,7 +14,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from periodic.bifurcations import codim2
+from periodic.bifurcations.course import Course, margins
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.turning import Found
@@ -34,7 +37,8 @@ from periodic.tracing.strain import strains
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2
-"""How near to where the method's reach ends a branch is followed, in first steps."""
+"""How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
+steps."""
 
 
 class BeyondError(RejectedError):
@@ -43,11 +47,13 @@ class BeyondError(RejectedError):
 
 @dataclass(frozen=True)
 class Step:
-    """A step that was taken: its end, the length of the next one, the special points inside it."""
+    """A step that was taken: its end, the length of the next one, the special points inside it, the course
+    of the test functions."""
 
     end: Solution
     further: float
     special: list[Found]
+    course: Course
 
 
 @dataclass(frozen=True)
@@ -66,6 +72,7 @@ class State:
     left: bool
     met: dict[str, int]
     kept: int
+    course: Course = field(default_factory=Course)
 
 
 @dataclass
@@ -217,7 +224,9 @@ class Continuation:
         # Newton has moved it by rounding; what follows shall be just what would have followed.
         correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
         again = replace(again, correction=correction, tangent=c.tangent)
-        self.state = State(begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points))
+        self.state = State(
+            begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points), c.course
+        )
         yield from self
 
     @property
@@ -227,7 +236,7 @@ class Continuation:
         if s is None:
             return self.ended
         done = self.stop is not None and not self.stop.reason.resumable
-        numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done)
+        numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done, s.course)
         return Checkpoint(s.sign, s.last.tangent, s.last.correction.fundamental, *numbers)
 
     def _follow(self, solver: Solver, start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
@@ -249,7 +258,7 @@ class Continuation:
                 yield from self._met(special)
                 if self.stop is not None:
                     return
-            self._completed(step.end, step.further)
+            self._completed(step)
             yield self.collected[-1]
             base = self._prepared(step.end)
         self.stop = Stop.max_points(self.control.max_points)
@@ -258,20 +267,33 @@ class Continuation:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
         assert self.state is not None
         control, ds, begin = self.control, self.state.ds, self.state.begun.value
-        sought = Sought(self._values(begin), self.state.last.value, self.watch.tests())
+        tests = self.watch.tests()
+        sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
                 base, new, strain = self._step(base, ds)
                 found = special_points(self.solver, base, new, ds, sought)
+                self._check_balance(base, new, found, ds)
                 further = min(control.next_size(ds, new.correction.iterations, strain), longest)
-                return Step(new, further, found)
+                return Step(new, further, found, Course(ds, margins(base, (*codim2.along(base), *tests))))
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
                 if not ds >= (max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min):
                     self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
                     return None
+
+    def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
+        """Reject a step of which not every change is accounted for, unless it is short already."""
+        ends = any(point.label is Label.END or point.shrunk for point in found)
+        if ends or ds <= NEARLY * self.control.ds:
+            return
+        points = [entry(point.solution, point.label) for point in found]
+        ledger = [entry(base, Label.NONE), *points, entry(new, Label.NONE)]
+        unaccounted = gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        if unaccounted:
+            raise RejectedError(unaccounted[0].why)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -300,19 +322,21 @@ class Continuation:
         self.collected.append(point)
         return point
 
-    def _completed(self, new: Solution, ds: float) -> None:
-        """Keep a step: its end becomes the last solution, from which the next goes ds."""
+    def _completed(self, step: Step) -> None:
+        """Keep a step: its end becomes the last solution."""
         assert self.state is not None
+        new = step.end
         self._emitted(new, Label.NONE)
         self.state = replace(
             self.state,
             last=new,
-            ds=ds,
+            ds=step.further,
             steps=self.state.steps + 1,
             since_remesh=self._since_remesh,
             left=self.state.left or not same(self.solver, self.state.begun, new),
             met=dict(self._count),
             kept=len(self.collected),
+            course=step.course,
         )
 
     def _values(self, begin: float) -> Sequence[float]:

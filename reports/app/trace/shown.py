@@ -44,6 +44,8 @@ def show(scene: Scene, branch: Branch, files: Sequence[Path]) -> None:
         table(headings, rows, left="label") if sys.stdout.isatty() else _plain(headings, rows)
     count, steps = len(branch), branch.newton_iterations
     print(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
+    for remark in branch.remarks:
+        print(f"note: {remark}")
     print(f"stop: {branch.stop}")
     print("written: " + ", ".join(str(file) for file in files))
 

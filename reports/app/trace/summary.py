@@ -38,6 +38,7 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
         "elapsed_s": branch.elapsed,
         "stop": branch.stop.reason.value,
         "stop_detail": branch.stop.detail,
+        "remarks": list(branch.remarks),
         "versions": {**branch.versions, "casadi": version("casadi"), "python": python_version()},
     }
 

@@ -1,0 +1,182 @@
+"""The ledger of a branch: what changes from point to point, and the labelled points that account for it.
+
+Between two points whose stability is known the number of unstable multipliers changes by as many as the
+labelled points between them let pass, and the parameter turns where one of them says so. What they do not
+account for has been passed unseen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from periodic.bifurcations import codim2
+from periodic.bifurcations.doubling import known as known_spectrum
+from periodic.bifurcations.label import Label
+from periodic.correction.error import ErrorEstimate
+from periodic.correction.solution import Solution
+from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+
+PASSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
+"""How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
+
+PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
+"""Labels that say nothing of stability; of others nothing is known of what passes there."""
+
+TOUCHING = (Label.BRANCH, Label.DOUBLING)
+"""Points at which a branch that turns leaves another one: a multiplier touches 1 and goes back."""
+
+STEEP = 1e-6
+"""Slopes of the parameter smaller than this part of the largest are those of a turn."""
+
+BESIDE_END = 1e-3
+"""Multipliers so near the circle at the end of a branch are on it: it may begin or end at a special point."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A point as the ledger has it.
+
+    Parameters
+    ----------
+    label : Label
+        What kind of point it is.
+    value : float
+        The continuation parameter (SI).
+    slope : float
+        d parameter / d arclength.
+    growth : ndarray
+        log |mu| of the multipliers that are not 1 whatever the parameters; of an equilibrium the real parts
+        over the largest eigenvalue.
+    noise : float
+        What these are known to; infinite where they are not known, or one is held on the circle.
+    blur : float
+        What the parameter is known to (SI).
+    equilibrium : bool
+        Whether it is one.
+    conservative : bool
+        Whether multipliers come in pairs mu, 1/mu.
+    """
+
+    label: Label
+    value: float
+    slope: float
+    growth: np.ndarray
+    noise: float
+    blur: float = 0.0
+    equilibrium: bool = False
+    conservative: bool = False
+
+    @property
+    def passing(self) -> int | None:
+        """How many pass there; None where that is not known, as where orbits shrink to an equilibrium."""
+        if self.label is Label.HOPF and not self.equilibrium:
+            return None
+        return 0 if self.label in PLAIN else PASSING.get(self.label)
+
+    @property
+    def unstable(self) -> set[int]:
+        """How many multipliers may lie outside."""
+        return self._outside(self.growth, max(self.noise, BESIDE_END if self.label is Label.END else 0.0))
+
+    @property
+    def beside(self) -> set[int]:
+        """How many besides those that pass there."""
+        passing = (self.passing or 0) * (2 if self.conservative else 1)
+        order = np.abs(self.growth).argsort()
+        return self._outside(self.growth[order[passing:]], self.noise)
+
+    @staticmethod
+    def _outside(growth: np.ndarray, noise: float) -> set[int]:
+        return set(range(int((growth > noise).sum()), int((growth >= -noise).sum()) + 1))
+
+    def after(self, before: set[int], steep: float) -> set[int]:
+        """How many may lie outside after the point, of those that may before it; none is a contradiction."""
+        if self.label is Label.END:  # a branch that was begun at a special point may change there
+            return self.unstable if before & self.unstable else set()
+        if self.label in PLAIN:
+            return before & self.unstable
+        passing = self.passing
+        if passing is None:
+            return set(range(len(self.growth) + 1))
+        few = self.beside
+        more = {count + passing for count in few}
+        stay = self.label in TOUCHING and abs(self.slope) <= steep
+        up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
+        return up | down | (before & (few | more) if stay else set())
+
+
+def growth(multipliers: Complex, equilibrium: bool) -> np.ndarray:
+    """Return log |mu|, or of an equilibrium the real parts over the largest eigenvalue."""
+    size, tiny = np.abs(multipliers), float(np.finfo(float).tiny)
+    if equilibrium:
+        return multipliers.real / max(float(size.max(initial=0.0)), tiny)
+    return np.log(np.maximum(size, tiny))
+
+
+def noise(error: ErrorEstimate, multipliers: Complex) -> float:
+    """Return what log |mu| near 0 is known to."""
+    return CONSERVED * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDING
+
+
+def entry(solution: Solution, label: Label) -> Entry:
+    """Return the entry of a solution."""
+    spectrum, equilibrium = solution.spectrum, solution.orbit.equilibrium
+    known = not codim2.marginal(solution.problem) and (equilibrium or known_spectrum(solution))
+    return Entry(
+        label=label,
+        value=solution.value,
+        slope=solution.tangent.parameter,
+        growth=growth(spectrum.nontrivial, equilibrium),
+        noise=noise(solution.error, spectrum.multipliers) if known else np.inf,
+        blur=solution.error.motion * abs(solution.value),
+        equilibrium=equilibrium,
+        conservative=solution.problem.trivial > 1,
+    )
+
+
+@dataclass(frozen=True)
+class Gap:
+    """What no labelled point accounts for, between two values of the parameter (SI)."""
+
+    begin: float
+    end: float
+    why: str
+
+    def __str__(self) -> str:
+        return f"between {self.begin:.10g} and {self.end:.10g} {self.why}"
+
+
+def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
+    """Return what is not accounted for between the points of a branch, in order along it.
+
+    turns: whether turns of the parameter have labels there, as folds of a branch have.
+    """
+    steep = STEEP * max((abs(entry.slope) for entry in entries), default=0.0)
+    found: list[Gap] = []
+    counts = entries[0].unstable if entries else set()
+    for last, entry in pairwise(entries):
+        before, counts = counts, entry.after(counts, steep)
+        if not counts:
+            counts = entry.unstable
+            found.append(Gap(last.value, entry.value, _passed(before, counts, entry.label)))
+        elif turns and _turned(last, entry, steep):
+            found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
+    return found
+
+
+def _turned(last: Entry, entry: Entry, steep: float) -> bool:
+    """Whether the parameter does not go from one point to the next as it does at both."""
+    moved = entry.value - last.value
+    way = [moved] if abs(moved) > max(last.blur, entry.blur) else []
+    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > steep]
+    return len({bool(direction > 0) for direction in way}) > 1
+
+
+def _passed(before: set[int], after: set[int], label: Label) -> str:
+    begin, end = (" or ".join(map(str, sorted(counts))) for counts in (before, after))
+    why = " without a labelled point" if label in PLAIN else f", which {label} does not explain"
+    return f"unstable multipliers go from {begin} to {end}{why}"
