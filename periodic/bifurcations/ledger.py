@@ -155,17 +155,25 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 
     turns: whether turns of the parameter have labels there, as folds of a branch have.
     """
-    steep = STEEP * max((abs(entry.slope) for entry in entries), default=0.0)
-    found: list[Gap] = []
-    counts = entries[0].unstable if entries else set()
-    for last, entry in pairwise(entries):
-        before, counts = counts, entry.after(counts, steep)
-        if not counts:
-            counts = entry.unstable
-            found.append(Gap(last.value, entry.value, _passed(before, counts, entry.label)))
+    steep, found = _steep(entries), []
+    for (last, entry), (before, after) in zip(pairwise(entries), pairwise(counts(entries)), strict=True):
+        if not entry.after(before, steep):
+            found.append(Gap(last.value, entry.value, _passed(before, after, entry.label)))
         elif turns and _turned(last, entry, steep):
             found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
     return found
+
+
+def counts(entries: Sequence[Entry]) -> list[set[int]]:
+    """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
+    steep, found = _steep(entries), [entry.unstable for entry in entries[:1]]
+    for entry in entries[1:]:
+        found.append(entry.after(found[-1], steep) or entry.unstable)
+    return found
+
+
+def _steep(entries: Sequence[Entry]) -> float:
+    return STEEP * max((abs(entry.slope) for entry in entries), default=0.0)
 
 
 def _turned(last: Entry, entry: Entry, steep: float) -> bool:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.ledger import Gap, gaps
+from periodic.bifurcations.ledger import Gap, counts, gaps
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.point import Point
@@ -118,6 +119,19 @@ class Branch(Record):
     def stable(self) -> np.ndarray:
         """Whether each point is stable, shape (points,)."""
         return np.array([p.stable for p in self.points], dtype=bool)
+
+    @property
+    def stable_between(self) -> np.ndarray:
+        """Whether the branch is stable between neighbouring points, shape (points - 1,).
+
+        Between two special points, each with a multiplier on the unit circle, those before tell.
+        """
+        between = []
+        known = counts([point.entry for point in self.points])
+        for (a, b), after in zip(pairwise(self.points), known, strict=False):
+            plain = [point.stable for point in (a, b) if not point.label.critical]
+            between.append(all(plain) if plain else after == {0})
+        return np.array(between, dtype=bool)
 
     def peak_to_peak(self, output: str) -> Array:
         """Return maximum minus minimum of an output along the branch.

@@ -59,7 +59,7 @@ def plot(
     for piece, stable in runs(branch):
         axes.plot(values[piece], heights[piece], "-" if stable else "--", color="C0", linewidth=1.5)
     for point in branch.special_points:
-        if point.label in (Label.FOLD, Label.FAILED) or (still and point.label.critical):
+        if point.label not in (Label.END, Label.USER):
             at = (point.parameter, measured(point))
             axes.plot(*at, "o", color="C3", markersize=5)
             axes.annotate(point.label.value, at, xytext=(6, 6), textcoords="offset points")
@@ -70,10 +70,10 @@ def plot(
 
 def runs(branch: Branch) -> list[tuple[slice, bool]]:
     """Cut a branch into stretches of one stability; neighbours share their end point."""
-    stable = branch.stable
+    stable = branch.stable_between
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     return [
-        (slice(begin, min(end + 1, len(stable))), bool(stable[begin]))
+        (slice(begin, end + 1), bool(stable[begin]))
         for begin, end in zip(cuts[:-1], cuts[1:], strict=True)
         if end > begin
     ]

@@ -9,16 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from periodic import Branch
-
 PER_SEGMENT = 8
 """Parts that the curve is drawn in between two computed points."""
-
-
-def solid(branch: Branch) -> np.ndarray:
-    """Return for each segment of a branch whether it is stable, up to the fold or doubling that ends it."""
-    sound = np.array([p.stable or p.label.value in ("LP", "PD") for p in branch], dtype=bool)
-    return sound[:-1] & sound[1:]
 
 
 def draw_curve(

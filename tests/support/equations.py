@@ -128,3 +128,15 @@ def two_masses(everywhere: bool = True) -> sym.CompiledSystem:
             outputs=energy,
         )
     )
+
+
+def growing() -> sym.CompiledSystem:
+    """x'' = (.03^2 - (mu - .33)^2) x' - x + .1 cos(.7 t): damped but between mu = .30 and .36."""
+    return sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": x.v, "v": (9e-4 - (p.mu - 0.33) ** 2) * x.v - x.x + 0.1 * wave.cos},
+            states={"x": 0.0, "v": 0.0},
+            parameters={"Omega": 0.7, "mu": 0.0},
+            frequency="Omega",
+        )
+    )

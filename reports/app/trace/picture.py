@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from reports.app.curve import draw_curve, solid
+from reports.app.curve import draw_curve
 from reports.app.drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
 from reports.app.view import View, view_of
 from symbolic.scenes.schema import Scene
@@ -25,7 +25,7 @@ def draw(path: Path, scene: Scene, branch: Branch, integrated: Settlements | Non
     """Write the picture of a branch as a PNG file, with what time integration settles to."""
     drawn = figure(5.0)
     axes, view = drawn.add_subplot(), view_of(scene)
-    draw_curve(axes, *_values(view, branch), solid(branch), color=BLUE)
+    draw_curve(axes, *_values(view, branch), branch.stable_between, color=BLUE)
     if integrated is not None:
         _integrated(axes, integrated)
     _marks(axes, view, branch)
@@ -55,10 +55,10 @@ def _integrated(axes: Axes, settled: Settlements) -> None:
 
 
 def _marks(axes: Axes, view: View, branch: Branch) -> None:
-    """Mark and name folds, doublings and where a trace failed, on the side away from the branch."""
+    """Mark and name special points and where a trace failed, on the side away from the branch."""
     across, up = _values(view, branch)
     for k, point in enumerate(branch):
-        if point.label.value not in ("LP", "PD", "MX"):
+        if point.label.value in ("", "EP", "UZ"):
             continue
         neighbours = across[max(k - 1, 0) : k + 2]
         side = 1 if across[k] >= neighbours.mean() else -1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +58,8 @@ def interrupted(task: Task, folder: Path) -> per.Branch:
 
     Raises InputError where there is none, or one of another scene.
     """
-    places = [folder / JOURNAL, folder / INCOMPLETE / BRANCH, folder / BRANCH]
+    incomplete = sorted(folder.glob(f"{INCOMPLETE}*/{BRANCH}"))
+    places = [folder / JOURNAL, *incomplete, folder / BRANCH]
     # A journal is empty until the first step.
     there = [place for place in places if place.is_file() and place.stat().st_size]
     path = max(there, key=lambda place: (place.name == JOURNAL, place.stat().st_mtime), default=None)
@@ -137,9 +139,21 @@ def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Sett
 
 
 def place(branch: per.Branch, folder: Path) -> Path:
-    """Return where a branch goes: one that is cut short never in place of an earlier one."""
+    """Return where a branch goes: one that is cut short in place of none but a shorter one cut short."""
     cut = branch.stop.reason.numerical or branch.stop.reason is per.Reason.INTERRUPTED
-    return writable(folder / INCOMPLETE) if cut and (folder / BRANCH).exists() else folder
+    if not cut or not (folder / BRANCH).exists():
+        return folder
+    others = (folder / f"{INCOMPLETE}-{number}" for number in count(2))
+    places = chain([folder / INCOMPLETE], others)
+    return writable(next(place for place in places if _length(place / BRANCH) <= len(branch)))
+
+
+def _length(path: Path) -> int:
+    """How many points a branch file has; 0 of none that can be read."""
+    try:
+        return len(per.Branch.load(path))
+    except per.BranchFileError:
+        return 0
 
 
 def save(

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from periodic import Label
-from reports.app.curve import draw_curve, solid
+from reports.app.curve import draw_curve
 from reports.studies.pages.content import Found, Section, Tell
 from reports.studies.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.studies.paper.branches import preload, resonance
@@ -88,7 +88,7 @@ def _in_preload() -> Figure:
     figure, both = panels(1, 2, height=3.2)
     for axes, speed, name in zip(both, preload.SPEEDS, "ab", strict=True):
         found = preload.branch(speed)
-        draw_curve(axes, found.values, found.peak_to_peak("x") / MICRO, solid(found), color=TRUSTED)
+        draw_curve(axes, found.values, found.peak_to_peak("x") / MICRO, found.stable_between, color=TRUSTED)
         mark(axes, found, 1.0, TRUSTED)
         common = [(p.parameter, p.peak_to_peak("x") / MICRO) for p in found.labelled(Label.USER)]
         rings = {"color": SECOND, "markerfacecolor": "none", "label": "also traced in speed"}

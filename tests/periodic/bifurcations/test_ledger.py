@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.equations import growing
 
 import periodic as per
 import symbolic as sym
@@ -23,18 +24,6 @@ def places(branch: per.Branch, label: per.Label) -> list[float]:
 def equations(rates: Any, states: dict[str, float], **parameters: float) -> sym.CompiledSystem:
     """A system of the first order."""
     return sym.compile(sym.Equations(rates, states=states, parameters=parameters))
-
-
-def growing() -> sym.CompiledSystem:
-    """x'' = (.03^2 - (mu - .33)^2) x' - x + .1 cos(.7 t): damped but between mu = .30 and .36."""
-    return sym.compile(
-        sym.Equations(
-            lambda x, p, wave: {"x": x.v, "v": (9e-4 - (p.mu - 0.33) ** 2) * x.v - x.x + 0.1 * wave.cos},
-            states={"x": 0.0, "v": 0.0},
-            parameters={"Omega": 0.7, "mu": 0.0},
-            frequency="Omega",
-        )
-    )
 
 
 @pytest.mark.parametrize("begin", [0.0, 0.05, 0.13, 0.29])

@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from support.equations import growing
 from support.numpy_systems import AlgebraicOscillator, BrokenOscillator
 from support.traces import disc, duffing
 
@@ -208,3 +209,13 @@ def test_point_is_immutable() -> None:
     with pytest.raises(AttributeError):
         point.parameter = 1.0  # type: ignore[misc]
     assert replace(point, label=Label.USER).label is Label.USER and point.label is Label.END
+
+
+def test_plot_marks_tori_and_their_stretches(axes: Axes) -> None:
+    """Assert NS on a plot, the window between two of them dashed and what follows solid."""
+    branch = per.trace(growing(), "mu", (0.0, 1.0))
+    per.plot(branch, axes=axes)
+    assert [text.get_text() for text in axes.texts] == ["NS", "NS"]
+    (_, before), (style, window), (_, after) = pieces(axes)
+    assert style == "--" and [window.min(), window.max()] == pytest.approx([0.30, 0.36], rel=1e-6)
+    assert before.max() == window.min() and window.max() == after.min()

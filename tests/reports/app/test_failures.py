@@ -1,6 +1,7 @@
 """The command line where things go wrong: sentences, exit codes and what is saved."""
 
 import json
+import os
 import signal
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,6 +13,7 @@ from support.commands import Capture, Patch, changed, command, refusal, wait_for
 
 import periodic as per
 from periodic.results.files import replacing
+from periodic.results.journal import Journal
 from reports.app.cli import main
 
 REFUSALS = {
@@ -121,6 +123,38 @@ def test_cut_short_never_replaces(tmp_path: Path, capsys: Capture, monkeypatch: 
     assert (tmp_path / "branch.nc").read_bytes() == before
     assert len(list((tmp_path / "incomplete").iterdir())) == 4
     assert str(tmp_path / "incomplete") in capsys.readouterr().err
+
+
+def test_shorter_never_replaces_longer(tmp_path: Path) -> None:
+    """Assert that of branches cut short the longer stays, and that the one to be resumed is the latest."""
+    trace = ["trace", "duffing", "--out", str(tmp_path)]
+    counts = {"": 5, "incomplete": 12, "incomplete-2": 4}
+    for points in counts.values():
+        assert main([*trace, "--max-points", str(points)]) == 3
+    for name, points in counts.items():
+        assert len(per.Branch.load(tmp_path / name / "branch.nc")) == points
+    assert main([*trace, "--max-points", "14", "--resume"]) == 3
+    assert len(per.Branch.load(tmp_path / "incomplete" / "branch.nc")) == 14
+    latest = tmp_path / "incomplete-2" / "branch.nc"
+    assert len(per.Branch.load(latest)) == 4
+
+
+def test_journal_is_resumed_before_an_older_branch(tmp_path: Path) -> None:
+    """Assert that a journal that a killed trace left is taken up, not the older branch file beside it."""
+    trace = ["trace", "duffing", "--out", str(tmp_path)]
+    assert main([*trace, "--max-points", "3"]) == 3
+    kept = (tmp_path / "branch.nc").read_bytes()
+    assert main([*trace, "--max-points", "9"]) == 3
+    branch = per.Branch.load(tmp_path / "incomplete" / "branch.nc")
+    with Journal(tmp_path / "branch.journal", replace(branch, points=(), checkpoints=())) as journal:
+        journal.add(branch.points, branch.stop, branch.checkpoints[0])
+    for path in (tmp_path / "incomplete").iterdir():
+        path.unlink()
+    os.utime(tmp_path / "branch.journal", (0, 0))
+    assert main([*trace, "--max-points", "10", "--resume"]) == 3
+    again = per.Branch.load(tmp_path / "incomplete" / "branch.nc")
+    assert len(again) == 10 and again.values[:9].tolist() == branch.values.tolist()
+    assert (tmp_path / "branch.nc").read_bytes() == kept
 
 
 def test_title_that_is_no_formula(tmp_path: Path, capsys: Capture) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from periodic import Branch, Label
-from reports.app.curve import draw_curve, solid
+from reports.app.curve import draw_curve
 from reports.studies.paper.common.discs import MICRO
 from reports.studies.paper.common.tracing import xy
 from symbolic.scenes.axes import RPM
@@ -22,7 +22,7 @@ def curve(
     axes: Any, found: Branch, color: str, labels: tuple[str, str] = ("", ""), linewidth: float = 1.4
 ) -> None:
     """Draw x over speed along a branch, stable parts solid, unstable ones dashed."""
-    draw_curve(axes, *xy(found), solid(found), color=color, labels=labels, linewidth=linewidth)
+    draw_curve(axes, *xy(found), found.stable_between, color=color, labels=labels, linewidth=linewidth)
 
 
 def mark(axes: Any, found: Branch, unit: float = RPM, color: str = "k") -> None:
