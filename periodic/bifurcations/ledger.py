@@ -29,8 +29,8 @@ PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
 TOUCHING = (Label.BRANCH, Label.DOUBLING)
 """Points at which a branch that turns leaves another one: a multiplier touches 1 and goes back."""
 
-STEEP = 1e-6
-"""Slopes of the parameter smaller than this part of the largest are those of a turn."""
+STEEP = 1e-5
+"""Slopes of the parameter smaller than this, in parts of its range, are those of a turn."""
 
 BESIDE_END = 1e-3
 """Multipliers so near the circle at the end of a branch are on it: it may begin or end at a special point."""
@@ -47,7 +47,7 @@ class Entry:
     value : float
         The continuation parameter (SI).
     slope : float
-        d parameter / d arclength.
+        d parameter / d arclength, in ranges of the parameter.
     growth : ndarray
         log |mu| of the multipliers that are not 1 whatever the parameters; of an equilibrium the real parts
         over the largest eigenvalue.
@@ -72,10 +72,14 @@ class Entry:
 
     @property
     def passing(self) -> int | None:
-        """How many pass there; None where that is not known, as where orbits shrink to an equilibrium."""
+        """How many pass there; None where that is not known, as where orbits shrink to an equilibrium.
+
+        At folds of conservative orbits none pass but the two that are 1.
+        """
         if self.label is Label.HOPF and not self.equilibrium:
             return None
-        return 0 if self.label in PLAIN else PASSING.get(self.label)
+        none = self.label in PLAIN or (self.conservative and self.label is Label.FOLD)
+        return 0 if none else PASSING.get(self.label)
 
     @property
     def unstable(self) -> set[int]:
@@ -93,7 +97,7 @@ class Entry:
     def _outside(growth: np.ndarray, noise: float) -> set[int]:
         return set(range(int((growth > noise).sum()), int((growth >= -noise).sum()) + 1))
 
-    def after(self, before: set[int], steep: float) -> set[int]:
+    def after(self, before: set[int]) -> set[int]:
         """How many may lie outside after the point, of those that may before it; none is a contradiction."""
         if self.label is Label.END:  # a branch that was begun at a special point may change there
             return self.unstable if before & self.unstable else set()
@@ -104,7 +108,7 @@ class Entry:
             return set(range(len(self.growth) + 1))
         few = self.beside
         more = {count + passing for count in few}
-        stay = self.label in TOUCHING and abs(self.slope) <= steep
+        stay = self.label in TOUCHING and abs(self.slope) <= STEEP
         up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
@@ -129,7 +133,7 @@ def entry(solution: Solution, label: Label) -> Entry:
     return Entry(
         label=label,
         value=solution.value,
-        slope=solution.tangent.parameter,
+        slope=solution.tangent.parameter / solution.problem.scale,
         growth=growth(spectrum.nontrivial, equilibrium),
         noise=noise(solution.error, spectrum.multipliers) if known else np.inf,
         blur=solution.error.motion * abs(solution.value),
@@ -155,32 +159,28 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 
     turns: whether turns of the parameter have labels there, as folds of a branch have.
     """
-    steep, found = _steep(entries), []
+    found = []
     for (last, entry), (before, after) in zip(pairwise(entries), pairwise(counts(entries)), strict=True):
-        if not entry.after(before, steep):
+        if not entry.after(before):
             found.append(Gap(last.value, entry.value, _passed(before, after, entry.label)))
-        elif turns and _turned(last, entry, steep):
+        elif turns and _turned(last, entry):
             found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
     return found
 
 
 def counts(entries: Sequence[Entry]) -> list[set[int]]:
     """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
-    steep, found = _steep(entries), [entry.unstable for entry in entries[:1]]
+    found = [entry.after(set(range(len(entry.growth) + 1))) for entry in entries[:1]]
     for entry in entries[1:]:
-        found.append(entry.after(found[-1], steep) or entry.unstable)
+        found.append(entry.after(found[-1]) or entry.unstable)
     return found
 
 
-def _steep(entries: Sequence[Entry]) -> float:
-    return STEEP * max((abs(entry.slope) for entry in entries), default=0.0)
-
-
-def _turned(last: Entry, entry: Entry, steep: float) -> bool:
+def _turned(last: Entry, entry: Entry) -> bool:
     """Whether the parameter does not go from one point to the next as it does at both."""
     moved = entry.value - last.value
     way = [moved] if abs(moved) > max(last.blur, entry.blur) else []
-    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > steep]
+    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > STEEP]
     return len({bool(direction > 0) for direction in way}) > 1
 
 

@@ -57,7 +57,7 @@ def _crosses_twice(base: Solution, new: Solution) -> bool:
 
 
 def _growth(solution: Solution) -> float:
-    """Real part of the complex pair nearest the imaginary axis, with the sign of the test; else that itself."""
+    """Real part of the complex pair nearest the imaginary axis, with the sign of the test; else that."""
     found, value = solution.spectrum.multipliers, hopf(solution)
     parts = np.abs(found[found.imag > 0].real)
     return float(np.sign(value) * parts.min()) if len(parts) else value

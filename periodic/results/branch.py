@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.ledger import Gap, counts, gaps
+from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.point import Point
@@ -98,12 +98,17 @@ class Branch(Record):
         return tuple(p for p in self.points if label == p.label or (label and label == p.event))
 
     @property
+    def _entries(self) -> list[Entry]:
+        low, high = self.made.get("bounds", (0.0, 1.0))
+        return [point.entry(high - low) for point in self.points]
+
+    @property
     def unaccounted(self) -> tuple[Gap, ...]:
         """What no labelled point accounts for: stretches over which the number of unstable multipliers or the
         direction of the parameter changes all the same. Turns are labelled on branches in one parameter.
         """
         picks = [d for d in self.made.get("determined", {}).values() if d.get("is") not in INTRINSIC]
-        return tuple(gaps([point.entry for point in self.points], turns=not picks))
+        return tuple(gaps(self._entries, turns=not picks))
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -127,7 +132,7 @@ class Branch(Record):
         Between two special points, each with a multiplier on the unit circle, those before tell.
         """
         between = []
-        known = counts([point.entry for point in self.points])
+        known = counts(self._entries)
         for (a, b), after in zip(pairwise(self.points), known, strict=False):
             plain = [point.stable for point in (a, b) if not point.label.critical]
             between.append(all(plain) if plain else after == {0})

@@ -112,14 +112,24 @@ class Point:
         largest = float(np.abs(self.multipliers).max(initial=1.0))
         return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
 
-    @property
-    def entry(self) -> Entry:
-        """The point as the ledger of its branch has it."""
+    def entry(self, scale: float) -> Entry:
+        """Return the point as the ledger of its branch has it.
+
+        Parameters
+        ----------
+        scale : float
+            The parameter's range (SI).
+
+        Returns
+        -------
+        Entry
+            What the ledger needs.
+        """
         lost = self.marginal or (self.trivial is not None and self.trivial > LOST)
         return Entry(
             label=self.label,
             value=self.parameter,
-            slope=self.slope,
+            slope=self.slope / scale,
             growth=growth(self.nontrivial, self.equilibrium),
             noise=np.inf if lost else noise(self.error, self.multipliers),
             blur=self.error.motion * abs(self.parameter),
