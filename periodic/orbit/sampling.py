@@ -16,7 +16,19 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System, index_of, resets_of
 
 PER_PERIOD = 96
-"""Intervals in each period of the excitation."""
+"""Intervals in each period of the excitation, of equal length as far as these show the samples."""
+
+GRADED = 384
+"""Intervals in each period, between samples, of a motion that the equal ones do not show."""
+
+SMALL = 1e-6
+"""Peak to peak (scaled) that samples are compared with at the least."""
+
+APART = 1e-9
+"""Least distance, in periods, of an interval's end from that of the period."""
+
+SHOWN = 0.01
+"""Largest distance of the samples from the orbit, in peaks to peak."""
 
 LEAST = 4
 """Fewest intervals between two impacts."""
@@ -94,9 +106,31 @@ def sampled(
 
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:
-    mesh = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
-    left, width = mesh.grid(np.zeros(0)).left, mesh.grid(np.zeros(0)).width
-    stages = left[:, None] + width[:, None] * mesh.scheme.points
+    """The orbit on equal intervals, or on those of the samples' own where equal ones jump over something."""
+    even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
+    orbit = _on(even, phase, state, algebraic, parameter)
+    missed = np.abs(orbit.state(phase) - state).max(axis=0)
+    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), SMALL)).all():
+        return orbit
+    return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
+
+
+def _graded(phase: Array, state: Array, ntst: int) -> Mesh:
+    """Intervals that end at samples, of about equal arclength over phase and scaled states."""
+    sizes = np.maximum(np.ptp(state, axis=0), SMALL)
+    steps = np.diff(np.column_stack([FORCED * state / sizes, phase]), axis=0)
+    length = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))
+    chosen = np.unique(np.searchsorted(length, np.linspace(0, length[-1], ntst + 1)))
+    period = FORCED * round((phase[-1] - phase[0]) / FORCED)
+    inside = np.sort(np.mod(phase[chosen[:-1]], period)) / period
+    breaks = np.concatenate([[0.0], inside[(inside > APART) & (inside < 1 - APART)], [1.0]])
+    return Mesh(Scheme(), (breaks,), (), period)
+
+
+def _on(mesh: Mesh, phase: Array, state: Array, algebraic: Array, parameter: Array) -> Orbit:
+    """Samples interpolated on a mesh."""
+    grid = mesh.grid(np.zeros(0))
+    stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
 
     def at(tau: Array, values: Array) -> Array:
         place = phase[0] + np.mod(tau - phase[0], mesh.period)

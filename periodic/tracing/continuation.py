@@ -170,7 +170,7 @@ class Continuation:
         base = found.found(self.start, float(self.sign))
         if not base.ok:
             beyond = found.shortfall
-            self.stop = Stop.inaccurate(beyond) if beyond else Stop.no_start(base.outcome.value)
+            self.stop = Stop.inaccurate(beyond) if beyond else Stop.no_start(found.why_not(base.outcome))
             return
         if base.error.motion > solver.tolerance.orbit:
             self.stop = Stop.inaccurate(base.refinement.shortfall)
@@ -239,9 +239,10 @@ class Continuation:
         numbers = (s.ds, s.steps, s.since_remesh, s.left, s.met, done, s.course)
         return Checkpoint(s.sign, s.last.tangent, s.last.correction.fundamental, *numbers)
 
-    def _follow(self, solver: Solver, start: Orbit, sign: int) -> tuple[Orbit | None, Stop]:
-        """Follow a branch; return its last orbit and why it ends."""
-        run = Continuation(solver, start, sign, self.control, search=False)
+    def _follow(self, solver: Solver, start: Orbit, sign: int, most: int | None) -> tuple[Orbit | None, Stop]:
+        """Follow a branch in so many steps at most; return its last orbit and why it ends."""
+        control = self.control if most is None else replace(self.control, max_points=most)
+        run = Continuation(solver, start, sign, control, search=False)
         points = list(run)
         assert run.stop is not None
         return (points[-1].orbit if points else None), run.stop

@@ -1,8 +1,8 @@
-"""The first orbit of a branch: from its guess, by other schemes, from elsewhere, at a turn."""
+"""The first orbit of a branch: from its guess, by other schemes, from elsewhere, settled or grown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,6 +14,8 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.orbit import Orbit
 from periodic.results.stop import Reason, Stop
+from periodic.stability.spectrum import Stability
+from periodic.tracing.settling import settled
 
 COLLAPSED = 0.1
 """An orbit that is so much smaller than its guess is not what was guessed."""
@@ -24,8 +26,11 @@ ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 LOOSE = 1e-2
 """Tolerance of the way to a first orbit that is beyond the method's reach."""
 
-Follow = Callable[[Solver, Orbit, int], tuple[Orbit | None, Stop]]
-"""What follows a branch from an orbit one way: its last orbit, and why it ends."""
+GROWN = 300
+"""Most steps in which another parameter is grown from 0."""
+
+Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
+"""What follows a branch from an orbit one way, in so many steps at most: its last orbit, and why it ends."""
 
 
 @dataclass
@@ -33,13 +38,14 @@ class Start:
     """The search for the first orbit.
 
     search: whether one that Newton does not find may be approached from elsewhere, by `follow`. shortfall:
-    why the way there ended where the method's reach does.
+    why the way there ended where the method's reach does. tried: what was tried besides the guess.
     """
 
     solver: Solver
     follow: Follow
     search: bool = True
     shortfall: str = field(default="", init=False)
+    tried: list[str] = field(default_factory=list, init=False)
 
     def found(self, guess: Orbit, sign: float) -> Solution:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
@@ -52,13 +58,57 @@ class Start:
         other = self._by_others(guess, sign)
         if other is not None and other.ok:
             return other
+        self.tried.append(f"other values of {solver.problem.parameter}")
         for factor in ELSEWHERE:
             orbit = self._approached(guess, factor)
             if orbit is not None:
                 return refined(solver, solver.at_parameter(orbit, sign), fixed=True)
             if self.shortfall:
-                break
+                return first
+        for orbit in self._other_guesses(guess):
+            if orbit is not None and (last := self._fixed(orbit, sign)).ok:
+                return last
         return first
+
+    def why_not(self, outcome: Outcome) -> str:
+        """Say why there is no first orbit, what was tried, and what else there is."""
+        if not self.tried:
+            return outcome.value
+        return (
+            f"{outcome.value}; nor was one found from {', '.join(self.tried)}; "
+            f"guess=per.sampled(...) takes a motion from a simulation"
+        )
+
+    def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
+        """Guesses at the wanted parameters, each found only when those before have not served."""
+        yield self._settled(guess)
+        yield from self._grown(guess)
+
+    def _settled(self, guess: Orbit) -> Orbit | None:
+        """A guess from a simulation that is left to settle; none of free oscillations and equilibria."""
+        problem, method = self.solver.problem, self.solver.discretisation
+        if problem.autonomous or method.stability is Stability.EIGENVALUES:
+            return None
+        self.tried.append("a simulation left to settle")
+        motion = settled(problem.system, guess)
+        return None if motion is None else method.guess(problem.system, guess.parameter, motion)
+
+    def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
+        """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
+        problem = self.solver.problem
+        for k, quantity in enumerate(problem.system.parameters):
+            if k in problem.free or guess.parameter[k] == 0:
+                continue
+            parameter = guess.parameter.copy()
+            parameter[k] = 0.0
+            other = replace(problem, parameter=quantity.name, bounds=(0.0, float(guess.parameter[k])))
+            solver = replace(self.solver, problem=other)
+            first = solver.at_parameter(replace(guess, parameter=parameter), 1.0)
+            if first.ok:
+                self.tried.append(f"{quantity.name} grown from 0")
+                sign = int(np.sign(guess.parameter[k]))
+                orbit, _ = self.follow(solver, first.orbit, sign, GROWN)
+                yield orbit if orbit is not None and other.value(orbit) == guess.parameter[k] else None
 
     def _fixed(self, guess: Orbit, sign: float) -> Solution:
         return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)
@@ -105,10 +155,10 @@ class Start:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
         solver = replace(self.solver, problem=nearer)
-        orbit, stop = self.follow(solver, first.orbit, sign)
+        orbit, stop = self.follow(solver, first.orbit, sign, None)
         if stop.reason is Reason.INACCURATE and orbit is not None:
             self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
-            orbit, _ = self.follow(self._loosely(solver), orbit, sign)
+            orbit, _ = self.follow(self._loosely(solver), orbit, sign, None)
         return orbit if orbit is not None and problem.value(orbit) == wanted else None
 
 

@@ -1,0 +1,53 @@
+"""A motion that is left to settle from rest: a first orbit where Newton finds none."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+
+from periodic.correction.outcome import FAILURES
+from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.sampling import sampled
+from periodic.orbit.scheme import Array
+from periodic.system import Flowing, System, resets_of
+
+PERIODS = 100
+"""Most periods of the excitation that a motion is given to settle."""
+
+STILL = 1e-3
+"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
+
+TOLERANCE = 1e-6
+"""Of the integration."""
+
+SAMPLES = 193
+"""Places in a period at which it is looked at."""
+
+
+def settled(system: System, start: Orbit) -> Orbit | None:
+    """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
+
+    None where it does not settle within PERIODS, where its integration fails, and of a system without a flow
+    or with impacts.
+    """
+    if not hasattr(system, "flow") or resets_of(system):
+        return None
+    flowing, phase = cast(Flowing, system), np.linspace(0, FORCED, SAMPLES)
+    state, algebraic = start.nodes[0], start.algebraic[0, 0]
+    for _ in range(PERIODS):
+        try:
+            path = flowing.flow(state, algebraic, start.parameter, phase, (), TOLERANCE)
+        except FAILURES:
+            return None
+        if not np.isfinite(path.state).all():
+            return None
+        if _closed(path.state):
+            return sampled(phase, path.state, path.algebraic, start.parameter)
+        state, algebraic = path.state[-1], path.algebraic[-1]
+    return None
+
+
+def _closed(path: Array) -> bool:
+    """Whether a motion over a period comes back to its beginning."""
+    return bool(np.abs(path[-1] - path[0]).max() < STILL * np.ptp(path, axis=0).max())

@@ -1,0 +1,110 @@
+"""First orbits that Newton does not find from rest: settled, grown from 0, sampled; and what is said if none."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from reference.integration import path
+from scipy.integrate import solve_ivp
+
+import periodic as per
+import symbolic as sym
+
+F = sym.functions
+FEW = per.ArclengthControl(max_points=3)
+
+
+def forced(rates: Any, **parameters: float) -> sym.CompiledSystem:
+    """A system with the states x and v at rest at 0, forced with the frequency Omega."""
+    states = {"x": 0.0, "v": 0.0}
+    return sym.compile(sym.Equations(rates, states, parameters, frequency="Omega"))
+
+
+def returns(branch: per.Branch, acceleration: Any) -> None:
+    """Assert by DOP853 that the first orbit is periodic."""
+    orbit, Omega = branch[0].orbit, branch[0].parameter
+    start = np.array([float(orbit["x"](0.0)), float(orbit["v"](0.0))])
+
+    def rates(tau: float, y: np.ndarray) -> list[float]:
+        return [y[1] / Omega, acceleration(y[0], y[1], np.cos(tau)) / Omega]
+
+    assert path(rates, start)[:, -1] == pytest.approx(start, abs=1e-5)
+
+
+def test_backlash_from_rest() -> None:
+    """Assert that a mass loose within its backlash is started by a simulation that settles."""
+
+    def acceleration(x: Any, v: Any, wave: Any) -> Any:
+        return -0.05 * v - max(x - 1, 0.0) - min(x + 1, 0.0) + 0.1 + 0.05 * wave
+
+    system = forced(
+        lambda x, p, wave: {
+            "x": x.v,
+            "v": -0.05 * x.v - F.fmax(x.x - 1, 0) - F.fmin(x.x + 1, 0) + 0.1 + 0.05 * wave.cos,
+        },
+        Omega=0.8,
+    )
+    branch = per.trace(system, "Omega", (0.8, 1.5), control=FEW)
+    assert len(branch) == 3
+    returns(branch, acceleration)
+
+
+def test_forcing_grown_from_rest() -> None:
+    """Assert that orbits to which nothing settles, of negative damping, are reached by growing the force."""
+    system = forced(
+        lambda x, p, wave: {"x": x.v, "v": 0.05 * x.v - x.x - x.x**3 + p.F * wave.cos}, Omega=2.0, F=30.0
+    )
+    branch = per.trace(system, "Omega", (2.0, 2.1), control=FEW)
+    assert len(branch) == 3 and not branch[0].stable
+    returns(branch, lambda x, v, wave: 0.05 * v - x - x**3 + 30 * wave)
+
+
+def test_what_was_tried_is_said() -> None:
+    """Assert that a branch without a first orbit says what was tried and what else there is."""
+    system = forced(
+        lambda x, p, wave: {"x": x.v, "v": 1 + x.x**2 + x.v**2 + p.F * wave.cos}, Omega=1.0, F=0.3
+    )
+    branch = per.trace(system, "Omega", (1.0, 2.0), control=FEW)
+    assert branch.stop.reason is per.Reason.NO_START and len(branch) == 0
+    assert branch.stop.detail.endswith(
+        "nor was one found from other values of Omega, a simulation left to settle; "
+        "guess=per.sampled(...) takes a motion from a simulation"
+    )
+
+
+EPS = 1e-3
+
+
+@pytest.mark.parametrize("begin", [0, 700])
+def test_relaxation_oscillation_from_samples(begin: int) -> None:
+    """Assert that 2001 even samples with jumps are a start, from any phase; the period to 9 digits."""
+
+    def rates(t: float, u: np.ndarray) -> list[float]:
+        return [(u[1] - u[0] ** 3 / 3 + u[0]) / EPS, -u[0]]
+
+    def rising(t: float, u: np.ndarray) -> float:
+        return float(u[1])
+
+    rising.direction = 1.0  # type: ignore[attr-defined]
+    exact = {"method": "Radau", "rtol": 1e-10, "atol": 1e-12}
+    found = solve_ivp(rates, (0, 5), [2.0, 0.1], events=rising, **exact)
+    period = float(np.diff(found.t_events[0][-2:])[0])
+    omega, times = 2 * np.pi / period, np.linspace(0, period, 2001)
+    motion = solve_ivp(rates, (0, period), found.y_events[0][-2], t_eval=times, **exact).y.T
+    motion = np.concatenate([motion[begin:-1], motion[: begin + 1]])
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p: {"x": (x.y - x.x**3 / 3 + x.x) / EPS, "y": p.a - x.x},
+            states={"x": 0.0, "y": 0.0},
+            parameters={"a": 0.0},
+        )
+    )
+    parameter = [omega if q.name == "omega" else q.value for q in system.parameters]
+    phase = omega * times + (omega * times[begin])
+    guess = per.sampled(phase, motion, np.zeros((2001, 0)), parameter)
+    free = {"omega": per.PhaseCondition()}
+    branch = per.trace(system, "a", (0.0, 0.5), guess=guess, determined=free, control=FEW)
+    assert len(branch) == 3
+    assert 2 * np.pi / branch[0].orbit.omega == pytest.approx(period, rel=1e-9)
