@@ -12,11 +12,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations import codim2
-from periodic.bifurcations.course import Course
 from periodic.bifurcations.fold import FOLD, VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
-from periodic.bifurcations.testfunction import LEFT, TestFunction
+from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
 from periodic.bifurcations.turning import Found, is_one, named, shrinks
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import refined

@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.bifurcations.crossing import tangents
 from periodic.collocation.condensation import condensed
 from periodic.collocation.method import Collocation
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import Condition, side_conditions
 from periodic.correction.newton import correct, moved
+from periodic.equilibrium.crossing import tangents
 from periodic.equilibrium.linearise import linearise
 from periodic.linear.bordering import Chain
 from periodic.linear.unknowns import Increment

@@ -7,8 +7,10 @@ A new kind of point is one file: a label, a `TestFunction`, and where there are 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.correction.solution import Solution
@@ -76,3 +78,40 @@ class TestFunction:
             `local`, or the function itself.
         """
         return (self.local or self.value)(solution)
+
+
+def margins(solution: Solution, tests: Sequence[TestFunction]) -> dict[str, float]:
+    """Return how far a solution is from each kind of special points, by label and name."""
+    return {test.key: test.margin(solution) for test in tests}
+
+
+@dataclass(frozen=True)
+class Course:
+    """What the margins were at a solution before the base of a step, `gone` before it.
+
+    A parabola through the values there and at both ends of the step tells how near to 0 a function comes in
+    between, also where it is the same at both ends.
+
+    Parameters
+    ----------
+    gone : float
+        Length of the step before; infinite where there was none.
+    margins : mapping of str to float
+        As from `margins`.
+    """
+
+    gone: float = np.inf
+    margins: Mapping[str, float] = field(default_factory=dict)
+
+    def returns(self, test: TestFunction, base: Solution, new: Solution, ds: float) -> bool:
+        """Whether a margin of one sign may come to 0 and go back between two solutions `ds` apart."""
+        before = self.margins.get(test.key, np.nan)
+        ends = test.margin(base), test.margin(new)
+        if not (np.isfinite([before, *ends]).all() and ends[0] * ends[1] > 0):
+            return False
+        begin, end = np.abs(ends)
+        rise = (end - begin) / ds
+        bend = (rise - (begin - np.sign(ends[0]) * before) / self.gone) / (ds + self.gone)
+        place = (ds - rise / bend) / 2 if bend > 0 else np.inf
+        least = begin + place * (rise + bend * (place - ds)) if 0 < place < ds else np.inf
+        return bool(least < LEFT * min(begin, end))

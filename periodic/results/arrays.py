@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from periodic.bifurcations.course import Course
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.testfunction import Course
 from periodic.correction.error import ErrorEstimate
 from periodic.linear.unknowns import Increment
 from periodic.orbit.layout import Layout, Quantity

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from periodic.bifurcations.course import Course
+from periodic.bifurcations.testfunction import Course
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
 

@@ -15,11 +15,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations import codim2
-from periodic.bifurcations.course import Course, margins
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
+from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turning import Found
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.predictor import tangent

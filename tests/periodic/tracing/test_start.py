@@ -1,4 +1,4 @@
-"""First orbits that Newton does not find from rest: settled, grown from 0, sampled; and what is said if none."""
+"""First orbits that Newton does not find from rest: settled, grown from 0, sampled; what is said if none."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def forced(rates: Any, **parameters: float) -> sym.CompiledSystem:
 def returns(branch: per.Branch, acceleration: Any) -> None:
     """Assert by DOP853 that the first orbit is periodic."""
     orbit, Omega = branch[0].orbit, branch[0].parameter
-    start = np.array([float(orbit["x"](0.0)), float(orbit["v"](0.0))])
+    start = orbit.state(np.zeros(1))[0]
 
     def rates(tau: float, y: np.ndarray) -> list[float]:
         return [y[1] / Omega, acceleration(y[0], y[1], np.cos(tau)) / Omega]
