@@ -26,9 +26,6 @@ PASSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, La
 PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
 """Labels that say nothing of stability; of others nothing is known of what passes there."""
 
-TOUCHING = (Label.BRANCH, Label.DOUBLING)
-"""Points at which a branch that turns leaves another one: a multiplier touches 1 and goes back."""
-
 STEEP = 1e-5
 """Slopes of the parameter smaller than this, in parts of its range, are those of a turn."""
 
@@ -108,7 +105,7 @@ class Entry:
             return set(range(len(self.growth) + 1))
         few = self.beside
         more = {count + passing for count in few}
-        stay = self.label in TOUCHING and abs(self.slope) <= STEEP
+        stay = self.label is Label.BRANCH and abs(self.slope) <= STEEP  # it turns, and mu touches 1
         up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 

@@ -29,6 +29,9 @@ from periodic.system import System, index_of
 FAR = 0.02
 """Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
 
+NO_SIZE = 1e-6
+"""Orbits that are smaller than this (scaled) stay at rest; states of order one then tell how far that is."""
+
 
 class SwitchError(ArithmeticError):
     """No orbit of the new branch was found; the message says why."""
@@ -57,7 +60,8 @@ def doubled(
     determined : mapping of str to Condition, optional
         As in `trace`.
     distance : float, optional
-        From the orbit, root mean square of the scaled states; default FAR times the largest peak to peak.
+        From the orbit, root mean square of the scaled states; default FAR times the largest peak to peak (of
+        an orbit at rest FAR).
 
     Returns
     -------
@@ -156,7 +160,8 @@ def switched(
 ) -> Orbit:
     """Solve on the arclength constraint some way along a direction. Raises SwitchError."""
     free = tuple(index_of(system, name) for name in (parameter, *determined))
-    length = FAR * origin.span() if distance is None else distance
+    size = origin.span()
+    length = FAR * (size if size > NO_SIZE else 1.0) if distance is None else distance
     parameters = np.append(direction.parameter, np.zeros(len(determined)))
     unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
     direction = replace(direction, parameters=parameters).scaled(unit)

@@ -1,7 +1,7 @@
 """What a turn of a branch is: a fold, or another special point at which branches turn as well.
 
-A branch of doubled orbits turns where it meets the orbits it came from: the same doubling (PD), seen from the
-other branch. So does one that leaves a symmetric branch (BP).
+A branch of doubled orbits turns where it meets the orbits that it came from, at their PD, and one of lopsided
+orbits where it leaves a symmetric branch: from there these are branch points (BP).
 """
 
 from __future__ import annotations
@@ -42,11 +42,12 @@ class Found:
 def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
     """Return a turn of the branch by its name.
 
-    PD where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
-    more excitation periods later. HB where an autonomous orbit has shrunk to an equilibrium: what
-    follows are the same orbits half a period later. BP where a multiplier touches 1 without passing it: the
-    branch leaves another there, which goes on. On a curve in two parameters it is at most a cusp. Raises
-    RejectedError where a multiplier passes 1 and comes back within the step: a fold and a branch point.
+    BP where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
+    more excitation periods later, and what follows are the same orbits so much later. HB where an autonomous
+    orbit has shrunk to an equilibrium: what follows are the same orbits half a period later. BP also where a
+    multiplier touches 1 without passing it: the branch leaves another there, which goes on. On a curve in two
+    parameters it is at most a cusp. Raises RejectedError where a multiplier passes 1 and comes back within
+    the step: a fold and a branch point.
     """
     base, problem = stretch.base, stretch.solver.problem
     if codim2.picked(problem) is not None:
@@ -55,7 +56,7 @@ def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
         return replace(turn, label=Label.HOPF)
     apart = [from_itself(solution) for solution in (turn.solution, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
-        return replace(turn, label=Label.DOUBLING)
+        return replace(turn, label=Label.BRANCH)
     decides = new.discretisation.stability
     tests = (*codim2.PASSAGES[decides], *codim2.BESIDE_TURNS[decides])
     labels = [test.label for test in tests if test.touches(turn.solution, base, new)]

@@ -46,6 +46,11 @@ class DoublingCondition(Condition):
 class TorusCondition(Condition):
     """A pair of multipliers has the product 1: a torus bifurcation (NS) while it is complex."""
 
+    def check(self, system: System, parameter: Array) -> None:
+        """Refuse a system whose orbits have no pair of multipliers."""
+        if len(system.states) < 2:
+            raise ValueError("determined has TorusCondition(), which needs two states; the system has one")
+
     def at(self, origin: Orbit, given: Given) -> SideCondition:
         """Return the side condition near an orbit."""
         return _Pair()

@@ -9,9 +9,13 @@ import numpy as np
 
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.unknowns import mean_weights, node_phase_gradient
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
 from periodic.system import System
+
+PROBED = 8
+"""Phases at which it is looked whether equations depend on them."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,19 @@ class PhaseCondition(Condition):
 
     intrinsic: ClassVar[bool] = True
     trivial: ClassVar[int] = 1
+
+    def check(self, system: System, parameter: Array) -> None:
+        """Refuse an excited system, whose equations hold the phase of its orbits."""
+        state, algebraic = system.rest(parameter)
+        tau = np.linspace(0, FORCED, PROBED, endpoint=False)
+        away = np.tile(state, (PROBED, 1)) + np.cos(np.arange(state.size) + tau[:, None])
+        unknowns = np.tile(algebraic, (PROBED, 1))
+        line = system.linearise(np.zeros_like(away), away, unknowns, tau, parameter, ())
+        if np.abs(np.nan_to_num(line.d_phase)).max(initial=0.0) > 0:
+            raise ValueError(
+                f"determined has {type(self).__name__}(), for orbits whose phase is free; "
+                f"it must be left out, as the system is excited: its equations depend on the phase"
+            )
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
         """Return the side condition with respect to an orbit."""

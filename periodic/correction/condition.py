@@ -8,6 +8,7 @@ from typing import ClassVar, Protocol
 
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
 from periodic.system import System
 
 
@@ -62,6 +63,23 @@ class Condition(Protocol):
 
     intrinsic: ClassVar[bool] = False
     trivial: ClassVar[int] = 0
+
+    def check(self, system: System, parameter: Array) -> None:
+        """Refuse a system for which the condition makes no sense; by default none.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        parameter : ndarray, shape (p,)
+            Parameters in SI units where a branch begins.
+
+        Raises
+        ------
+        ValueError
+            In one sentence.
+        """
+        return
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
         """Return the side condition for orbits near `origin`.

@@ -56,7 +56,7 @@ class Stop:
         return f"{self.reason.value}: {self.detail}"
 
     @classmethod
-    def bound(cls, bounds: tuple[float, float], value: float) -> Stop:
+    def bound(cls, bounds: tuple[float, float], value: float, begun: float) -> Stop:
         """Return that the parameter reached an end of its range.
 
         Parameters
@@ -65,9 +65,12 @@ class Stop:
             The range (SI).
         value : float
             Where it ended (SI).
+        begun : float
+            Where it began (SI).
         """
         side = "lower" if abs(value - bounds[0]) < abs(value - bounds[1]) else "upper"
-        return cls(Reason.BOUND, f"{side} end of the range")
+        back = ", where it began: it turned back" if value == begun else ""
+        return cls(Reason.BOUND, f"{side} end of the range{back}")
 
     @classmethod
     def limit(cls, name: str) -> Stop:

@@ -308,7 +308,11 @@ class Continuation:
                 return
         if label is Label.END and self.stop is None:
             bounds = self.solver.problem.bounds
-            self.stop = Stop.limit(special.name) if own else Stop.bound(bounds, special.solution.value)
+            self.stop = (
+                Stop.limit(special.name)
+                if own
+                else Stop.bound(bounds, special.solution.value, state.begun.value)
+            )
         name = special.name if label is Label.USER and own else label.value
         if special.shrunk:
             self.stop = Stop.equilibrium(state.steps + 1)

@@ -137,6 +137,9 @@ def setup(
     first = _parameters(system, base, {**(values or {}), parameter: begin})
     if guess is not None:
         first[list(problem.others)] = guess.parameter[list(problem.others)]
+    for condition in problem.conditions:
+        if hasattr(condition, "check"):
+            condition.check(system, first)
     work = Work(method.control.max_newton)
     return Setup(
         problem=problem,

@@ -121,7 +121,7 @@ class Watch:
         """
         found = {}
         for name, functional in self.columns.items():
-            value = functional(system, orbit)
+            value = _called(f"column {name}", functional, system, orbit)
             if not isinstance(value, int | float | np.number):
                 raise ValueError(f"column {name} gave {value!r}; it must give a number")
             found[name] = float(value)
@@ -161,8 +161,21 @@ def slack(limit: float) -> float:
     return 1e-12 * abs(limit)
 
 
+def _called(what: str, functional: Functional, system: System, orbit: Orbit) -> object:
+    """Return what a functional of the user's gives. Raises ValueError that names the one that fails."""
+    try:
+        return functional(system, orbit)
+    except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
+        why = f"{type(error).__name__}: {error}"
+        raise ValueError(f"{what} failed with {why}; it must give a number for each orbit") from error
+
+
 def _passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
     def value(solution: Solution) -> float:
-        return apart(functional, functional(solution.problem.system, solution.orbit), level)
+        found = _called(f"event {name}", functional, solution.problem.system, solution.orbit)
+        if not (isinstance(found, int | float | np.number) and math.isfinite(found)):
+            place = f"{solution.problem.parameter} = {solution.value:.10g}"
+            raise ValueError(f"event {name} gave {found!r} at {place}; it must be a finite number")
+        return apart(functional, float(found), level)
 
     return TestFunction(label=label, value=value, name=name)

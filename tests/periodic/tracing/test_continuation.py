@@ -87,6 +87,7 @@ def test_branch_that_returns_to_its_bound() -> None:
     assert len(branch.labelled(Label.FOLD)) == 1
     assert labelled(branch, Label.END) == [1.7, 1.7]
     assert branch.stop.reason is Reason.BOUND
+    assert branch.stop.detail == "lower end of the range, where it began: it turned back"
     assert [p.stable for p in branch.labelled(Label.END)] == [True, False]
 
 
@@ -255,6 +256,61 @@ def test_the_loop_spends_no_more_than_it_may() -> None:
     run = per.continuation(per.Problem(SYSTEM, "Omega", RANGE), control=per.ArclengthControl(max_newton=40))
     points = list(run)
     assert run.stop == per.Stop.max_newton(40) and 0 < len(run.collected) <= len(points)
+
+
+def failing(system: per.System, orbit: per.Orbit) -> float:
+    """A functional that cannot be called."""
+    raise ZeroDivisionError("division by zero")
+
+
+NEVER = "failed with ZeroDivisionError: division by zero; it must give a number for each orbit"
+
+
+@pytest.mark.parametrize(
+    ("watch", "sentence"),
+    [
+        (per.Watch(columns={"f": failing}), f"column f {NEVER}"),
+        (per.Watch(events={"f": per.Level(failing, 1.0)}), f"event f {NEVER}"),
+        (
+            per.Watch(events={"f": per.Level(lambda system, orbit: np.nan, 1.0)}),
+            "event f gave nan at Omega = 0.3; it must be a finite number",
+        ),
+    ],
+)
+def test_functionals_that_fail_are_named(watch: per.Watch, sentence: str) -> None:
+    """Assert that a functional of the user's which raises or gives no number is told by its name."""
+    with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
+        per.trace(SYSTEM, "Omega", (0.3, 0.6), watch=watch)
+
+
+@pytest.mark.parametrize(
+    ("condition", "sentence"),
+    [
+        (per.PhaseCondition(), "determined has PhaseCondition(), for orbits whose phase is free; it must be"),
+        (
+            per.Conservative(),
+            "determined has Conservative(), for orbits whose phase is free; it must be left",
+        ),
+    ],
+)
+def test_phases_of_excited_systems_are_refused(condition: per.Condition, sentence: str) -> None:
+    """Assert that a condition of free oscillations is refused for a system that is excited."""
+    with pytest.raises(ValueError, match=f"^{re.escape(sentence)}"):
+        per.trace(SYSTEM, "Omega", RANGE, determined={"F": condition})
+
+
+def test_torus_of_one_state_is_refused() -> None:
+    """Assert that a curve of tori is refused where no orbit has two multipliers."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": p.F * wave.cos - x.x},
+            states={"x": 0.0},
+            parameters={"Omega": 1.0, "F": 0.5},
+            frequency="Omega",
+        )
+    )
+    with pytest.raises(ValueError, match=r"^determined has TorusCondition\(\), which needs two states"):
+        per.trace(system, "Omega", (1, 3), determined={"F": per.TorusCondition()})
 
 
 @pytest.mark.parametrize(
