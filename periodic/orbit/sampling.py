@@ -218,7 +218,7 @@ def _real(name: str, given: object) -> Array:
 
 
 def _periods(phase: Array) -> int:
-    if phase.ndim != 1 or len(phase) < 4 or not (np.diff(phase) >= 0).all():
+    if phase.ndim != 1 or len(np.unique(phase)) < 4 or not (np.diff(phase) >= 0).all():
         raise ValueError("phases of the samples must be at least 4 rising numbers")
     length = float(phase[-1] - phase[0]) / FORCED
     periods = round(length) if math.isfinite(length) else 0
