@@ -16,7 +16,7 @@ def check_rest(task: Task) -> None:
         return
     parameter, begin = view_of(task.scene).parameter, task.scene.trace.bounds[0]
     try:
-        modes(build(task.scene), {parameter: begin})
+        modes(build(task.scene, condense=False), {parameter: begin})
     except NoRestError:
         raise InputError(
             "scene",

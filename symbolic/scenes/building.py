@@ -47,13 +47,14 @@ from symbolic.system.compile import compile
 from symbolic.system.compiled import CompiledSystem
 
 
-def build(scene: Scene) -> CompiledSystem:
+def build(scene: Scene, *, condense: bool = True) -> CompiledSystem:
     """Return the system of a scene. Its states, unknowns and outputs are those that its parts need.
 
-    Raises InputError where the environment asks for kernels that cannot be.
+    condense: whether structures bring their places alone, or all that small motion about rest needs. Raises
+    InputError where the environment asks for kernels that cannot be.
     """
     if isinstance(scene, ModelScene):
-        return scene.system(_kernels())
+        return scene.system(_kernels(), condense=condense)
     model = disc_model(scene) if isinstance(scene, DiscScene) else oscillator_model(scene)
     return compile(model, _kernels())
 

@@ -52,7 +52,7 @@ def study(task: Task) -> Study:
     Where there is no resonance in the range either, at the range's first end. Raises
     `symbolic.NoRestError`.
     """
-    view, system = view_of(task.scene), build(task.scene)
+    view, system = view_of(task.scene), build(task.scene, condense=False)
     low, high = sorted(task.scene.trace.bounds)
     met = resonance(system, view.parameter, (low, high))
     default = task.scene.trace.bounds[0] if met is None else met

@@ -113,11 +113,14 @@ class ModelScene(Table):
         except ValueError as error:
             raise InputError.said(str(error)) from None
 
-    def system(self, kernels: Kernels) -> CompiledSystem:
-        """Return the compiled model, `values` put in. Raises InputError."""
+    def system(self, kernels: Kernels, *, condense: bool = True) -> CompiledSystem:
+        """Return the compiled model, `values` put in, structures at their places alone or not.
+
+        Raises InputError.
+        """
         model = self.model()
         try:
-            system = compile(model, kernels, condense=False)
+            system = compile(model, kernels, condense=condense)
         except ValueError as error:
             raise InputError.said(str(error)) from None
         names = [p.name for p in system.parameters]

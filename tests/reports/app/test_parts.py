@@ -43,6 +43,32 @@ class SeventhPower(sym.Part):
 '''
 
 
+BEAM = """
+title = "Clamped beam with a stop that it does not meet"
+kind = "structure"
+[[structure]]
+name = "beam"
+beam = {length = 0.3, bending = 1.4, mass_per_length = 0.16, elements = 10}
+damping = 0.02
+scale = 1e-3
+[[part]]
+kind = "OneSidedSpring"
+q = "beam.tip"
+k = 2000
+gap = 5e-4
+[[part]]
+kind = "HarmonicForce"
+q = "beam.tip"
+force = 0.002
+frequency = 80
+[trace]
+parameter = "Omega"
+axis = "Hz"
+from = 12
+to = 14
+"""
+
+
 def traced(folder: Path, *arguments: str) -> dict[str, Any]:
     """Trace a scene and return what its JSON says."""
     assert main(["trace", *arguments, "--accuracy", "draft", "--out", str(folder)]) == 0
@@ -179,3 +205,14 @@ def test_load_that_nothing_carries(command: str, start: str, tmp_path: Path, cap
     said = refusal(capsys, command, str(source), "--out", str(tmp_path / "out"))
     assert said.startswith("scene has no equilibrium that was found at Omega = 0.4; something must carry")
     assert not list((tmp_path / "out").iterdir())
+
+
+def test_structure(tmp_path: Path, capsys: Capture) -> None:
+    """Assert that a beam in text is traced at its place: peak to peak of its response where it is linear."""
+    source = tmp_path / "beam.toml"
+    source.write_text(BEAM, "utf-8")
+    found = traced(tmp_path / "out", str(source))["special_points"]
+    assert main(["linear", str(source), "--at", "12,14", "--out", str(tmp_path / "out"), "--json"]) == 0
+    linear = json.loads((tmp_path / "out" / "linear.json").read_text("utf-8"))["at"]
+    for point, expected in zip(found, linear, strict=True):
+        assert point["tip_pp"] == pytest.approx(expected["linear_response"]["tip_pp_m"], rel=1e-4)

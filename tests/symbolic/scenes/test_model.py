@@ -345,12 +345,15 @@ def test_structure(tmp_path: Path) -> None:
     parts = [s, sym.Spring(s["tip"], k[0]), sym.HarmonicForce(s["middle"], 0.05, 1.0)]
     parts += [sym.Spring(s["tip"], k[1], to=x), sym.Mass(x, 0.1)]
     expected = sym.modes(sym.compile(sym.combine(parts), condense=False)).eigenvalues
-    np.testing.assert_allclose(sym.modes(build(scene(tmp_path, STRUCTURE))).eigenvalues, expected, rtol=1e-10)
+    system = build(scene(tmp_path, STRUCTURE), condense=False)
+    np.testing.assert_allclose(sym.modes(system).eigenvalues, expected, rtol=1e-10)
+    assert len(build(scene(tmp_path, STRUCTURE)).states) == 6
     np.savez(tmp_path / "beam.npz", M=matrices.M, K=matrices.K)
     line = BEAM.splitlines()[3]
     tip = matrices.at["tip"]
     text = STRUCTURE.replace(line, 'file = "beam.npz"').replace("middle = 0", f"middle = 0, tip = {tip}")
-    np.testing.assert_allclose(sym.modes(build(scene(tmp_path, text))).eigenvalues, expected, rtol=1e-10)
+    system = build(scene(tmp_path, text), condense=False)
+    np.testing.assert_allclose(sym.modes(system).eigenvalues, expected, rtol=1e-10)
 
 
 REFUSED_STRUCTURES = [
