@@ -1,0 +1,41 @@
+"""Stops and friction at the places of a condensed structure, against full collocation of all its states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import pytest
+from support.cantilevers import cantilever
+
+import periodic as per
+import symbolic as sym
+
+
+def stop(tip: Any) -> list[sym.Part]:
+    """A stop as stiff as the beam, beyond half the deflection that it limits."""
+    return [sym.Stop(tip, sym.HertzLaw(3.0, 1.0), 0.05)]
+
+
+def friction(tip: Any) -> list[sym.Part]:
+    """An elastic element that slips: a state of its own."""
+    return [sym.Jenkins(tip, 1.0, 0.05)]
+
+
+def at(system: sym.CompiledSystem, tol: float) -> per.Point:
+    """The orbit at a value of the parameter."""
+    of = per.trace(system, "Omega", (3.2, 3.3), at=3.25, tol=tol)
+    return next(p for p in of.points if p.parameter == 3.25)
+
+
+@pytest.mark.parametrize(("parts", "tol", "digits"), [(stop, 1e-7, 1e-7), (friction, 1e-6, 3e-6)])
+def test_motion_is_that_of_all_states(
+    parts: Callable[[Any], Sequence[sym.Part]], tol: float, digits: float
+) -> None:
+    """Assert the largest and least deflection, and the largest multiplier."""
+    ours, full = (at(cantilever(1, parts, condense=c, damping=0.05), tol) for c in (True, False))
+    span = full.maximum["tip"] - full.minimum["tip"]
+    assert ours.maximum["tip"] == pytest.approx(full.maximum["tip"], abs=digits * span)
+    assert ours.minimum["tip"] == pytest.approx(full.minimum["tip"], abs=digits * span)
+    assert abs(max(abs(ours.multipliers)) - max(abs(full.multipliers))) < 10 * digits
+    assert len(ours.orbit.phases) == len(full.orbit.phases) > 0
