@@ -9,7 +9,7 @@ their static flexibility.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy
@@ -53,9 +53,16 @@ class ModalForm:
     inputs: Complex
     matrices: Matrices
     complete: bool = True
+    _residuals: dict[tuple[int, ...], Array] = field(default_factory=dict, init=False, repr=False)
 
     def residual(self, freedoms: Sequence[int]) -> Array:
         """Return the static flexibility (n, k) in m/N of the modes that are left out."""
+        key = tuple(freedoms)
+        if key not in self._residuals:
+            self._residuals[key] = self._residual(key)
+        return self._residuals[key]
+
+    def _residual(self, freedoms: tuple[int, ...]) -> Array:
         n, k = len(self.shapes), len(freedoms)
         if self.complete:
             return np.zeros((n, k))
