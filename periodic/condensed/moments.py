@@ -38,8 +38,10 @@ class Table:
 
     def take(self, chosen: NDArray[np.int_], modes: int) -> Table:
         """Return it for intervals, (N, J, ...), from that of their widths, `modes` values of x for each."""
-        arrays = (a.reshape(-1, modes, *a.shape[1:])[chosen] for a in (self.growth, self.moment, self.slope))
-        return Table(*arrays)
+        arrays = [a.reshape(-1, modes, *a.shape[1:]) for a in (self.growth, self.moment, self.slope)]
+        if len(arrays[0]) == 1:
+            return Table(*(np.broadcast_to(a, (len(chosen), *a.shape[1:])) for a in arrays))
+        return Table(*(a[chosen] for a in arrays))
 
 
 @dataclass(frozen=True)

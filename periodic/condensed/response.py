@@ -194,8 +194,9 @@ class Response:
 
     def history(self, forces: Array) -> Complex:
         """Return the modes at the left ends and at the end in periodic motion, (N+1, J); forces (N, b, k)."""
-        left = np.einsum("njbk,nbk->nj", self.impulse, forces)
-        return self._closed(left)
+        last = self.table.moment[:, :, -1:]
+        left = self._applied(last, self._driving(forces, self.modes.inputs))[..., 0]
+        return self._closed(self.grid.width[:, None] * left)
 
     def _closed(self, left: Complex) -> Complex:
         """The periodic history of what each interval leaves in the modes, (N, J, ...)."""
@@ -246,27 +247,39 @@ class Response:
         # x = lambda h
         shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
         history = self.history(forces)
-        driven = np.einsum("nbk,jk->njb", forces, modes.inputs)
-        answer = np.einsum("njab,njb->nja", table.moment, driven)
-        steeper = np.einsum("njab,njb->nja", table.slope, driven)
+        driven = self._driving(forces, modes.inputs)
+        answer, steeper = self._applied(table.moment, driven), self._applied(table.slope, driven)
         inner = stretch[:, None, None, :] * answer[..., None]
         inner += (width[:, None, None] * steeper)[..., None] * shift[:, :, None, :]
         turn = self.scheme.points[:, None] * shift[:, :, None, :]
         inner += (table.growth * history[:-1, :, None])[..., None] * turn
         for i, change in enumerate(changes):
-            other = np.einsum("nbk,jk->njb", forces, change.inputs)
-            inner[..., first + i] += width[:, None, None] * np.einsum("njab,njb->nja", table.moment, other)
+            other = self._driving(forces, change.inputs)
+            inner[..., first + i] += width[:, None, None] * self._applied(table.moment, other)
         moved = self._closed(inner[:, :, -1])
         states = inner + table.growth[..., None] * moved[:-1, :, None]
-        found = np.einsum("sj,njaq->nasq", modes.outputs, states, optimize=True).real
+        count, points = len(width), len(self.scheme.points)
+        flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
+        found = _real_product(modes.outputs, flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
         stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
         rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
         for i, change in enumerate(changes):
-            found[..., first + i] += np.einsum("sj,nja->nas", change.outputs, stages).real
+            found[..., first + i] += (change.outputs @ stages).real.transpose(0, 2, 1)
             found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
         lost = rates @ modes.direct_rate.T
         found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
         return np.asarray(found), moved[0]
+
+    @staticmethod
+    def _driving(forces: Array, inputs: Complex) -> Complex:
+        """Forces (N, b, k) as they drive the modes, (N, J, b)."""
+        return np.asarray((forces @ inputs.T).transpose(0, 2, 1))
+
+    def _applied(self, moment: Complex, driven: Complex) -> Complex:
+        """Moments (N, J, a, b) of what drives the modes, (N, J, b): shape (N, J, a)."""
+        if self.uniform:
+            return np.asarray((moment[0] @ driven.transpose(1, 2, 0)).transpose(2, 0, 1))
+        return np.asarray((moment @ driven[..., None])[..., 0])
 
     def free(self) -> tuple[Array, Complex]:
         """Return free motion: states at the points by (Re z, Im z) of the start, (N, a, s, 2J), and how the
@@ -279,7 +292,8 @@ class Response:
 
     def driven(self, forces: Array) -> Complex:
         """Return the modes at the mesh points from z(0) = 0, (N+1, J, r); forces (N, b, k, r)."""
-        left = np.einsum("njbk,nbkr->njr", self.impulse, forces, optimize=True)
+        count, modes = len(self.grid.width), len(self.modes.exponents)
+        left = self.impulse.reshape(count, modes, -1) @ forces.reshape(count, -1, forces.shape[3])
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
         decay = self.table.growth[:, :, -1, None]
         for i in range(len(left)):
