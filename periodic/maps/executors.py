@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import Any, Protocol
@@ -17,6 +19,10 @@ THREADS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
 """What processes of our own have in their environment."""
+
+
+PAUSE = 1.0
+"""Seconds between two looks at whether the parent of a process is there."""
 
 
 class Workers(Protocol):
@@ -74,7 +80,7 @@ class Processes:
         if self._pool is None:
             from loky import ProcessPoolExecutor
 
-            self._pool = ProcessPoolExecutor(self.count, env=THREADS, initializer=_deaf)
+            self._pool = ProcessPoolExecutor(self.count, env=THREADS, initializer=_dependent)
         return self._pool.submit(function, *arguments)
 
     def close(self) -> None:
@@ -106,9 +112,17 @@ class Given:
             future.cancel()
 
 
-def _deaf() -> None:
-    """Leave Ctrl-C to the process that has the map: a terminal sends it to all."""
+def _dependent() -> None:
+    """Leave Ctrl-C to the process that has the map, and end when that has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    """End this process once its parent has: loky's would wait for work for ever."""
+    while os.getppid() == parent:
+        time.sleep(PAUSE)
+    os._exit(1)
 
 
 def workers(executor: Executor | int | None) -> Workers:

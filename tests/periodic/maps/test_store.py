@@ -76,6 +76,29 @@ def test_killed_run_goes_on(folder: Path, tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.glob("map*")] == ["map.nc"]
 
 
+def test_processes_end_with_the_one_that_is_killed(folder: Path, tmp_path: Path) -> None:
+    """Assert that no process computes on, or waits, after the one that asked was killed."""
+    running = started(folder, tmp_path / "map.nc", 0.2, executor=2)
+    theirs = {int(path.name.rsplit("-", 1)[1]) for path in folder.iterdir()}
+    assert theirs and running.pid not in theirs
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    limit = time.monotonic() + 30
+    while any(map(there, theirs)) and time.monotonic() < limit:
+        time.sleep(0.1)
+    assert not any(map(there, theirs))
+
+
+def there(process: int) -> bool:
+    """Whether a process runs, if only to wait."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    state = Path(f"/proc/{process}/stat")
+    return not (state.exists() and state.read_text().rpartition(")")[2].split()[0] == "Z")
+
+
 def test_finished_map_is_read(folder: Path, tmp_path: Path) -> None:
     """Assert that the same call on a finished map computes nothing, and resume=False all anew."""
     given, store = task(f=Counted(folder)), tmp_path / "map.nc"
