@@ -338,7 +338,10 @@ class Resetting(System, Protocol):
 class Jumping(System, Protocol):
     """A system whose equations jump where some of its switches vanish, as dry friction does.
 
-    Their level is 0 and their direction 0.
+    Their level is 0 and their direction 0. It may have `slides` too: of those jumps along which a motion can
+    slide (stick, for friction) the indices of two further switches, sigma - 1 and sigma + 1, where sigma is
+    the part of the jump, between -1 and 1, that keeps the switch at 0. A rise of the first ends the sliding
+    with a positive switch, a fall of the second with a negative one.
     """
 
     @property
@@ -363,7 +366,7 @@ class Jumping(System, Protocol):
             As in `linearise`.
         side : ndarray, shape (N, jumps)
             1 for the equations of a positive switch, -1 for those of a negative one, continued beyond its
-            zero; 0 where the state decides.
+            zero; 0 where the state decides; 2 for those of sliding.
 
         Returns
         -------
@@ -375,6 +378,11 @@ class Jumping(System, Protocol):
 def jumps_of(system: System) -> tuple[int, ...]:
     """Return the indices of the switches at which the equations jump; none of most systems."""
     return tuple(getattr(system, "jumps", ()))
+
+
+def slides_of(system: System) -> dict[int, tuple[int, int]]:
+    """Return the switches of both releases of each jump along which motions can slide."""
+    return dict(getattr(system, "slides", {}))
 
 
 def resets_of(system: System) -> tuple[int, ...]:

@@ -17,16 +17,14 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.sides import linearise, sides
+from periodic.collocation.rates import rate_at
+from periodic.collocation.sides import sides
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import Resetting, System, jumps_of, resets_of
-
-ITERATIONS = 4
-"""Newton steps to the rates at a point; one is enough where the equations are linear in them."""
 
 SAMPLES = 17
 """Places in each interval at which an orbit is looked at between its impacts."""
@@ -60,8 +58,8 @@ def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Ju
     start = orbit.mesh.starts[index]
     side = sides(system, orbit.mesh)
     unknown, known = orbit.algebraic, (rate_before(orbit, index), orbit.node_rates[start])
-    arriving = _rate(system, orbit, x, known[0], unknown[interval, -1], phase, side[interval])
-    leaving = _rate(system, orbit, after, known[1], unknown[start, 0], phase, side[start])
+    arriving = rate_at(system, orbit, x, known[0], unknown[interval, -1], phase, side[interval])
+    leaving = rate_at(system, orbit, after, known[1], unknown[start, 0], phase, side[start])
     s_state, s_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
     along = s_state[0, switch] @ arriving + s_phase[0, switch]
     jump = leaving - by_state[0] @ arriving - by_phase[0]
@@ -91,18 +89,6 @@ def rate_before(orbit: Orbit, index: int) -> Array:
     """x' at the end of the interval before an event node, shape (n,)."""
     interval = before(orbit, index)[0]
     return orbit.mesh.scheme.end @ orbit.knot_rates[interval]
-
-
-def _rate(
-    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
-) -> Array:
-    """x' from the equations at a state (1, n), by Newton's method from a guess of it and of the unknowns."""
-    n, found = x.shape[1], np.append(rate, algebraic)[None]
-    for _ in range(ITERATIONS):
-        line = linearise(system, found[:, :n], x, found[:, n:], phase, orbit.parameter, side[None])
-        matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
-        found = found - np.linalg.solve(matrix, line.residual[0])
-    return found[0, :n]
 
 
 def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> tuple[Array, Array | None]:

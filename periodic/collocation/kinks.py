@@ -14,11 +14,11 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
-from periodic.collocation import impacts
+from periodic.collocation import impacts, stick
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, resets_of
+from periodic.system import System, resets_of, slides_of
 
 SAME = 1e-9
 """Phases closer than this are the same."""
@@ -29,6 +29,9 @@ DEEPEST = 0.1
 
 MILD = 0.1
 """Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
+
+LEAST = 1e-8
+"""Least change of a switch for which sticking is followed, where no tolerance is given."""
 
 
 @dataclass(frozen=True)
@@ -132,9 +135,9 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     tau = np.append(tau, tau[0] + orbit.mesh.period)
     values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
     found = []
-    resets = resets_of(system)
+    elsewhere = _elsewhere(system)
     for k, switch in enumerate(system.switches):
-        if k in resets:
+        if k in elsewhere:
             continue
         above = values[:, k, None] > np.array(switch.levels)
         for i, j in np.argwhere(above[1:] != above[:-1]):
@@ -146,10 +149,16 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     return found
 
 
+def _elsewhere(system: System) -> set[int]:
+    """The switches whose event nodes are those of impacts and of sliding."""
+    slides = slides_of(system)
+    return {*resets_of(system), *slides, *(k for pair in slides.values() for k in pair)}
+
+
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
     """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
     found = crossings(system, orbit)
-    chosen = [Crossing(*impact) for impact in impacts.passages(system, orbit)]
+    chosen: list[Crossing] = []
     for k, switch in enumerate(system.switches):
         levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
         kept = [
@@ -163,7 +172,11 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         directions = (switch.direction,) if switch.direction else (-1, 1)
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
-    return _apart(sorted(chosen, key=lambda crossing: crossing.phase), orbit, settings)
+    chosen = _apart(sorted(chosen, key=lambda crossing: crossing.phase), orbit, settings)
+    others = (*impacts.passages(system, orbit), *stick.passages(system, orbit, settings.deepest or LEAST))
+    begin = orbit.grid.left[0]
+    exact = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
+    return sorted([*chosen, *exact], key=lambda crossing: crossing.phase)
 
 
 def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
@@ -261,10 +274,12 @@ def genuine(system: System, orbit: Orbit) -> bool:
     at = orbit.nodes[orbit.mesh.starts]
     d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
     rates = orbit.node_rates[orbit.mesh.starts]
-    reset = impacts.tied(system, orbit)
+    special = _elsewhere(system)
     for i, event in enumerate(orbit.mesh.events):
         slope = d_phase[i, event.switch] + d_state[i, event.switch] @ rates[i]
-        if i not in reset and slope * event.direction <= 0:
+        if event.switch in special:
+            slope = impacts.slope_before(system, orbit, i)
+        if slope * event.direction <= 0:
             return False
     return True
 
@@ -282,6 +297,9 @@ def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:
     if index is not None:
         turns = np.round((crossing.phase - orbit.phases[index]) / orbit.mesh.period)
         return float(orbit.phases[index] + turns * orbit.mesh.period)
+
+    if crossing.event.switch in _elsewhere(system):
+        return crossing.phase
 
     def value(tau: float) -> float:
         at = np.array([tau])

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import impacts, kinks
+from periodic.collocation import impacts, kinks, stick
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
 from periodic.collocation.kinks import Crossing, KinkSettings
@@ -146,8 +146,9 @@ class Collocation(Discretisation):
         found = deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
         if found is UNKNOWN:
             return found
-        multiplier = max(found.multiplier, lost(problem.system, correction.orbit))
-        return replace(found, multiplier=multiplier)
+        missing = stick.shortfall(problem.system, correction.orbit)
+        multiplier = max(found.multiplier, lost(problem.system, correction.orbit), missing)
+        return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""
@@ -180,11 +181,18 @@ class CollocationRefinement(Refinement):
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max
+        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
+
+    @cached_property
+    def _misplaced(self) -> bool:
+        """Whether the orbit slips where it should stick, which no finer mesh mends."""
+        return stick.shortfall(self.system, self.orbit) > self.method.tolerance
 
     @property
     def _ntst(self) -> int:
         method = self.method
+        if self._misplaced:
+            return self.orbit.mesh.ntst
         return wanted_ntst(self.orbit, self.error, method.tolerance, method.ntst_min, method.ntst_max)
 
     def refined(self) -> Mesh:

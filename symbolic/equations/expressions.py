@@ -64,6 +64,7 @@ def expressed(assembly: Assembly) -> Expressions:
     moved = packed.scaled([u.moved for u in unknowns])
     residual = packed.scaled(rows)
     switches = packed.scaled([expression for _, expression in assembly.switches])
+    beside = sided(packed, residual, switches, tuple(assembly.resets))
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -71,7 +72,7 @@ def expressed(assembly: Assembly) -> Expressions:
         phase=packed.phase,
         parameter=packed.parameter,
         residual=residual,
-        sided=sided(packed, residual, switches, tuple(assembly.resets)),
+        sided=beside,
         unexcited=ca.substitute(
             packed.scaled(rows, ca.SX.zeros(packed.waves.size1())), packed.phase, ca.SX(0)
         ),
@@ -80,7 +81,7 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=switches,
+        switches=ca.vertcat(switches, *(s for _, sigma in beside.slides for s in (sigma - 1, sigma + 1))),
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

@@ -24,6 +24,9 @@ JUMPING = (ca.OP_SIGN, ca.OP_LT, ca.OP_LE)
 ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
 
+STUCK = 2
+"""Value of the side of a jump along which the motion slides."""
+
 CLOSE = 1e-10
 """Value of a switch that is as good as 0."""
 
@@ -33,11 +36,15 @@ EQUAL = 1e-8
 
 @dataclass(frozen=True)
 class Sided:
-    """The residual with sides: a symbol each for the switches with the indices `jumps`."""
+    """The residual with sides: a symbol each for the switches with the indices `jumps`.
+
+    slides: those along which a motion can slide, with the part sigma of the jump that keeps it there.
+    """
 
     residual: ca.SX
     side: ca.SX
     jumps: tuple[int, ...]
+    slides: tuple[tuple[int, ca.SX], ...] = ()
 
 
 def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...]) -> Sided:
@@ -65,7 +72,48 @@ def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int,
     jumps = [k for i, k in enumerate(every) if _jumps(packed, marked, side, i, switches[k])]
     kept = ca.SX.sym("side", len(jumps))
     values = [kept[jumps.index(k)] if k in jumps else ca.SX(0) for k in every]
-    return Sided(ca.substitute(marked, side, ca.vertcat(ca.SX(0, 1), *values)), kept, tuple(jumps))
+    both = ca.substitute(marked, side, ca.vertcat(ca.SX(0, 1), *values))
+    slides = []
+    for i, k in enumerate(jumps):
+        sliding = _sliding(packed, both, kept, i, switches[k])
+        if sliding is not None:
+            slides.append((k, sliding[1]))
+            both = ca.if_else(kept[i] == STUCK, sliding[0], both)
+    return Sided(both, kept, tuple(jumps), tuple(slides))
+
+
+def _sliding(
+    packed: Packed, residual: ca.SX, side: ca.SX, index: int, switch: ca.SX
+) -> tuple[ca.SX, ca.SX] | None:
+    """The residual M x' + g0 + sigma g1 of sliding, and sigma; None of a jump along which nothing slides.
+
+    On the sides themselves it is M x' + g0 + g1 and M x' + g0 - g1. sigma keeps s_x x' + s_tau at 0; it must
+    not depend on the sides of other jumps.
+    """
+    rate = packed.rate
+    if packed.unknown.numel() or not residual.numel():
+        return None
+    mass = ca.jacobian(residual, rate)
+    if ca.depends_on(mass, ca.vertcat(side, rate)):
+        return None
+    still = ca.substitute(residual, rate, ca.SX.zeros(rate.numel()))
+    above, below = (_with(still, side, index, value) for value in (1, -1))
+    mean, half = (above + below) / 2, (above - below) / 2
+    by_state, by_phase = ca.jacobian(switch, packed.state), ca.jacobian(switch, packed.phase)
+    pushed, pulled = (by_state @ ca.solve(mass, g) for g in (mean, half))
+    # Both sides lead back to the jump where s' falls by this from one to the other.
+    if ca.depends_on(pulled, side) or not all(row.min() > EQUAL for row in Samples(packed).rows(pulled)[0]):
+        return None
+    sigma = (by_phase - pushed) / pulled
+    if ca.depends_on(sigma, side):
+        return None
+    return mass @ rate + mean + sigma * half, sigma
+
+
+def _with(expression: ca.SX, side: ca.SX, index: int, value: int) -> ca.SX:
+    """An expression on one side of one jump."""
+    given = [ca.SX(value) if i == index else side[i] for i in range(side.numel())]
+    return ca.substitute(expression, side, ca.vertcat(*given))
 
 
 def _owned(

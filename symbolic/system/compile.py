@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from symbolic.checks import refusal, typed
 from symbolic.equations import kinks
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.expressions import expressed
+from symbolic.equations.expressions import Expressions, expressed
 from symbolic.equations.model import Model, Part
-from symbolic.equations.variables import Variable
+from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
 from symbolic.system.compiled import CompiledSystem
@@ -97,12 +97,18 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
         algebraics=tuple(Variable(u.name, u.unit, u.scale) for u in assembly.unknowns),
         parameters=tuple(Variable(p.name, p.unit, 1.0, p.value) for p in assembly.parameters.values()),
         outputs=tuple(variable for variable, _ in assembly.described),
-        switches=tuple(info for info, _ in assembly.switches),
+        switches=(*(info for info, _ in assembly.switches), *_releases(assembly, expressions)),
         expressions=expressions,
         kernels=recipe.kernels,
         recipe=recipe,
         held=_held(assembly),
     )
+
+
+def _releases(assembly: Assembly, expressions: Expressions) -> list[SwitchInfo]:
+    """The switches at which motions stop sliding along jumps."""
+    names = [assembly.switches[k][0].name for k, _ in expressions.sided.slides]
+    return [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
 
 
 def _held(assembly: Assembly) -> tuple[Held, ...]:

@@ -189,6 +189,13 @@ class CompiledSystem:
         """Indices of the switches at which the equations jump: see `periodic.system.Jumping`."""
         return self.expressions.sided.jumps
 
+    @property
+    def slides(self) -> dict[int, tuple[int, int]]:
+        """Of each jump along which motions can slide, the switches at which that ends."""
+        switches = [k for k, _ in self.expressions.sided.slides]
+        first = len(self.switches) - 2 * len(switches)
+        return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+
     def linearise_beside(
         self,
         rate: Array,

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from reference.hybrid import Hybrid, Signs, Surface, periodic_orbit
 from reference.shooting import in_order
+from scipy.integrate import solve_ivp
 
 import periodic as per
 import symbolic as sym
@@ -91,3 +92,60 @@ def test_sides_of_a_jump() -> None:
     zero = np.zeros((3, 2))
     line = system.linearise_beside(zero, state, np.zeros((3, 0)), np.zeros(3), system.nominal, side)
     np.testing.assert_allclose(line.residual[:, 1], -0.5 + 0.07 + MU * np.array([1.0, 1.0, -1.0]))
+
+
+class Stuck:
+    """Den Hartog's oscillator with stops, event by event: the map of the place x where it sticks.
+
+    It leaves where |F cos w t - x| reaches mu, slips until its speed vanishes, and sticks again.
+    """
+
+    def __init__(self, force: float, w: float) -> None:
+        self.force, self.w = force, w
+
+    def half(self, x: float, way: float, after: float) -> tuple[float, float, float]:
+        """Release after a phase, and next stop: phases of both, and the place of the stop."""
+        place = (x + way * MU) / self.force
+        release = np.arccos(place) if way < 0 else -np.arccos(place)
+        release += 2 * np.pi * np.ceil((after - release) / (2 * np.pi))
+
+        def rates(t: float, y: Any) -> list[float]:
+            return [y[1] / self.w, (self.force * np.cos(t) - C * y[1] - y[0] - MU * way) / self.w]
+
+        def stopped(t: float, y: Any) -> float:
+            return y[1] if t > release + 0.1 else way
+
+        stopped.terminal = True  # type: ignore[attr-defined]
+        tight = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
+        found = solve_ivp(rates, (release, release + 7), [x, 0.0], events=stopped, **tight)
+        end, place = float(found.t[-1]), float(found.y[0, -1])
+        assert abs(self.force * np.cos(end) - place) < MU  # it sticks
+        return release, end, place
+
+    def period(self, x: float, after: float) -> float:
+        """From the place of one stop, at its end on the side of positive x, to that a period later."""
+        _, end, other = self.half(x, -1.0, after)
+        return self.half(other, 1.0, end)[2]
+
+
+def test_stick_and_slip() -> None:
+    """Assert orbits that stop twice in a period, and their multipliers, to 1e-7, both ways through the onset.
+
+    A stop leaves one multiplier 0; the other is the slope of the map of the place where it sticks.
+    """
+    system = compiled(friction)
+    down = per.trace(system, "F", (0.2, 0.5), start=0.5, values={"w": 0.5}, at=0.3, tol=1e-8)
+    assert "lower end" in str(down.stop)
+    assert len(down[-1].orbit.mesh.events) == 4
+    up = per.trace(system, "F", (0.2, 0.5), guess=down[-1].orbit, at=0.3, tol=1e-8)
+    assert "upper end" in str(up.stop)
+    for point in (*down.labelled(per.Label.USER), *up.labelled(per.Label.USER), down[-1]):
+        force = point.parameter
+        stuck = Stuck(force, 0.5)
+        begin = float(point.orbit.phases[0])  # stops where x is largest
+        place = float(point.orbit.state(np.array([begin]))[0, 0])
+        np.testing.assert_allclose(stuck.period(place, begin), place, atol=1e-8)
+        step = 1e-4
+        slope = (stuck.period(place + step, begin) - stuck.period(place - step, begin)) / (2 * step)
+        np.testing.assert_allclose(in_order(point.multipliers), [slope, 0.0], atol=1e-7)
+    np.testing.assert_allclose(up[-1].multipliers, down[0].multipliers, atol=1e-7)

@@ -1,0 +1,34 @@
+"""Rates of a motion at a single point, from the equations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.collocation.sides import linearise
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System
+
+ITERATIONS = 4
+"""Newton steps; one is enough where the equations are linear in rates and unknowns."""
+
+CLOSE = 1e-14
+"""Relative change that is none."""
+
+
+def rate_at(
+    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
+) -> Array:
+    """Return x' (n,) at a state (1, n) and a phase (1,) on given sides of jumps, from guesses of x' and z.
+
+    Raises numpy.linalg.LinAlgError where the equations do not determine it.
+    """
+    n, found = x.shape[1], np.append(rate, algebraic)[None]
+    for _ in range(ITERATIONS):
+        line = linearise(system, found[:, :n], x, found[:, n:], phase, orbit.parameter, side[None])
+        matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
+        change = np.linalg.solve(matrix, line.residual[0])
+        found = found - change
+        if np.abs(change).max() <= CLOSE * (1 + np.abs(found).max()):
+            break
+    return found[0, :n]
