@@ -42,6 +42,7 @@ from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyTh
 from .parts.films.thirdorder import ThirdOrder
 from .parts.friction.jenkins import Iwan, Jenkins
 from .parts.friction.tanh import TanhFriction
+from .parts.friction.coulomb import CoulombFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
@@ -91,6 +92,7 @@ __all__ = [
     "ContactLaw",
     "ContactPair",
     "Coordinate",
+    "CoulombFriction",
     "Coupling",
     "CubicDamper",
     "CubicSpring",
@@ -145,6 +147,7 @@ __all__ = [
     "Reduction",
     "RegimeFilm",
     "RegressionThickness",
+    "RigidStop",
     "Rolling",
     "RollingBearing",
     "Rub",
@@ -156,7 +159,6 @@ __all__ = [
     "SqueezeFilm",
     "SqueezeFilmDamper",
     "SteadyThickness",
-    "RigidStop",
     "Stop",
     "Structure",
     "Support",

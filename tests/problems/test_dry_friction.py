@@ -149,3 +149,21 @@ def test_stick_and_slip() -> None:
         slope = (stuck.period(place + step, begin) - stuck.period(place - step, begin)) / (2 * step)
         np.testing.assert_allclose(in_order(point.multipliers), [slope, 0.0], atol=1e-7)
     np.testing.assert_allclose(up[-1].multipliers, down[0].multipliers, atol=1e-7)
+
+
+def test_coulomb_friction_is_the_sign_of_the_speed() -> None:
+    """Assert that the part gives the orbit of the equations while it sticks and slips, and between bodies."""
+    x, y = sym.coordinate("x", scale=0.5), sym.coordinate("y")
+    one = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, C), sym.HarmonicForce(x, 0.5, 0.5)]
+    alone = sym.compile(sym.combine([*one, sym.CoulombFriction(x, MU)]))
+    assert [s.name for s in alone.switches] == [
+        "d(x)/dt = 0",
+        "d(x)/dt = 0: slips up",
+        "d(x)/dt = 0: slips down",
+    ]
+    part = per.trace(alone, "F", (0.3, 0.5), start=0.5)[-1]
+    plain = per.trace(compiled(friction), "F", (0.3, 0.5), start=0.5, values={"w": 0.5})[-1]
+    np.testing.assert_allclose(part.peak_to_peak("x"), plain.peak_to_peak("x"), rtol=1e-6)
+    np.testing.assert_allclose(part.multipliers, plain.multipliers, atol=1e-6)
+    both = [*one, sym.Mass(y, 1.0), sym.Spring(y, 2.0), sym.CoulombFriction(x, MU, to=y)]
+    assert sym.compile(sym.combine(both)).slides == {0: (1, 2)}

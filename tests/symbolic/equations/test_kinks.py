@@ -21,7 +21,7 @@ FORCES: dict[str, tuple[Force, list[str]]] = {
     "min of two": (lambda x, p, w: F.fmin(-x.x, w.cos), ["x + cos theta"]),
     "absolute": (lambda x, p, w: -F.fabs(x.v) * x.v, ["v"]),
     "root of a square": (lambda x, p, w: -F.sqrt(x.v**2) * x.v, ["v"]),
-    "sign": (lambda x, p, w: -p.g * F.sign(x.v), ["v"]),
+    "sign": (lambda x, p, w: -p.g * F.sign(x.v), ["v", "v: slips up", "v: slips down"]),
     "condition": (lambda x, p, w: F.if_else(x.x > 1, 1 - x.x, 0), ["x - 1"]),
     "two conditions": (lambda x, p, w: F.if_else(ca.logic_and(x.x > 1, x.v < 0), -x.x, 0), ["x - 1", "v"]),
     "factor": (lambda x, p, w: -x.x * (x.x >= p.g), ["x - g"]),
@@ -55,7 +55,8 @@ def test_kinks_of_equations_are_switches(name: str) -> None:
     force, expected = FORCES[name]
     system = compiled(force)
     assert names(system) == expected
-    assert [(s.direction, s.levels) for s in system.switches] == [(0, (0.0,))] * len(expected)
+    ways = [1 if name.endswith("up") else -1 if name.endswith("down") else 0 for name in expected]
+    assert [(s.direction, s.levels) for s in system.switches] == [(way, (0.0,)) for way in ways]
 
 
 def test_switches_are_of_order_one() -> None:

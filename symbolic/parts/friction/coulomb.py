@@ -1,0 +1,51 @@
+"""Dry friction that sticks: the force jumps with the sign of the speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
+from symbolic.equations.variables import Coordinate, Value, not_negative
+from symbolic.parts.mechanics.ends import resist, speed
+
+
+@dataclass(frozen=True)
+class CoulombFriction(Part):
+    """Friction of Coulomb between a coordinate and the ground, or another coordinate: -F sign(du/dt).
+
+    Where u = q - r comes to rest and less than F holds it, it sticks until the force needed exceeds F; both
+    are events of the motion, and multipliers are right through them.
+
+    Parameters
+    ----------
+    q : Coordinate
+        The coordinate.
+    force : float or Parameter
+        F in N: coefficient of friction times normal force.
+    to : Coordinate, optional
+        The coordinate r at the other end; the ground, r = 0, where there is none.
+
+    Raises
+    ------
+    ValueError
+        For a negative force.
+    """
+
+    q: Coordinate
+    force: Value
+    to: Coordinate | None = None
+
+    def __post_init__(self) -> None:
+        not_negative("friction force", self.force)
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Add the force, with a jump where the speed passes zero."""
+        force = assembly.parameter(self.force, "F_f", "N")
+        rate = speed(assembly, self.q, self.to)
+        resist(assembly, self.q, self.to, force * ca.sign(rate))
+        scale = assembly.omega * assembly.motion(self.q).position.scale
+        between = self.q.name if self.to is None else f"({self.q.name} - {self.to.name})"
+        assembly.switch(f"d{between}/dt = 0", rate / scale, 0)
