@@ -157,9 +157,9 @@ def test_coulomb_friction_is_the_sign_of_the_speed() -> None:
     one = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, C), sym.HarmonicForce(x, 0.5, 0.5)]
     alone = sym.compile(sym.combine([*one, sym.CoulombFriction(x, MU)]))
     assert [s.name for s in alone.switches] == [
-        "d(x)/dt = 0",
-        "d(x)/dt = 0: slips up",
-        "d(x)/dt = 0: slips down",
+        "dx/dt = 0",
+        "dx/dt = 0: slips up",
+        "dx/dt = 0: slips down",
     ]
     part = per.trace(alone, "F", (0.3, 0.5), start=0.5)[-1]
     plain = per.trace(compiled(friction), "F", (0.3, 0.5), start=0.5, values={"w": 0.5})[-1]
