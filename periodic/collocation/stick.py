@@ -42,23 +42,49 @@ def passages(system: System, orbit: Orbit, least: float) -> list[Passage]:
 def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[Passage]:
     events, new = orbit.mesh.events, []
     found: list[Passage] = []
-    for j in (j for j in group(system, orbit.mesh, switch) if events[j].switch == switch):
+    gone = _vanished(system, orbit, switch, VANISHING * least)
+    for j in group(system, orbit.mesh, switch):
         state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
-        found.append((events[j], phase, 1.0))
-        ending, stretch = sticks(system, orbit.mesh, switch, j), _stretch(system, orbit, switch, state, phase)
+        found += [(events[j], phase, 1.0)] if j not in gone else []
+        if events[j].switch != switch or j in gone:
+            continue
+        ending = sticks(system, orbit.mesh, switch, j)
         if ending is None:
+            stretch = _stretch(system, orbit, switch, state, phase)
             new += [stretch.release] if stretch.release and stretch.size > least else []
-        else:
-            length = (orbit.phases[ending] - phase) % orbit.mesh.period
-            if stretch.speed * length > VANISHING * least:
-                found.append((events[ending], float(phase + length), 1.0))
+        elif ending not in gone:
+            slip = _slip(system, orbit, switch, j)
+            found += slip.passages if slip.size > least else ()
     if new:  # beyond a crossing that should stick an orbit tells nothing
         return found + new
-    for event, phase, _ in _missed(system, orbit, switch):
-        found.append((event, phase, 1.0))
+    missed = iter(_missed(system, orbit, switch))
+    for event, phase in missed:
         stretch = _stretch(system, orbit, switch, orbit.state(np.array([phase]))[0], phase)
-        found += [stretch.release] if stretch.release and stretch.size > least else []
+        if stretch.release is None:
+            found.append((event, phase, 1.0))
+        else:
+            found += [(event, phase, 1.0), stretch.release] if stretch.size > least else []
+            next(missed, None)  # the way back from beyond a stop
     return found
+
+
+def _vanished(system: System, orbit: Orbit, switch: int, least: float) -> set[int]:
+    """Event nodes about stretches of sticking, and of slipping between two of them, too short to matter.
+
+    A stretch of sticking that leads on to the side it came for leaves the crossing.
+    """
+    events, own = orbit.mesh.events, group(system, orbit.mesh, switch)
+    gone: set[int] = set()
+    for j, after in zip(own, [*own[1:], *own[:1]], strict=True):
+        length = (orbit.phases[after] - orbit.phases[j]) % orbit.mesh.period
+        if sticks(system, orbit.mesh, switch, j) == after:
+            if min(_speeds(system, orbit, switch, j)) * length <= least:
+                gone |= {after} if events[after].direction == events[j].direction else {j, after}
+        elif events[j].switch != switch and sticks(system, orbit.mesh, switch, after) is not None:
+            values, _ = _values(system, orbit, switch)
+            inside = (orbit.stage_phases.ravel() - orbit.phases[j]) % orbit.mesh.period < length
+            gone |= {j, after} if np.abs(values[inside]).max() <= least else set()
+    return gone
 
 
 def _sigma(system: System, state: Array, phase: float, orbit: Orbit, switch: int) -> float:
@@ -66,14 +92,10 @@ def _sigma(system: System, state: Array, phase: float, orbit: Orbit, switch: int
     return 1 + float(system.switch(state[None], np.array([phase]), orbit.parameter)[0, up])
 
 
-def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, float, float]]:
-    """Changes of sign between collocation points that slip, with no event node of the switch between them.
-
-    Event, phase, and the larger of the values before and after it.
-    """
-    tau, n = orbit.stage_phases.ravel(), orbit.stages.shape[2]
-    values = system.switch(orbit.stages.reshape(-1, n), tau, orbit.parameter)[:, switch]
-    side = np.repeat(sides(system, orbit.mesh)[:, jumps_of(system).index(switch)], orbit.mesh.scheme.ncol)
+def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, float]]:
+    """Changes of sign between collocation points that slip, with no event node of the switch between them."""
+    tau = orbit.stage_phases.ravel()
+    values, side = _values(system, orbit, switch)
     values = np.where((np.abs(values) < WRONG) & (side != 0), side, values)
     tied = orbit.phases[group(system, orbit.mesh, switch)]
     points = [(t, s) for t, s, mode in zip(tau, values, side, strict=True) if mode != STUCK]
@@ -82,63 +104,125 @@ def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, 
         between = ((tied - t + WRONG) % orbit.mesh.period < later - t + 2 * WRONG).any()
         if s * other < 0 and not between:
             place = t + (later - t) * s / (s - other)
-            found.append((EventNode(switch, 1 if other > 0 else -1), float(place), max(abs(s), abs(other))))
+            found.append((EventNode(switch, 1 if other > 0 else -1), float(place)))
     return found
+
+
+def _values(system: System, orbit: Orbit, switch: int) -> tuple[Array, Array]:
+    """A switch at the collocation points, and the side that the equations are on there."""
+    flat = (-1, orbit.stages.shape[2])
+    values = system.switch(orbit.stages.reshape(flat), orbit.stage_phases.ravel(), orbit.parameter)
+    mode = sides(system, orbit.mesh)[:, jumps_of(system).index(switch)]
+    return values[:, switch], np.repeat(mode, orbit.mesh.scheme.ncol)
 
 
 @dataclass(frozen=True)
 class _Stretch:
-    """Sticking that begins at a state: its release, None where it does not stick; how fast s would change
-    if it slipped on instead, and how far until the release.
+    """Sticking that begins at a state: its release, None where it does not stick, and how far s would go if
+    it slipped on instead until then.
     """
 
-    release: Passage | None
-    speed: float
-    size: float
+    release: Passage | None = None
+    size: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """A slip within a stretch of sticking: its release and the next stop, and how far s goes."""
+
+    passages: tuple[Passage, ...] = ()
+    size: float = 0.0
+
+
+def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
+    """The first slip that is missing in the stretch of sticking that begins at an event node.
+
+    It ends about where the integral of sigma - 1, a parabola from its passage on, comes back to 0.
+    """
+    start, (up, down) = orbit.mesh.starts[node], slides_of(system)[switch]
+    count = len(orbit.mesh.breaks[node]) - 1
+    tau = orbit.stage_phases[start : start + count].ravel()
+    state = orbit.stages[start : start + count].reshape(len(tau), -1)
+    sigma = 1 + system.switch(state, tau, orbit.parameter)[:, up]
+    past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + WRONG)
+    if not past.size or past[0] == 0:
+        return _Slip()
+    first, way = past[0], 1 if sigma[past[0]] > 0 else -1
+    back = next((i for i in range(first, len(tau)) if way * sigma[i] <= 1), None)
+    if back is None:
+        return _Slip()
+
+    def passed(i: int) -> float:
+        return float(tau[i - 1] + (tau[i] - tau[i - 1]) * (way - sigma[i - 1]) / (sigma[i] - sigma[i - 1]))
+
+    begin, end = passed(first), passed(back)
+    release = (EventNode(up if way > 0 else down, way), begin, 1.0)
+    stop = (EventNode(switch, -way), min(begin + 1.5 * (end - begin), (end + float(tau[-1])) / 2), 1.0)
+    excess = float((way * sigma[first:back] - 1).max())
+    speed = sum(_speeds(system, orbit, switch, node)) / 2
+    return _Slip((release, stop), excess * speed * (end - begin))
 
 
 def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: float) -> _Stretch:
     """What sticking at a state comes to: Runge-Kutta steps until sigma reaches 1 or -1."""
     sigma = _sigma(system, state, phase, orbit, switch)
     if not abs(sigma) < 1:
-        return _Stretch(None, 0.0, 0.0)
-    up, down = slides_of(system)[switch]
-    mode = np.zeros(len(jumps_of(system)))
-    unknown = orbit.algebraic_guess(np.array([phase]))[0]
-    gradient = system.switch_gradient(state[None], np.array([phase]), orbit.parameter)
-
-    def rate(at: Array, when: float, side: float) -> Array:
-        mode[jumps_of(system).index(switch)] = side
-        return rate_at(system, orbit, at[None], np.zeros_like(at), unknown, np.array([when]), mode)
-
-    slopes = [
-        gradient[0][0, switch] @ rate(state, phase, way) + gradient[1][0, switch] for way in (1.0, -1.0)
-    ]
-    speed, h, x, tau = float(np.abs(slopes).min()), 2 * np.pi / STEPS, state, phase
+        return _Stretch()
+    (up, down), motion = slides_of(system)[switch], _Motion(system, orbit, switch, phase)
+    speed, h, x, tau = min(motion.speeds(state, phase)), 2 * np.pi / STEPS, state, phase
     while tau < phase + orbit.mesh.period:
-        x = x + h * rate(x + h / 2 * rate(x, tau, STUCK), tau + h / 2, STUCK)
+        x = x + h * motion.rate(x + h / 2 * motion.rate(x, tau, STUCK), tau + h / 2, STUCK)
         before, sigma, tau = sigma, _sigma(system, x, tau + h, orbit, switch), tau + h
         if abs(sigma) >= 1:
             way = 1 if sigma > 0 else -1
             place = tau - h * float(np.clip((sigma - way) / (sigma - before), 0, 1))
-            return _Stretch(
-                (EventNode(up if way > 0 else down, way), place, 1.0), speed, speed * (place - phase)
-            )
-    return _Stretch(None, speed, np.inf)
+            release = (EventNode(up if way > 0 else down, way), place, 1.0)
+            return _Stretch(release, speed * (place - phase))
+    return _Stretch(None, np.inf)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Rates at a jump, on given sides of it."""
+
+    system: System
+    orbit: Orbit
+    switch: int
+    phase: float
+
+    def rate(self, state: Array, phase: float, side: float) -> Array:
+        """x' there."""
+        mode = np.zeros(len(jumps_of(self.system)))
+        mode[jumps_of(self.system).index(self.switch)] = side
+        unknown = self.orbit.algebraic_guess(np.array([self.phase]))[0]
+        at = np.array([phase])
+        return rate_at(self.system, self.orbit, state[None], np.zeros_like(state), unknown, at, mode)
+
+    def speeds(self, state: Array, phase: float) -> tuple[float, float]:
+        """|ds/dtau| on either side."""
+        by_state, by_phase, _ = self.system.switch_gradient(
+            state[None], np.array([phase]), self.orbit.parameter
+        )
+        slopes = (by_state[0, self.switch] @ self.rate(state, phase, way) for way in (1.0, -1.0))
+        above, below = (abs(float(slope + by_phase[0, self.switch])) for slope in slopes)
+        return above, below
+
+
+def _speeds(system: System, orbit: Orbit, switch: int, node: int) -> tuple[float, float]:
+    """|ds/dtau| on either side of the jump at an event node."""
+    phase = float(orbit.phases[node])
+    return _Motion(system, orbit, switch, phase).speeds(orbit.nodes[orbit.mesh.starts[node]], phase)
 
 
 def shortfall(system: System, orbit: Orbit) -> float:
     """Return by how much, in s, an orbit is wrong that slips where it should stick, or the reverse."""
     worst = [0.0]
-    for k, (up, _) in slides_of(system).items():
-        worst += [size for _, _, size in _missed(system, orbit, k)]
-        mode = sides(system, orbit.mesh)[:, jumps_of(system).index(k)]
-        n = orbit.stages.shape[2]
-        values = system.switch(orbit.stages.reshape(-1, n), orbit.stage_phases.ravel(), orbit.parameter)
-        sigma = 1 + values[:, up].reshape(orbit.stage_phases.shape)
-        worst.append(float((np.abs(sigma[mode == STUCK]) - 1 - WRONG).max(initial=0.0)))
-        for j in group(system, orbit.mesh, k):
-            if orbit.mesh.events[j].switch == k and sticks(system, orbit.mesh, k, j) is None:
-                state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
-                worst.append(_stretch(system, orbit, k, state, phase).size)
+    for k in slides_of(system):
+        values, side = _values(system, orbit, k)
+        worst.append(float(np.where(np.abs(side) == 1, -side * values, 0.0).max()))
+        for j in (j for j in group(system, orbit.mesh, k) if orbit.mesh.events[j].switch == k):
+            state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
+            stuck = sticks(system, orbit.mesh, k, j) is not None
+            missing = _slip(system, orbit, k, j) if stuck else _stretch(system, orbit, k, state, phase)
+            worst.append(missing.size)
     return max(worst)
