@@ -40,9 +40,9 @@ from .parts.films.series import SeriesFilm
 from .parts.films.squeeze import SqueezeFilm
 from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyThickness, ThicknessLaw
 from .parts.films.thirdorder import ThirdOrder
+from .parts.friction.coulomb import CoulombFriction
 from .parts.friction.jenkins import Iwan, Jenkins
 from .parts.friction.tanh import TanhFriction
-from .parts.friction.coulomb import CoulombFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
 from .parts.mechanics.clearances import Backlash, Gap, OneSidedSpring
