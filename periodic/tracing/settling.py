@@ -10,7 +10,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Flowing, System, resets_of
+from periodic.system import Flowing, System, linear_of, resets_of
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -31,7 +31,7 @@ def settled(system: System, start: Orbit) -> Orbit | None:
     None where it does not settle within PERIODS, where its integration fails, and of a system without a flow
     or with impacts.
     """
-    if not hasattr(system, "flow") or resets_of(system):
+    if not hasattr(system, "flow") or resets_of(system) or linear_of(system):
         return None
     flowing, phase = cast(Flowing, system), np.linspace(0, FORCED, SAMPLES)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]

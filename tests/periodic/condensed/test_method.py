@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -101,3 +102,14 @@ def test_three_methods_agree(condense: bool) -> None:
         found.append(next(p for p in of.points if p.parameter == 3.1))
     assert found[0].maximum["tip"] == pytest.approx(found[1].maximum["tip"], rel=1e-9)
     assert np.abs(found[0].multipliers).max() == pytest.approx(np.abs(found[1].multipliers).max(), rel=1e-8)
+
+
+def test_what_needs_all_states_is_refused(tmp_path: Path) -> None:
+    """Assert one sentence for a curve of folds; a journal takes the leading multipliers."""
+    journal = tmp_path / "branch.journal"
+    system = cantilever(1, cubic)
+    of = per.trace(system, "Omega", (3.0, 3.05), tol=1e-5, watch=per.Watch(journal=journal))
+    assert len(per.recovered(journal).points) == len(of.points)
+    point = of.points[-1].orbit
+    with pytest.raises(ValueError, match="the system's linear part is condensed; curves of special points"):
+        per.sensitivities(system, point, {"mean": per.mean("tip")})
