@@ -1,0 +1,1 @@
+"""Gears, bearings, rotors and friction dampers: their branches beside every number known of them."""
