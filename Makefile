@@ -12,7 +12,7 @@ BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.pro
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long bench report-paper report-trade report-extremes docs lint types layers wheel clean
+.PHONY: help run test kernels long bench report-paper report-trade report-extremes report-machines docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -34,7 +34,7 @@ long: $(VENV)/.installed-dev ## Run the long studies
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
 
-report-paper report-trade report-extremes: $(VENV)/.installed-dev ## Compute the page of a study anew
+report-paper report-trade report-extremes report-machines: $(VENV)/.installed-dev ## Compute the page of a study anew
 	$(BIN)/python -m reports.studies.$(@:report-%=%)
 
 docs: $(VENV)/.installed-docs ## Build the site into docs/_build

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from periodic import Branch
-from reports.app.curve import draw_curve, solid
+from reports.app.curve import draw_curve
 from reports.studies.pages.figures import SECOND, TRUSTED, panels
 
-if TYPE_CHECKING:
-    from reports.studies.machines.machine import Machine
-
 MARKERS = {"LP": "o", "PD": "D", "NS": "s", "BP": "x", "GR": "^"}
+
+
+@dataclass(frozen=True)
+class View:
+    """What a figure shows of a branch: an output over the parameter, the names of both, their units in SI."""
+
+    output: str
+    names: tuple[str, str]
+    unit: float
+    size: float
 
 
 @dataclass(frozen=True)
@@ -28,22 +34,22 @@ class Curve:
     names: tuple[str, str]
 
 
-def diagram(machine: Machine, found: Branch, marched: Sequence[tuple[float, float | None]]) -> Figure:
+def diagram(view: View, found: Branch, marched: Sequence[tuple[float, float | None]]) -> Figure:
     """Draw the branch, stable solid and unstable dashed, its special points, and settled simulations."""
     figure, axes = panels(1, 1, height=3.4)
-    across = np.array([p.parameter for p in found]) / machine.unit
-    up = found.peak_to_peak(machine.output) / machine.size
-    draw_curve(axes, across, up, solid(found), color=TRUSTED)
+    across = np.array([p.parameter for p in found]) / view.unit
+    up = found.peak_to_peak(view.output) / view.size
+    draw_curve(axes, across, up, found.stable_between, color=TRUSTED)
     for label, marker in MARKERS.items():
         points = [p for p in found.special_points if p.label.value == label]
         if points:
-            at = [p.parameter / machine.unit for p in points]
-            high = [p.peak_to_peak(machine.output) / machine.size for p in points]
+            at = [p.parameter / view.unit for p in points]
+            high = [p.peak_to_peak(view.output) / view.size for p in points]
             axes.plot(at, high, marker, color="k", markersize=5, markerfacecolor="w", label=label)
     settled = [(value, high) for value, high in marched if high is not None]
     if settled:
         axes.plot(*zip(*settled, strict=True), "v", color=SECOND, markersize=5, label="time integration")
-    axes.set(xlabel=machine.axis, ylabel=machine.swing)
+    axes.set(xlabel=view.names[0], ylabel=view.names[1])
     axes.legend(frameon=False)
     return figure
 

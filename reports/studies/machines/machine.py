@@ -11,7 +11,7 @@ import numpy as np
 
 import symbolic as sym
 from periodic import Branch, Label, Point, trace
-from reports.studies.machines.figures import Curve, diagram, over_two
+from reports.studies.machines.figures import Curve, View, diagram, over_two
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from symbolic.scenes.axes import RPM
 
@@ -77,7 +77,8 @@ class Machine:
         for value in self.marched:
             tell(f"time integration at {value:g}")
             marched.append((value, self.simulated(value)))
-        figures = {self.key: diagram(self, found, marched)}
+        view = View(self.output, (self.axis, self.swing), self.unit, self.size)
+        figures = {self.key: diagram(view, found, marched)}
         if self.two is not None:
             tell("a curve in two parameters")
             figures[f"{self.key}-two"] = over_two(self.two(self, found))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+import symbolic as sym
 from periodic import Branch, FoldCondition, Label, trace
 from reports.studies.machines.figures import Curve
 from reports.studies.machines.machine import Known, Machine, place, rpm
@@ -50,6 +51,15 @@ def whirl_onset() -> float:
 
     e = brentq(excess, 0.02, 0.7, xtol=1e-14)
     return WEIGHT / (VISCOSITY * RADIUS * LENGTH**3 / (2 * CLEARANCE**2) * load(e))
+
+
+def onset(found: Branch) -> float:
+    """Return the NS (rev/min) under a vanishing unbalance, near that of a branch."""
+    near = found.labelled(Label.TORUS)[0].parameter
+    faint = trace(
+        sym.scene("journal-bearing"), "speed", (0.9 * near, 1.1 * near), start=0.9 * near, values={"e": 1e-9}
+    )
+    return faint.labelled(Label.TORUS)[0].parameter / rpm(1.0)
 
 
 def over_stiffness(machine: Machine, found: Branch) -> Curve:
@@ -105,16 +115,17 @@ JOURNAL = Machine(
     unit=rpm(1.0),
     size=1e-6,
     swing="x peak to peak (µm)",
+    at=(3500.0, 4500.0, 5000.0, 5500.0, 6000.0, 6500.0),
     marched=(4000.0, 6000.0, 7500.0),
     words="A rigid rotor on short bearings with a cavitated film (half-Sommerfeld) and a faint unbalance: "
     "where the film is too light it drags the shaft round at nearly half its speed. The onset for an "
     "unbalance that vanishes is known in closed form (Routh's criterion on the printed coefficients); ours "
-    "is the NS of the synchronous orbit under 1 µm of eccentricity.",
+    "is the NS of the synchronous orbit under 1 nm of eccentricity.",
     known=(
         Known(
             name="onset of oil whirl (rev/min)",
             value=whirl_onset() / rpm(1.0),
-            ours=place(Label.TORUS, 0, rpm(1.0)),
+            ours=onset,
         ),
     ),
 )
