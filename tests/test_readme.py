@@ -1,40 +1,70 @@
-"""The README's examples run, one after another in one place, and give the numbers that it names."""
+"""The README's examples run, each by itself, and print what it shows."""
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
+from typing import Any
 
-import matplotlib
+import matplotlib.pyplot as plt
 import pytest
-from scipy.special import ellipk
 
 import periodic as per
 
-README = Path(__file__).resolve().parent.parent / "README.md"
+ROOT = Path(__file__).resolve().parent.parent
+TEXT = (ROOT / "README.md").read_text("utf-8")
 
 
-def test_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert folds, cusp, Hopf point and backbone of the examples, the disc's apart, which is long."""
-    matplotlib.use("Agg")
-    monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"```python\n(.*?)```", README.read_text("utf-8"), re.DOTALL)
-    said: dict = {}
-    for block in blocks:
-        if "vitrea79" not in block:
-            exec(block, said)
-    assert [p.parameter for p in said["branch"].labelled(per.Label.FOLD)] == pytest.approx(
-        [2.2119353, 1.4386701]
-    )
-    assert said["cusp"].parameter == pytest.approx(1.0901095, rel=1e-7)
-    assert said["border"].column("F").min() > 0.0513635 * (1 - 1e-6)
-    assert said["reached"][-1].peak_to_peak("x") == pytest.approx(3.0, rel=1e-9)
-    assert said["level"].peak_to_peak("x") == pytest.approx([3.0] * len(said["level"]), rel=1e-7)
-    assert said["hopf"].parameter == pytest.approx(470 / 19, rel=1e-10)
-    assert said["pitchfork"].parameter == pytest.approx(1.0, rel=1e-10)
-    for point, energy in zip(said["backbone"], said["energies"], strict=True):
-        sine = math.sin(point.maximum["q"] / 2)
-        assert point.parameter == pytest.approx(math.pi / 2 / ellipk(sine**2), rel=1e-9)
-        assert energy == pytest.approx(2 * sine**2, rel=1e-6)
-    assert (tmp_path / "duffing.png").is_file() and (tmp_path / "duffing.nc").is_file()
+def blocks(language: str) -> list[str]:
+    """The README's blocks of a language."""
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+
+
+def run(block: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Run a block in a folder of its own and return what it has defined."""
+    plt.switch_backend("Agg")
+    monkeypatch.chdir(folder)
+    said: dict[str, Any] = {}
+    exec(block, said)
+    plt.close("all")
+    return said
+
+
+def test_gear(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Assert that the first example prints just what stands below it."""
+    run(blocks("python")[0], tmp_path, monkeypatch)
+    assert capsys.readouterr().out == blocks("text")[0]
+    assert (tmp_path / "gears.png").is_file()
+
+
+def test_own_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the second, and its file."""
+    said = run(blocks("python")[1], tmp_path, monkeypatch)
+    assert said["branch"].stop.reason is per.Reason.BOUND
+    assert len(per.Branch.load("stop.nc")) == len(said["branch"])
+
+
+def test_two_minutes() -> None:
+    """Assert its length, and that no example is left out here."""
+    assert len(TEXT.splitlines()) <= 150
+    assert len(blocks("python")) == 2
+
+
+def test_links_lead_somewhere() -> None:
+    """Assert that every file it names is there."""
+    prose = re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)#]+)\)", prose):
+        assert (ROOT / target).exists(), target
+
+
+def test_names_are_there() -> None:
+    """Assert that parts and scenes of its table exist."""
+    import symbolic as sym
+
+    table = TEXT[TEXT.index("## I have") : TEXT.index("## Why")]
+    for parts in re.findall(r"parts? ((?:`\w+`(?:, )?)+)", table):
+        for name in re.findall(r"`(\w+)`", parts):
+            assert hasattr(sym, name), name
+    for command in re.findall(r"`orbitrace trace ([\w-]+)`((?:, `[\w-]+`)*)", table):
+        for name in (command[0], *re.findall(r"`([\w-]+)`", command[1])):
+            assert name in sym.scene_names(), name
