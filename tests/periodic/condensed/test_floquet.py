@@ -1,0 +1,32 @@
+"""The leading multipliers of many states against all of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.cantilevers import cantilever, cubic
+
+import periodic as per
+from periodic.condensed.method import CondensedCollocation
+from periodic.condensed.operator import Condensed
+
+
+@pytest.mark.parametrize(("elements", "states"), [(15, 60), (100, 400)])
+def test_leading_multipliers_are_the_largest(elements: int, states: int) -> None:
+    """Assert the eight largest of 60 and of 400 to 10 digits, one of them outside the unit circle."""
+    system = cantilever(elements, cubic)
+    branch = per.trace(system, "Omega", (3.0, 7.0), tol=1e-4)
+    unstable = next(p for p in branch.points if not p.stable and not p.label.critical)
+    method = replace(CondensedCollocation().at(1e-6), tolerance=1e-16)  # no mode is left out
+    operator = method.linearise(system, unstable.orbit, ())
+    assert isinstance(operator, Condensed)
+    leading = operator.leading
+    every = np.linalg.eigvals(leading.floquet.monodromy)
+    assert len(every) == states
+    found = np.linalg.eigvals(leading.fundamental[-1])
+    assert (np.abs(found) > 1).sum() == (np.abs(every) > 1).sum() == 1
+    apart = np.abs(found[:, None] - every).min(axis=1)
+    assert apart.max() < 1e-10
+    assert np.sort(np.abs(found))[2:] == pytest.approx(np.sort(np.abs(every))[-6:], abs=1e-10)
