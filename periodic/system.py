@@ -339,9 +339,9 @@ class Jumping(System, Protocol):
     """A system whose equations jump where some of its switches vanish, as dry friction does.
 
     Their level is 0 and their direction 0. It may have `slides` too: of those jumps along which a motion can
-    slide (stick, for friction) the indices of two further switches, sigma - 1 and sigma + 1, where sigma is
-    the part of the jump, between -1 and 1, that keeps the switch at 0. A rise of the first ends the sliding
-    with a positive switch, a fall of the second with a negative one.
+    slide (stick, for friction) the indices of two further switches: ds/dtau by the equations of its positive
+    side, and by those of its negative side. It slides where the first is negative and the second positive;
+    a rise of the first ends that with a positive switch s, a fall of the second with a negative one.
     """
 
     @property

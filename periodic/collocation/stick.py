@@ -88,8 +88,16 @@ def _vanished(system: System, orbit: Orbit, switch: int, least: float) -> set[in
 
 
 def _sigma(system: System, state: Array, phase: float, orbit: Orbit, switch: int) -> float:
-    up, _ = slides_of(system)[switch]
-    return 1 + float(system.switch(state[None], np.array([phase]), orbit.parameter)[0, up])
+    return float(_sigmas(system, orbit, switch, state[None], np.array([phase]))[0])
+
+
+def _sigmas(system: System, orbit: Orbit, switch: int, state: Array, phase: Array) -> Array:
+    """sigma at several states (K, n); infinite where nothing jumps, as without friction."""
+    up, down = slides_of(system)[switch]
+    values = system.switch(state, phase, orbit.parameter)
+    jump = values[:, down] - values[:, up]
+    held = np.where(jump > 0, jump, 1.0)
+    return np.where(jump > 0, (values[:, up] + values[:, down]) / held, np.inf)
 
 
 def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, float]]:
@@ -143,7 +151,7 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
     count = len(orbit.mesh.breaks[node]) - 1
     tau = orbit.stage_phases[start : start + count].ravel()
     state = orbit.stages[start : start + count].reshape(len(tau), -1)
-    sigma = 1 + system.switch(state, tau, orbit.parameter)[:, up]
+    sigma = _sigmas(system, orbit, switch, state, tau)
     past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + WRONG)
     if not past.size or past[0] == 0:
         return _Slip()

@@ -81,7 +81,7 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=ca.vertcat(switches, *(s for _, sigma in beside.slides for s in (sigma - 1, sigma + 1))),
+        switches=ca.vertcat(switches, *(s for _, *both in beside.slides for s in both)),
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

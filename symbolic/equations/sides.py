@@ -38,13 +38,14 @@ EQUAL = 1e-8
 class Sided:
     """The residual with sides: a symbol each for the switches with the indices `jumps`.
 
-    slides: those along which a motion can slide, with the part sigma of the jump that keeps it there.
+    slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
+    positive side and on the negative one; between them the motion is held.
     """
 
     residual: ca.SX
     side: ca.SX
     jumps: tuple[int, ...]
-    slides: tuple[tuple[int, ca.SX], ...] = ()
+    slides: tuple[tuple[int, ca.SX, ca.SX], ...] = ()
 
 
 def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...]) -> Sided:
@@ -77,15 +78,15 @@ def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int,
     for i, k in enumerate(jumps):
         sliding = _sliding(packed, both, kept, i, switches[k])
         if sliding is not None:
-            slides.append((k, sliding[1]))
+            slides.append((k, *sliding[1:]))
             both = ca.if_else(kept[i] == STUCK, sliding[0], both)
     return Sided(both, kept, tuple(jumps), tuple(slides))
 
 
 def _sliding(
     packed: Packed, residual: ca.SX, side: ca.SX, index: int, switch: ca.SX
-) -> tuple[ca.SX, ca.SX] | None:
-    """The residual M x' + g0 + sigma g1 of sliding, and sigma; None of a jump along which nothing slides.
+) -> tuple[ca.SX, ca.SX, ca.SX] | None:
+    """The residual M x' + g0 + sigma g1 of sliding, and s' on either side; None where nothing slides.
 
     On the sides themselves it is M x' + g0 + g1 and M x' + g0 - g1. sigma keeps s_x x' + s_tau at 0; it must
     not depend on the sides of other jumps.
@@ -104,10 +105,10 @@ def _sliding(
     # Both sides lead back to the jump where s' falls by this from one to the other.
     if ca.depends_on(pulled, side) or not all(row.min() > EQUAL for row in Samples(packed).rows(pulled)[0]):
         return None
-    sigma = (by_phase - pushed) / pulled
-    if ca.depends_on(sigma, side):
+    slope = by_phase - pushed
+    if ca.depends_on(slope, side):
         return None
-    return mass @ rate + mean + sigma * half, sigma
+    return mass @ rate + mean + slope / pulled * half, slope - pulled, slope + pulled
 
 
 def _with(expression: ca.SX, side: ca.SX, index: int, value: int) -> ca.SX:

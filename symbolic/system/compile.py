@@ -107,7 +107,7 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
 
 def _releases(assembly: Assembly, expressions: Expressions) -> list[SwitchInfo]:
     """The switches at which motions stop sliding along jumps."""
-    names = [assembly.switches[k][0].name for k, _ in expressions.sided.slides]
+    names = [assembly.switches[k][0].name for k, *_ in expressions.sided.slides]
     return [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
 
 

@@ -192,7 +192,7 @@ class CompiledSystem:
     @property
     def slides(self) -> dict[int, tuple[int, int]]:
         """Of each jump along which motions can slide, the switches at which that ends."""
-        switches = [k for k, _ in self.expressions.sided.slides]
+        switches = [k for k, *_ in self.expressions.sided.slides]
         first = len(self.switches) - 2 * len(switches)
         return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
 

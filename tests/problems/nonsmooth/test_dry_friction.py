@@ -167,3 +167,10 @@ def test_coulomb_friction_is_the_sign_of_the_speed() -> None:
     np.testing.assert_allclose(part.multipliers, plain.multipliers, atol=1e-6)
     both = [*one, sym.Mass(y, 1.0), sym.Spring(y, 2.0), sym.CoulombFriction(x, MU, to=y)]
     assert sym.compile(sym.combine(both)).slides == {0: (1, 2)}
+
+
+def test_friction_that_vanishes() -> None:
+    """Assert that without a force there is no friction, and no division by it: a linear oscillator is left."""
+    branch = per.trace(compiled(friction), "F", (0.4, 0.5), values={"mu": 0.0})
+    assert "upper end" in str(branch.stop)
+    np.testing.assert_allclose(np.prod(branch[-1].multipliers), np.exp(-2 * np.pi * C), rtol=1e-9)
