@@ -170,7 +170,7 @@ def test_coulomb_friction_is_the_sign_of_the_speed() -> None:
 
 
 def test_friction_that_vanishes() -> None:
-    """Assert that without a force there is no friction, and no division by it: a linear oscillator is left."""
+    """Assert that without a force there is no friction: the multipliers of a linear oscillator are left."""
     branch = per.trace(compiled(friction), "F", (0.4, 0.5), values={"mu": 0.0})
     assert "upper end" in str(branch.stop)
     np.testing.assert_allclose(np.prod(branch[-1].multipliers), np.exp(-2 * np.pi * C), rtol=1e-9)
