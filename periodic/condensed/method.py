@@ -22,6 +22,7 @@ from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
+from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
@@ -69,12 +70,14 @@ class CondensedCollocation(Collocation):
         return tuple(replace(self, scheme=Scheme(Family.RADAU, ncol)) for ncol in (3, 5))
 
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
-        """Return the orbit at rest, or one carried to this scheme."""
+        """Return the orbit at rest, or one carried to this scheme, its forces those of its motion."""
         if near is None or near.equilibrium:
             return super().guess(system, parameter, near)
         old = near.mesh
         mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period)
-        return replace(transfer(near, mesh, near.phases), parameter=parameter)
+        found = replace(transfer(near, mesh, near.phases), parameter=parameter)
+        forces = algebraic_at(system, found, found.stage_phases.ravel())
+        return replace(found, algebraic=forces.reshape(found.algebraic.shape))
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit on the other mesh."""
