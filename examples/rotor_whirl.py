@@ -2,7 +2,8 @@
 Whirl of a rotor with internal damping
 ======================================
 
-Above its critical speed damping inside the shaft drives the rotor round: the orbit loses stability to a torus.
+Above its critical speed damping inside the shaft drives the rotor round: the orbit loses stability
+to a torus.
 """
 
 import periodic as per
