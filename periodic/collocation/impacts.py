@@ -24,7 +24,7 @@ from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, jumps_of, resets_of
+from periodic.system import Resetting, System, jumps_of, resets_of, slides_of
 
 SAMPLES = 17
 """Places in each interval at which an orbit is looked at between its impacts."""
@@ -137,6 +137,20 @@ def arrived(system: System, orbit: Orbit) -> bool:
     """Whether every impact of an orbit is met in the direction of its switch."""
     every = ((orbit.mesh.events[i], slope_before(system, orbit, i)) for i in tied(system, orbit))
     return all(slope * event.direction > 0 for event, slope in every)
+
+
+def crossed(system: System, orbit: Orbit) -> bool:
+    """Whether an orbit goes on past every jump of the equations along which it is not known to slide."""
+    jumps = set(jumps_of(system)) - set(slides_of(system))
+    for i, event in enumerate(orbit.mesh.events):
+        if event.switch in jumps:
+            start = orbit.mesh.starts[i]
+            at = orbit.nodes[start : start + 1], orbit.phases[i : i + 1], orbit.parameter
+            d_state, d_phase, _ = system.switch_gradient(*at)
+            onward = d_phase[0, event.switch] + d_state[0, event.switch] @ orbit.node_rates[start]
+            if not onward * event.direction > 0:
+                return False
+    return True
 
 
 def free(system: System, orbit: Orbit, least: float) -> bool:

@@ -126,6 +126,8 @@ class Collocation(Discretisation):
             return replace(correction, outcome=Outcome.GRAZING)
         if not impacts.free(system, correction.orbit, self.tolerance):
             return replace(correction, outcome=Outcome.THROUGH_STOP)
+        if not impacts.crossed(system, correction.orbit):
+            return replace(correction, outcome=Outcome.SLIDES)
         if kinks.genuine(system, correction.orbit):
             return correction
         return replace(correction, outcome=Outcome.EVENTS_CROSSED)

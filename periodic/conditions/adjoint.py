@@ -21,7 +21,7 @@ from periodic.orbit.gradients import Points, Slopes, collocation_points, gathere
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.system import Differentiable, LinearisationLike, resets_of
+from periodic.system import Differentiable, LinearisationLike, jumps_of, resets_of
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ class Linear:
         Raises ValueError for an orbit that is no piecewise polynomial.
         """
         polynomial(orbit)
-        if resets_of(system):
-            raise ValueError("system has impacts; exact derivatives of multipliers need one without")
+        if resets_of(system) or jumps_of(system):
+            raise ValueError("system has impacts or jumps; exact second derivatives need one without")
         local = condensed(system, orbit, free)
         return Linear(system, orbit, free, local, chain(local))
 

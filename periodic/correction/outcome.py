@@ -18,6 +18,7 @@ class Outcome(Enum):
     EVENTS_CROSSED = "two event nodes of the mesh met"
     GRAZING = "an impact has no speed left, the orbit grazes"
     THROUGH_STOP = "the orbit passes where an impact would be, start from a simulated one that has it"
+    SLIDES = "the motion would slide along a jump of the equations, which is not followed here"
     COLLAPSED = "the orbit shrank to an equilibrium"
     MOVED = "the orbit became another one on a new mesh"
 

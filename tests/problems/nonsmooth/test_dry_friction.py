@@ -174,3 +174,29 @@ def test_friction_that_vanishes() -> None:
     branch = per.trace(compiled(friction), "F", (0.4, 0.5), values={"mu": 0.0})
     assert "upper end" in str(branch.stop)
     np.testing.assert_allclose(np.prod(branch[-1].multipliers), np.exp(-2 * np.pi * C), rtol=1e-9)
+
+
+def test_sliding_that_is_not_followed() -> None:
+    """Assert that a branch ends before its orbits should slide where unknowns hide how."""
+    hidden = sym.Equations(
+        lambda x, p, w: friction(x, p, w) | {"z": x.z - x.x},
+        {"x": 0.0, "v": 0.0},
+        VALUES,
+        frequency="w",
+        unknowns={"z": 0.0},
+    )
+    system = sym.compile(hidden)
+    assert system.jumps == (0,)
+    assert system.slides == {}
+    branch = per.trace(system, "F", (0.2, 0.5), start=0.5, values={"w": 0.5})
+    assert 0.347 < branch[-1].parameter < 0.36  # the onset of stops
+    assert "would slide" in str(branch.stop)
+
+
+def test_conditions_with_second_derivatives_refuse_jumps() -> None:
+    """Assert the sentence."""
+    system = compiled(friction)
+    first = per.trace(system, "F", (0.49, 0.5))[0]
+    peak = {"w": per.Peak(per.PeakToPeak("x"))}
+    with pytest.raises(ValueError, match="system has impacts or jumps"):
+        per.trace(system, "F", (0.4, 0.5), guess=first.orbit, determined=peak)
