@@ -6,10 +6,15 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 import periodic as per
-from reports.benchmarks.work import fold_error
+import symbolic as sym
+from reports.benchmarks.work import chain_model, fold_error
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
 from symbolic.scenes.files import load
+
+AUTO = {1: (219, 0.034), 2: (305, 0.10), 5: (341, 0.59), 10: (341, 3.7), 25: (341, 37.6)}
+"""Points and processor seconds of AUTO-07p (its own executable, NTST 20, multipliers) on the branch
+of a chain, by the number of oscillators; measured once, on two cores like those of CI."""
 
 
 def at_each_accuracy(what: str) -> pytest.MarkDecorator:
@@ -28,13 +33,36 @@ def told(branch: per.Branch) -> dict[str, float]:
 def test_disc(benchmark: BenchmarkFixture, accuracy: per.Accuracy) -> None:
     """The disc from 500 to 100 rev/min."""
     system, ends = build(load("vitrea79-810N")), (500 * RPM, 100 * RPM)
-    benchmark.extra_info |= told(benchmark(per.trace, system, "speed", ends, accuracy=accuracy))
+    benchmark.extra_info |= told(benchmark(per.trace, system, "speed", ends, tol=accuracy))
 
 
 @pytest.mark.benchmark(group="Duffing A")
 @at_each_accuracy("Duffing A branch")
 def test_duffing(benchmark: BenchmarkFixture, accuracy: per.Accuracy) -> None:
     """Duffing A from 0.3 to 3 rad/s."""
-    branch = benchmark(per.trace, build(load("duffing")), "Omega", (0.3, 3.0), accuracy=accuracy)
+    branch = benchmark(per.trace, build(load("duffing")), "Omega", (0.3, 3.0), tol=accuracy)
     folds = [point.parameter for point in branch.labelled(per.Label.FOLD)]
     benchmark.extra_info |= told(branch) | {"fold error": fold_error(folds)}
+
+
+@pytest.mark.benchmark(group="chain branch")
+@pytest.mark.parametrize("count", AUTO, ids="{} oscillators".format)
+def test_chain(benchmark: BenchmarkFixture, count: int) -> None:
+    """Chains of oscillators from 1.6 down to 0.5 rad/s through their folds."""
+    branch = benchmark.pedantic(per.trace, (sym.compile(chain_model(count)), "Omega", (1.6, 0.5)), rounds=2)
+    points, seconds = AUTO[count]
+    benchmark.extra_info |= told(branch) | {"AUTO points": points, "AUTO s": seconds}
+
+
+@pytest.mark.benchmark(group="large motion")
+def test_amplitude(benchmark: BenchmarkFixture) -> None:
+    """Duffing's oscillator from a force of 0.01 to 50, at its natural frequency."""
+    system, ends = build(load("duffing")), (0.01, 50.0)
+    benchmark.extra_info |= told(benchmark(per.trace, system, "F", ends, values={"Omega": 1.0}))
+
+
+@pytest.mark.benchmark(group="gear pair")
+def test_gear_pair(benchmark: BenchmarkFixture) -> None:
+    """The gear pair with backlash from 1.2 down to 0.4."""
+    system = sym.scene("gear-pair")
+    benchmark.extra_info |= told(benchmark(per.trace, system, "Omega", (1.2, 0.4)))
