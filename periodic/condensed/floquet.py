@@ -15,7 +15,6 @@ from functools import cached_property
 import numpy as np
 import scipy
 from numpy.typing import NDArray
-from scipy.sparse.linalg import ArpackError, eigs
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import Linearised
@@ -249,9 +248,11 @@ def _largest(matrix: Array, count: int) -> tuple[Complex, Complex]:
     """Some more than `count` of the largest eigenvalues."""
     if len(matrix) > SMALL:
         try:
-            values, vectors = eigs(matrix, count + 3, v0=np.ones(len(matrix)), ncv=4 * count, maxiter=60)
+            values, vectors = scipy.sparse.linalg.eigs(
+                matrix, count + 3, v0=np.ones(len(matrix)), ncv=4 * count, maxiter=60
+            )
             return values, vectors
-        except ArpackError:
+        except scipy.sparse.linalg.ArpackError:
             pass  # those next to each other in size are told apart by all of them
     values, vectors = scipy.linalg.eig(matrix)
     return values.astype(np.complex128), vectors.astype(np.complex128)
