@@ -37,6 +37,7 @@ class Label(str):
     TORUS: ClassVar[Label]
     BRANCH: ClassVar[Label]
     HOPF: ClassVar[Label]
+    GRAZING: ClassVar[Label]
     USER: ClassVar[Label]
     FAILED: ClassVar[Label]
     CUSP: ClassVar[Label]
@@ -102,6 +103,7 @@ Label.DOUBLING = Label.register("PD", critical=True)
 Label.TORUS = Label.register("NS", critical=True)
 Label.BRANCH = Label.register("BP", critical=True)
 Label.HOPF = Label.register("HB", critical=True)
+Label.GRAZING = Label.register("GR")
 Label.USER = Label.register("UZ")
 Label.FAILED = Label.register("MX")
 Label.CUSP = Label.register("CP")

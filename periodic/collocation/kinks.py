@@ -15,6 +15,7 @@ import scipy
 
 from periodic.checks import at_least_0, number
 from periodic.collocation import impacts, stick
+from periodic.collocation.dense import Dense, exact
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -118,15 +119,19 @@ class KinkSettings:
         return replace(self, deepest=DEEPEST * tolerance) if self.deepest is None else self
 
 
+def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
+    """Return all passages, on the whole orbit, of the switches at whose level the equations change."""
+    dense = Dense(system, orbit)
+    return [Crossing(*passage, 0.0) for k in exact(system) for passage in dense.passages(k)]
+
+
 def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """Return all passages of all switches through their levels, in order of phase for each level.
 
     Signs are read at the collocation points alone: only there do the states fulfil the equations exactly,
-    and a switch may stay far closer to its level than the interpolation error between them. Phases are
-    interpolated linearly.
+    and a switch with several levels may stay far closer to one than the interpolation error between them.
+    Phases are interpolated linearly.
     """
-    if not system.switches:
-        return []
     tau, flat = orbit.stage_phases.ravel(), (-1, orbit.stages.shape[2])
     state = orbit.stages.reshape(flat)
     values = system.switch(state, tau, orbit.parameter)
@@ -157,9 +162,12 @@ def _elsewhere(system: System) -> set[int]:
 
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
     """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
-    found = crossings(system, orbit)
-    chosen: list[Crossing] = []
-    for k, switch in enumerate(system.switches):
+    if not system.switches:
+        return []
+    sharp, chosen = exact(system), list[Crossing]()
+    blunt = [(k, switch) for k, switch in enumerate(system.switches) if k not in sharp]
+    found = crossings(system, orbit) if blunt else []
+    for k, switch in blunt:
         levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
         kept = [
             _merged(
@@ -172,11 +180,15 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         directions = (switch.direction,) if switch.direction else (-1, 1)
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
-    chosen = _apart(sorted(chosen, key=lambda crossing: crossing.phase), orbit, settings)
+    chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
     others = (*impacts.passages(system, orbit), *stick.passages(system, orbit, settings.deepest or LEAST))
     begin = orbit.grid.left[0]
-    exact = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
-    return sorted([*chosen, *exact], key=lambda crossing: crossing.phase)
+    tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
+    return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
+
+
+def _phase(crossing: Crossing) -> float:
+    return crossing.phase
 
 
 def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
@@ -255,10 +267,13 @@ def _is_tied(crossing: Crossing, orbit: Orbit) -> bool:
 
 def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | None:
     """Return the index of the orbit's event node that is this crossing, if one is."""
-    for i, (event, phase) in enumerate(zip(orbit.mesh.events, orbit.phases, strict=True)):
-        if event == crossing.event and abs(_wrapped(crossing.phase - phase, orbit)) < tolerance:
-            return i
-    return None
+    both = zip(orbit.mesh.events, orbit.phases, strict=True)
+    apart = [
+        abs(_wrapped(crossing.phase - phase, orbit)) if event == crossing.event else np.inf
+        for event, phase in both
+    ]
+    nearest = int(np.argmin(apart)) if apart else 0
+    return nearest if apart and apart[nearest] < tolerance else None
 
 
 def fits(chosen: list[Crossing], orbit: Orbit) -> bool:

@@ -15,20 +15,24 @@ from periodic.collocation.event import event_rows
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.residual import evaluated
+from periodic.collocation.touch import change, pattern
 from periodic.collocation.unresolved import lost
+from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement, wanted_ntst
 from periodic.correction.newton import Correction, in_order
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
+from periodic.linear.bordering import GROWTH
 from periodic.linear.operator import LinearSolver, Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import at_rest, transfer
-from periodic.orbit.mesh import Mesh, uniform
+from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.stability.product import multipliers
 from periodic.stability.spectrum import Spectrum
 from periodic.system import System
 
@@ -151,6 +155,21 @@ class Collocation(Discretisation):
         missing = stick.shortfall(problem.system, correction.orbit)
         multiplier = max(found.multiplier, lost(problem.system, correction.orbit), missing)
         return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier)
+
+    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
+        """Return where a switch touches its level on the way, or two event nodes meet."""
+        return change(system, before, after, self.shortest)
+
+    def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
+        """Return the event nodes where the equations change; None where the orbit passes others."""
+        return pattern(system, orbit)
+
+    def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
+        """Return the multipliers, where motions grow by many decades from the intervals one by one."""
+        fundamental, steps = correction.fundamental, getattr(correction.operator, "steps", None)
+        if steps is None or not np.abs(fundamental).max() > GROWTH:
+            return Spectrum(fundamental, trivial)
+        return Spectrum(fundamental, trivial, known_better=multipliers(steps))
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""

@@ -40,7 +40,7 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linearisat
     count, ncol, n = orbit.stages.shape
     rate = orbit.knot_rates[:, 1:]
     tau, stages = _before_kinks(orbit, rate)
-    return linearise(
+    line = linearise(
         system,
         rate.reshape(-1, n),
         stages.reshape(-1, n),
@@ -50,13 +50,20 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linearisat
         np.repeat(sides(system, orbit.mesh), ncol, axis=0),
         free,
     )
+    if len(orbit.mesh.exact_ends) and orbit.mesh.scheme.points[-1] == 1.0:
+        ends = orbit.mesh.exact_ends * ncol + ncol - 1
+        if line.d_state.shape[1:] != (line.residual.shape[1], n):
+            return line  # it is refused where it is condensed
+        late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate.reshape(-1, n)[ends])
+        line.residual[ends] += BEFORE * late
+    return line
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
     """Phases and stages at which the equations are evaluated: the collocation points, BEFORE a kink.
 
     A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
-    either side, as rounding has it.
+    either side, as rounding has it. To first order the residual is moved back to the kink.
     """
     tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
     if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:

@@ -11,13 +11,14 @@ from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Protocol, Self, runtime_checkable
 
+from periodic.correction.change import Change
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
 from periodic.correction.problem import Problem
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
-from periodic.orbit.mesh import Mesh
+from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum, Stability
@@ -133,6 +134,40 @@ class Discretisation(Protocol):
         Refinement
             What to change of its mesh.
         """
+
+    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
+        """Return the first change of the pattern of events on the way from one orbit to another, if any.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        before, after : Orbit
+            Orbits on one mesh; the second may be a guess.
+
+        Returns
+        -------
+        Change or None
+            Where a step from the first orbit is to end, and how the branch goes on there.
+        """
+        return None
+
+    def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
+        """Return the events of an orbit's period at which the equations change, in a fixed order.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            An orbit.
+
+        Returns
+        -------
+        tuple of EventNode or None
+            Those that its mesh is tied to; None where it passes others as well.
+        """
+        return ()
 
     @property
     def stability(self) -> Stability:

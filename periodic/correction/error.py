@@ -6,12 +6,13 @@ mesh points, so its increment is the error of the orbit to first order.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.newton import Linearise, NewtonSettings, newton_step
+from periodic.correction.newton import Linearise, NewtonSettings, moved, newton_step
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
@@ -78,8 +79,9 @@ def deferred(
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
-    `linearise` has the equations that it is held against on the halved mesh. The states `only_at_points`
-    count at the orbit's mesh points alone, not between them.
+    `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
+    multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit. The
+    states `only_at_points` count at the orbit's mesh points alone, not between them.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
@@ -87,7 +89,11 @@ def deferred(
     closing = [*problem.side_conditions(fine), across]
     try:
         step = newton_step(linearise, problem.system, fine, problem.free, closing, NewtonSettings())
-        multiplier = spectrum.apart(step.operator.fundamental[-1])
+        monodromy = step.operator.fundamental[-1]
+        if len(orbit.mesh.exact_ends):
+            better = moved(problem.system, problem.free, step.operator.orbit, step.increment)
+            monodromy = linearise(problem.system, better, problem.free).fundamental[-1]
+        multiplier = spectrum.apart(monodromy)
     except FAILURES:
         return UNKNOWN
     change = step.increment
@@ -96,16 +102,16 @@ def deferred(
     at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
     at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0
-    moved = max(at_nodes.max(), between.max())
+    apart = max(at_nodes.max(), between.max())
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     parameter = float(abs(change.parameter) / largest)
-    return ErrorEstimate(float(moved) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+    return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
 
 
-def _stage_shift(orbit: Orbit, moved: Array) -> Array:
+def _stage_shift(orbit: Orbit, later: Array) -> Array:
     """How far the collocation points move in tau with the event nodes, shape (N, ncol, 1)."""
     grid, points = orbit.grid, orbit.mesh.scheme.points
-    left, stretch = grid.left_gradient @ moved, grid.width_gradient @ moved
+    left, stretch = grid.left_gradient @ later, grid.width_gradient @ later
     return (left[:, None] + stretch[:, None] * points)[:, :, None]
 
 
@@ -116,3 +122,44 @@ def _onto(tangent: Increment, fine: Orbit) -> Increment:
     profile[::2] = coarse
     profile[1::2] = (coarse[1:] + coarse[:-1]) / 2
     return Increment(blank.nodes, blank.stages, blank.algebraic, blank.phases, blank.parameters, profile)
+
+
+def shortfall(points: Sequence[tuple[float, ErrorEstimate]], tolerance: float, parameter: str) -> str:
+    """Return a sentence on the points whose error estimates exceed a tolerance; an empty one if none does.
+
+    Parameters
+    ----------
+    points : sequence of (float, ErrorEstimate)
+        Parameter and errors of the points of a branch.
+    tolerance : float
+        Bound of their error estimates, relative.
+    parameter : str
+        Name of the continuation parameter.
+
+    Returns
+    -------
+    str
+        "3 of 139 points: multipliers to 1e-3 only, near Omega = 0.7107".
+    """
+    kinds = {
+        "orbits": [error.motion for _, error in points],
+        "multipliers": [SAFETY * error.multiplier for _, error in points],
+    }
+    missed = {
+        kind: worst for kind, errors in kinds.items() if (worst := max(errors, default=0.0)) > tolerance
+    }
+    if not missed:
+        return ""
+    among = [value for value, error in points if error.worst > tolerance]
+    worst = max(points, key=lambda point: point[1].worst)[0]
+    low, high = min(among), max(among)
+    where = f"near {parameter} = {worst:.6g}"
+    if high - low > 1e-3 * max(abs(low), abs(high)):
+        where = f"from {parameter} = {low:.6g} to {high:.6g}"
+    reached = " and ".join(f"{kind} {_to(error)}" for kind, error in missed.items())
+    return f"{len(among)} of {len(points)} points: {reached}, {where}"
+
+
+def _to(error: float) -> str:
+    """An error rounded up to a power of ten."""
+    return f"to 1e{int(np.ceil(np.log10(error) - 1e-9)):d} only" if np.isfinite(error) else "not known"

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.change import Held
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
@@ -52,9 +53,9 @@ class Solver:
         return ArclengthConstraint(origin, direction, distance, scale, self.problem.index, size)
 
     def on(
-        self, guess: Orbit, constraint: ArclengthConstraint, newton: NewtonSettings | None = None
+        self, guess: Orbit, constraint: ArclengthConstraint | Held, newton: NewtonSettings | None = None
     ) -> Solution:
-        """Solve on an arclength constraint from a guess on the same mesh.
+        """Solve on an arclength constraint, or on what takes its place, from a guess on the same mesh.
 
         The tangent points to the constraint's positive side; `newton` are settings other than the usual ones.
         """
@@ -67,15 +68,15 @@ class Solver:
             found = method.accepted(problem.system, found)
         return Solution(problem, method, found, self._tangent(found, constraint))
 
-    def _tangent(self, found: Correction, constraint: ArclengthConstraint) -> Increment:
+    def _tangent(self, found: Correction, constraint: ArclengthConstraint | Held) -> Increment:
         """The kernel with unit length, along the constraint's direction; that itself where there is none."""
-        kernel, scale = found.kernel, self.problem.scale
+        kernel, scale, direction = found.kernel, self.problem.scale, constraint.direction
         if kernel is None or not found.ok:
-            return constraint.direction
+            return direction or parameter_only(constraint.origin, scale)
         size = size_of(found.orbit)
         length = np.sqrt(kernel.dot(kernel, found.orbit, scale, size))
-        sign = np.sign(kernel.dot(constraint.direction, found.orbit, scale, size)) or 1.0
-        return kernel.scaled(sign / length)
+        along = 1.0 if direction is None else kernel.dot(direction, found.orbit, scale, size)
+        return kernel.scaled((np.sign(along) or 1.0) / length)
 
     def at_parameter(self, guess: Orbit, sign: float) -> Solution:
         """Solve with the parameter fixed at the guess's value; the tangent points to `sign` times it."""

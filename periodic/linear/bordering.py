@@ -15,10 +15,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.linear.reduction import reduce
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
+
+GROWTH = 1e6
+"""Growth of motions within a period above which mesh points are not computed from the first one alone."""
 
 SMALL = 16
 """Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
@@ -86,11 +90,18 @@ class Chain:
         """The affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
         return chain(self.condensed)
 
+    @property
+    def steps(self) -> Array:
+        """How perturbations pass each interval, shape (N, n, n)."""
+        perturbed: Array | None = getattr(self.condensed, "perturbed", None)
+        step = self.condensed.step
+        return step[:, :, 1 : 1 + step.shape[1]] if perturbed is None else perturbed
+
     @cached_property
     def fundamental(self) -> Array:
         """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
-        steps: Array | None = getattr(self.condensed, "perturbed", None)
-        if steps is not None:
+        if getattr(self.condensed, "perturbed", None) is not None:
+            steps = self.steps
             return np.array(list(accumulate(steps, lambda m, step: step @ m, initial=np.eye(steps.shape[1]))))
         return self.maps[:, :, 1 : 1 + self.maps.shape[1]]
 
@@ -107,25 +118,37 @@ class Chain:
 
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
-        maps, orbit = self.maps, self.orbit
-        n, k = maps.shape[1], len(orbit.phases)
-        top = maps[-1].copy()
-        top[:, 1 : 1 + n] -= np.eye(n)
-        top[:, 0] += orbit.nodes[-1] - orbit.nodes[0]
+        orbit, n, count = self.orbit, self.maps.shape[1], len(self.own)
+        growth = np.abs(self.maps[:, :, 1 : 1 + n]).max()
+        if growth > GROWTH and np.array_equal(self.condensed.origin, np.arange(len(self.maps) - 1)):
+            maps, top = self._from_both_ends()
+        else:
+            maps, top = self.maps, self.maps[-1].copy()
+            top[:, 1 : 1 + n] -= np.eye(n)
+            top[:, 0] += orbit.nodes[-1] - orbit.nodes[0]
         every = [self.condensed.reduced(row) for row in (*self.own, *rows)]
         border = np.array([onto_start(row, maps) for row in every]).reshape(len(every), maps.shape[2])
         matrix = np.concatenate([top, border])
         aim = -matrix[:, :1] * right[:1]
-        aim[n + len(self.own) :] += right[1:]
+        aim[len(top) + count :] += right[1:]
         found = np.linalg.solve(matrix[:, 1:], aim)
         if not np.isfinite(found).all():
             raise np.linalg.LinAlgError("the bordered matrix is singular")
-        return tuple(self._recovered(*pair, k) for pair in zip(right[0], found.T, strict=True))
+        return tuple(self._recovered(maps, *pair) for pair in zip(right[0], found.T, strict=True))
 
-    def _recovered(self, constant: float, start: Array, k: int) -> Increment:
-        """The increment of (dx_0, dy)."""
-        n = self.maps.shape[1]
-        nodes, outer = constant * self.maps[:, :, 0] + self.maps[:, :, 1:] @ start, start[n:]
+    def _from_both_ends(self) -> tuple[Array, Array]:
+        """The mesh points from both ends, and the equations of these: intervals and periodicity."""
+        reduced, orbit = reduce(self.condensed.step), self.orbit
+        n = orbit.nodes.shape[1]
+        closed = np.zeros((n, reduced.maps.shape[2]))
+        closed[:, 0] = orbit.nodes[-1] - orbit.nodes[0]
+        closed[:, 1 : 1 + n], closed[:, 1 + n : 1 + 2 * n] = -np.eye(n), np.eye(n)
+        return reduced.maps, np.concatenate([reduced.ends, closed])
+
+    def _recovered(self, maps: Array, constant: float, found: Array) -> Increment:
+        """The increment of the ends and dy."""
+        k, width = len(self.orbit.phases), self.condensed.step.shape[2] - 1 - maps.shape[1]
+        nodes, outer = constant * maps[:, :, 0] + maps[:, :, 1:] @ found, found[len(found) - width :]
         stages, algebraic = self.condensed.recover(nodes, outer, constant)
         return Increment.of(self.orbit, nodes, stages, algebraic, outer[:k], outer[k:])
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
+from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
 from periodic.results.point import Point
@@ -111,9 +112,18 @@ class Branch(Record):
         return tuple(gaps(self._entries, turns=not picks))
 
     @property
+    def shortfall(self) -> str:
+        """Which points miss the tolerance, by how much and where, in a sentence; empty if none does."""
+        tolerance = self.made.get("tolerance", {}).get("orbit", np.inf)
+        return shortfall([(p.parameter, p.error) for p in self.points], tolerance, self.parameter)
+
+    @property
     def remarks(self) -> tuple[str, ...]:
-        """What whoever reads the branch should know: what no labelled point accounts for, in sentences."""
-        return tuple(map(str, self.unaccounted))
+        """What whoever reads the branch should know, in sentences.
+
+        Which points miss the tolerance, and what no labelled point accounts for.
+        """
+        return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted))))
 
     @property
     def values(self) -> Array:

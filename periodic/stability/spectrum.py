@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 
@@ -79,10 +79,13 @@ class Spectrum:
         the Jacobian in 1/s, shape (1, n, n).
     trivial : int
         How many multipliers are 1 whatever the parameters.
+    known_better : ndarray of complex, shape (n,), optional
+        The multipliers, largest first, where the monodromy matrix has lost the small ones.
     """
 
     fundamental: Array
     trivial: int = 0
+    known_better: Complex | None = field(default=None, kw_only=True)
 
     @property
     def monodromy(self) -> Array:
@@ -92,6 +95,9 @@ class Spectrum:
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:
         values, vectors = np.linalg.eig(self.monodromy)
+        if self.known_better is not None:
+            values = values.astype(np.complex128)
+            values[np.argsort(-np.abs(values), kind="stable")] = self.known_better
         return values.astype(np.complex128), vectors.astype(np.complex128)
 
     @property
@@ -136,9 +142,9 @@ class Spectrum:
 
         Unlike the multipliers themselves these stay smooth where two of them meet.
         """
-        own, scale = self.monodromy, self.radius
-        first = abs(np.trace(monodromy) - np.trace(own)) / scale
-        second = abs(np.trace(monodromy @ monodromy) - np.trace(own @ own)) / (2 * scale**2)
+        own, other = self.monodromy / self.radius, monodromy / self.radius
+        first = abs(np.trace(other) - np.trace(own))
+        second = abs(np.trace(other @ other) - np.trace(own @ own)) / 2
         return float(max(first, second))
 
     def start(self, change: Increment) -> Array:

@@ -31,6 +31,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
+from periodic.tracing.passage import Reached, crossed, reached
 from periodic.tracing.start import Start, collapsed
 from periodic.tracing.stepsize import ArclengthControl
 from periodic.tracing.strain import strains
@@ -48,12 +49,29 @@ class BeyondError(RejectedError):
 @dataclass(frozen=True)
 class Step:
     """A step that was taken: its end, the length of the next one, the special points inside it, the course
-    of the test functions."""
+    of the test functions, and the change of pattern at which it ends, if any."""
 
     end: Solution
     further: float
     special: list[Found]
     course: Course
+    change: Reached | None = None
+
+    @property
+    def label(self) -> Label:
+        """Of its end: whether a switch touches its level there."""
+        return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A step that was tried: the base on the mesh of its end, the end, its length and its strain."""
+
+    base: Solution
+    new: Solution
+    ds: float
+    strain: float
+    change: Reached | None
 
 
 @dataclass(frozen=True)
@@ -261,7 +279,11 @@ class Continuation:
                     return
             self._completed(step)
             yield self.collected[-1]
-            base = self._prepared(step.end)
+            if step.change is not None:
+                yield from self._crossed(step.change)
+                if self.stop is not None:
+                    return
+            base = self._prepared(self.state.last)
         self.stop = Stop.max_points(self.control.max_points)
 
     def _taken(self, base: Solution) -> Step | None:
@@ -273,11 +295,14 @@ class Continuation:
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
-                base, new, strain = self._step(base, ds)
-                found = special_points(self.solver, base, new, ds, sought)
-                self._check_balance(base, new, found, ds)
-                further = min(control.next_size(ds, new.correction.iterations, strain), longest)
-                return Step(new, further, found, Course(ds, margins(base, (*codim2.along(base), *tests))))
+                tried = self._step(base, ds)
+                base, new, length = tried.base, tried.new, tried.ds
+                found = special_points(self.solver, base, new, length, sought)
+                if tried.change is None:
+                    self._check_balance(base, new, found, length)
+                further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
+                course = Course(length, margins(base, (*codim2.along(base), *tests)))
+                return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
@@ -327,11 +352,24 @@ class Continuation:
         self.collected.append(point)
         return point
 
+    def _crossed(self, at: Reached) -> Iterator[Point]:
+        """Yield the orbit beyond a change of pattern, from which the branch goes on."""
+        assert self.state is not None
+        found = crossed(self.solver, at)
+        if found is not None:
+            self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
+            ds = self.control.ds if found.touches else max(found.distance, self.control.ds_min)
+            kept, last = len(self.collected), found.solution
+            self.state = replace(self.state, last=last, ds=ds, kept=kept, course=Course())
+            yield self.collected[-1]
+        elif at.change.touches:
+            self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
+
     def _completed(self, step: Step) -> None:
         """Keep a step: its end becomes the last solution."""
         assert self.state is not None
         new = step.end
-        self._emitted(new, Label.NONE)
+        self._emitted(new, step.label)
         self.state = replace(
             self.state,
             last=new,
@@ -349,17 +387,18 @@ class Continuation:
         low, high = self.solver.problem.bounds
         return sorted({*self.user, begin}) if low < begin < high else self.user
 
-    def _step(self, base: Solution, ds: float) -> tuple[Solution, Solution, float]:
-        """Take one step; return base and new solution on one mesh, and the strain. Raises RejectedError.
+    def _step(self, base: Solution, ds: float) -> Attempt:
+        """Take one step. Raises RejectedError.
 
         The mesh is made anew up to `meshes` times, while it changes; where then only the multipliers' error
         still exceeds its bound the point stands, and tells it.
         """
         tolerance = self.solver.tolerance.orbit
         for left in reversed(range(self.control.meshes + 1)):
-            new, strain = self._attempt(base, ds)
+            tried = self._attempt(base, ds)
+            new = tried.new
             if new.error.worst <= tolerance:
-                return base, new, strain
+                return tried
             if collapsed(base.orbit, new):
                 raise RejectedError("the orbit shrinks to nothing in one step")
             mesh = new.refinement.refined()
@@ -370,35 +409,63 @@ class Continuation:
             if new.refinement.exhausted:
                 raise BeyondError(new.refinement.shortfall)
             raise RejectedError("the error estimate exceeds the tolerance")
-        return base, new, strain
+        return tried
 
-    def _attempt(self, base: Solution, ds: float) -> tuple[Solution, float]:
-        """Solve a step away; return the solution and the step's strain. Raises RejectedError."""
+    def _attempt(self, base: Solution, ds: float) -> Attempt:
+        """Solve a step away, or where the pattern of events changes before that. Raises RejectedError."""
         solver, control = self.solver, self.control
-        newton = solver.tolerance.newton
-        patient = replace(newton, max_iterations=min(control.patience, newton.max_iterations))
-        guess = tangent(solver.problem, base, ds)
-        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), patient)
-        if not new.ok:
-            raise RejectedError(new.outcome.value)
+        new, change = self._end(base, ds)
+        if change is not None:
+            ds = change.ds
         furthest = 0.0
         for strain in strains(base, new, ds, control, solver.tolerance.orbit):
             if not strain.size <= 1:
                 raise RejectedError(strain.why, control.shorter(strain.size))
             furthest = max(furthest, strain.ahead)
-        return new, furthest
+        return Attempt(base, new, ds, furthest, change)
+
+    def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
+        """The end of a step, and the change of pattern that it ends at, foreseen or found."""
+        solver, system, method = self.solver, self.solver.problem.system, self.solver.discretisation
+        newton = solver.tolerance.newton
+        patient = replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
+        guess = tangent(solver.problem, base, ds)
+        foreseen = method.change(system, base.orbit, guess)
+        if foreseen is not None:
+            at = reached(solver, base, None, ds, foreseen)
+            if at is not None:
+                return at.end, at
+        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), patient)
+        if not new.ok:
+            raise RejectedError(new.outcome.value)
+        found = method.change(system, base.orbit, new.orbit)
+        if found is None or not found.touches:
+            return new, None
+        at = reached(solver, base, new.orbit, ds, found)
+        if at is None:
+            raise RejectedError(f"{found.name} within the step")
+        return at.end, at
 
     def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
         """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""
         moved = carried(self.solver, base, mesh, base.orbit.phases)
         if not moved.ok:
             raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
+        if not self._alike(base, moved):
+            raise RejectedError("on another mesh the orbit has other events")
         return moved
+
+    def _alike(self, old: Solution, new: Solution) -> bool:
+        """Whether an orbit has the events on a new mesh that it had."""
+        method, system = self.solver.discretisation, self.solver.problem.system
+        return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
 
     def _prepared(self, new: Solution) -> Solution:
         """Give the next step its mesh: right event nodes, an error estimate inside its window."""
         solver, control, tolerance = self.solver, self.control, self.solver.tolerance.orbit
         self._since_remesh += 1
+        if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
+            return new
         due = self._since_remesh >= control.remesh_every
         due = due or new.error.worst >= control.remesh_above * tolerance
         if new.refinement.fits and not due and not self._too_fine(new):
@@ -406,7 +473,7 @@ class Continuation:
         better = remeshed(solver, new)
         if better.ok and not is_refined(solver, better):
             better = refined(solver, better)
-        if not better.ok or better.error.motion > tolerance:
+        if not better.ok or better.error.motion > tolerance or not self._alike(new, better):
             return new
         self._since_remesh = 0
         return better

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
 from periodic.stability.spectrum import Stability
 from periodic.stability.winding import Motion, turned
+from periodic.system import resets_of
 from periodic.tracing.stepsize import ArclengthControl
 
 
@@ -69,4 +70,8 @@ def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
         way.phases + mean.phases,
         way.parameters + mean.parameters,
     )
+    if len(base.orbit.mesh.exact_ends) and not resets_of(problem.system):
+        # an excursion's end moves as a root does, the motion smoothly
+        at = base.orbit.mesh.nodes(base.orbit.phases)
+        bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
     return float(np.sqrt(bend.dot(bend, base.orbit, problem.scale, size_of(base.orbit))))

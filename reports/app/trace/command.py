@@ -205,6 +205,8 @@ def _verdict(branch: Branch, folder: Path) -> int:
     if _interrupted(branch):
         say(f"interrupted; {kept}")
         return INTERRUPTED
+    if branch.shortfall:
+        say(f"tolerance missed at {branch.shortfall}")
     if branch.stop.reason.numerical:
         say(f"stopped early ({branch.stop}); {kept}")
         return STOPPED_EARLY

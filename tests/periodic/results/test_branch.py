@@ -219,3 +219,20 @@ def test_plot_marks_tori_and_their_stretches(axes: Axes) -> None:
     (_, before), (style, window), (_, after) = pieces(axes)
     assert style == "--" and [window.min(), window.max()] == pytest.approx([0.30, 0.36], rel=1e-6)
     assert before.max() == window.min() and window.max() == after.min()
+
+
+def test_what_was_not_reached_is_said_once() -> None:
+    """Assert the sentence on points whose multipliers, then whose orbits too, miss the tolerance."""
+    branch = duffing(at=(1.8,))
+    assert branch.shortfall == ""
+    rough = replace(branch[3].error, multiplier=2e-4)
+    points = (*branch.points[:3], replace(branch[3], error=rough), *branch.points[4:])
+    missed, where = replace(branch, points=points), f"near Omega = {branch[3].parameter:.6g}"
+    assert missed.shortfall == f"1 of {len(branch)} points: multipliers to 1e-3 only, {where}"
+    assert missed.table().endswith(missed.shortfall)
+    rough = replace(rough, orbit=2e-6)
+    points = (*points[:-1], replace(points[-1], error=rough))
+    both = replace(branch, points=points).shortfall
+    assert both.startswith(
+        f"2 of {len(branch)} points: orbits to 1e-5 only and multipliers to 1e-3 only, from"
+    )

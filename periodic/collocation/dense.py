@@ -1,0 +1,240 @@
+"""Switches along the whole orbit, not at its collocation points alone: changes of sign, and extremes.
+
+On each interval a switch is the polynomial through its values at the knots: to the order of the orbit's own
+error, exactly where it is linear in the states. Bernstein coefficients enclose it, so that intervals on one
+side of the level are done with at once; what is left is cut at the zeros of the derivative into monotone
+pieces, none of which hides a change of sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import System, jumps_of, resets_of, slides_of
+
+NOISE = 1e-11
+"""A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
+
+
+def exact(system: System) -> list[int]:
+    """Return the switches at whose level 0 the equations have a kink: those without further levels.
+
+    Not those at which the state or the equations jump, see `periodic.collocation.impacts` and `stick`.
+    """
+    slides = slides_of(system)
+    releases = (k for pair in slides.values() for k in pair)
+    jumping = {*resets_of(system), *jumps_of(system), *slides, *releases}
+    each = ((k, s) for k, s in enumerate(system.switches) if k not in jumping)
+    return [k for k, switch in each if tuple(switch.levels) == (0.0,) and switch.direction == 0]
+
+
+@dataclass(frozen=True)
+class Extremum:
+    """Where a switch is nearest to its level 0, or farthest past it: its value at a place in an interval."""
+
+    switch: int
+    interval: int
+    theta: float
+    phase: float
+    value: float
+
+
+@dataclass(frozen=True)
+class Along:
+    """One switch at K points around an orbit, in order: the knots and all extremes that may matter.
+
+    sides: on which side of its level it is, 0 within rounding.
+    """
+
+    interval: NDArray[np.int_]
+    theta: Array
+    phase: Array
+    value: Array
+    sides: NDArray[np.int_]
+
+    def extremum(self, switch: int, index: int) -> Extremum:
+        """Return one of the points."""
+        at = float(self.theta[index]), float(self.phase[index]), float(self.value[index])
+        return Extremum(switch, int(self.interval[index]), *at)
+
+
+@dataclass(frozen=True)
+class Dense:
+    """The switches of a system along an orbit."""
+
+    system: System
+    orbit: Orbit
+
+    @cached_property
+    def knots(self) -> Array:
+        """Values at the knots, shape (N, ncol+1, switches)."""
+        orbit = self.orbit
+        tau = orbit.grid.left[:, None] + orbit.grid.width[:, None] * orbit.mesh.scheme.knots
+        flat = orbit.knots.reshape(tau.size, -1)
+        return self.system.switch(flat, tau.ravel(), orbit.parameter).reshape(*tau.shape, -1)
+
+    def along(self, switch: int, everywhere: bool = False) -> Along:
+        """Return a switch around the orbit, with extremes where it may pass its level, or `everywhere`."""
+        values, scheme, grid = self.knots[:, :, switch], self.orbit.mesh.scheme, self.orbit.grid
+        bounds = values @ _bernstein(scheme).T
+        mixed = (bounds.max(axis=1) > 0) & (bounds.min(axis=1) < 0) | everywhere
+        interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
+        theta = np.tile(scheme.knots, len(values))
+        found = [(j, t) for j in np.flatnonzero(mixed) for t in _turns(scheme, values[j])]
+        extra = np.array(found, dtype=float).reshape(-1, 2)
+        interval = np.append(interval, extra[:, 0].astype(int))
+        theta = np.append(theta, extra[:, 1])
+        value = np.append(
+            values.ravel(), np.einsum("il,il->i", scheme.basis(extra[:, 1]), values[extra[:, 0].astype(int)])
+        )
+        order = np.lexsort((theta, interval))
+        interval, theta, value = interval[order], theta[order], value[order]
+        far = np.isfinite(value) & (np.abs(value) > NOISE * np.abs(values).max())
+        sides = np.sign(np.where(far, value, 0.0)).astype(int)
+        return Along(interval, theta, grid.left[interval] + theta * grid.width[interval], value, sides)
+
+    def passages(self, switch: int) -> list[tuple[EventNode, float]]:
+        """Return where a switch passes its level, with the phases in order, those of event nodes exact."""
+        along = self.along(switch)
+        kept = np.flatnonzero(along.sides)
+        if len(kept) == 0:
+            return []
+        found, last = [], len(kept) - 1
+        for i in np.flatnonzero(along.sides[kept] != along.sides[np.roll(kept, -1)]):
+            a, b = kept[i], kept[i + 1 if i < last else 0]
+            phase = self._between(switch, along, int(a), int(b))
+            found.append((EventNode(switch, int(along.sides[b])), phase))
+        return found
+
+    def _between(self, switch: int, along: Along, a: int, b: int) -> float:
+        """Phase at which a switch passes its level between two points, at most zeros between them."""
+        between = np.arange(a + 1, b if b > a else b + len(along.phase)) % len(along.phase)
+        nodes = self._tied(switch)
+        for i in between:
+            if along.theta[i] == 0.0 and int(along.interval[i]) in nodes:
+                return nodes[int(along.interval[i])]
+        if len(between):
+            return float(along.phase[between[len(between) // 2]])
+        j, begin = int(along.interval[a]), float(along.theta[a])
+        end = float(along.theta[b]) if along.interval[b] == j and b > a else 1.0
+        values, scheme = self.knots[j, :, switch], self.orbit.mesh.scheme
+
+        def value(theta: float) -> float:
+            return float(scheme.basis(np.array([theta]))[0] @ values)
+
+        if value(begin) * value(end) < 0:
+            begin = scipy.optimize.brentq(value, begin, end, xtol=1e-15)
+        return float(self.orbit.grid.left[j] + begin * self.orbit.grid.width[j])
+
+    def _tied(self, switch: int) -> dict[int, float]:
+        """Phases of a switch's event nodes, by the intervals that begin there."""
+        orbit = self.orbit
+        each = zip(orbit.mesh.starts, orbit.mesh.events, orbit.phases, strict=True)
+        return {int(j): float(phase) for j, event, phase in each if event.switch == switch}
+
+    def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
+        """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any."""
+        mesh = self.orbit.mesh
+        own = [
+            (j, event.direction)
+            for j, event in zip(mesh.starts, mesh.events, strict=True)
+            if event.switch == switch
+        ]
+        sides = np.full(mesh.ntst, otherwise if not own else own[-1][1])
+        for start, direction in own:
+            sides[start:] = direction
+        return sides
+
+    def side(self, switch: int) -> int:
+        """The side of its level on which a switch goes farthest."""
+        values = np.nan_to_num(self.knots[:, :, switch])
+        return int(np.sign(values.flat[np.abs(values).argmax()])) or 1
+
+    def unseen(self, switch: int, otherwise: int) -> list[Extremum]:
+        """Return the farthest point of each excursion past the level that the mesh is not tied to.
+
+        `otherwise` is the side on which a switch without event nodes is taken to be. What begins or ends at
+        an event node is none: there it is the node that is not yet, or not quite, at the passage.
+        """
+        along = self.along(switch)
+        wrong = along.sides * self.expected(switch, otherwise)[along.interval] < 0
+        if not wrong.any():
+            return []
+        at_nodes = np.zeros(len(wrong), dtype=bool)
+        for j in self._tied(switch):
+            first = int(np.searchsorted(along.interval, j))
+            at_nodes[[first, first - 1]] = True
+        shift = 0 if wrong.all() else int(np.flatnonzero(~wrong)[0])
+        order = np.roll(np.arange(len(wrong)), -shift)
+        runs = np.split(order, np.flatnonzero(np.diff(wrong[order].astype(int))) + 1)
+        apart = [run for run in runs if wrong[run[0]] and not at_nodes[run].any()]
+        farthest = [run[np.abs(along.value[run]).argmax()] for run in apart]
+        found = [along.extremum(switch, int(i)) for i in farthest]
+        noise = NOISE * float(np.abs(along.value).max())
+        return [e for e in found if np.sign(e.value) * self.value(e) > noise]
+
+    def value(self, at: Extremum) -> float:
+        """Return the switch itself at a point, not the polynomial through its values at the knots."""
+        state = self.orbit.mesh.scheme.basis(np.array([at.theta])) @ self.orbit.knots[at.interval]
+        found = self.system.switch(state, np.array([at.phase]), self.orbit.parameter)
+        return float(found[0, at.switch])
+
+    def nearest(self, switch: int, side: int, phase: float) -> Extremum:
+        """Return the minimum of side * s that is nearest to a phase, the lowest where the orbit's polynomials
+        have several of one: they join with a small kink.
+        """
+
+        def far(e: Extremum, place: float) -> float:
+            return abs(_wrapped(e.phase - place, self.orbit.mesh.period))
+
+        every = self.minima(switch, side)
+        first = min(every, key=lambda e: far(e, phase))
+        width = self.orbit.grid.width[first.interval]
+        return min((e for e in every if far(e, first.phase) <= width), key=lambda e: side * e.value)
+
+    def minima(self, switch: int, side: int) -> list[Extremum]:
+        """Return all minima of side * s."""
+        along = self.along(switch, everywhere=True)
+        value = side * along.value
+        before, after = np.roll(value, 1), np.roll(value, -1)
+        low = np.flatnonzero((value <= before) & (value <= after))
+        return [along.extremum(switch, int(i)) for i in low]
+
+
+def _wrapped(phase: float, period: float) -> float:
+    return float(np.mod(phase + period / 2, period) - period / 2)
+
+
+@cache
+def _bernstein(scheme: Scheme) -> Array:
+    """Bernstein coefficients of the polynomial through values at the knots: a matrix (ncol+1, ncol+1)."""
+    degree, x = scheme.ncol, scheme.knots[:, None]
+    each = np.arange(degree + 1)
+    polynomials = scipy.special.comb(degree, each) * x**each * (1 - x) ** (degree - each)
+    return np.linalg.inv(polynomials).astype(float, copy=False)
+
+
+@cache
+def _monomial(scheme: Scheme) -> Array:
+    """Coefficients of the powers of theta, lowest first, of the derivative of the same polynomial."""
+    powers = np.linalg.inv(np.vander(scheme.knots, increasing=True))
+    return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
+
+
+def _turns(scheme: Scheme, values: Array) -> list[float]:
+    """Zeros of the derivative of the polynomial through values at the knots, inside (0, 1)."""
+    slope = _monomial(scheme) @ values
+    largest = float(np.abs(slope).max())
+    if largest == 0.0:
+        return []
+    roots = np.polynomial.polynomial.polyroots(slope)
+    real = roots.real[np.abs(roots.imag) < 1e-6]
+    return sorted(float(t) for t in real if 0 < t < 1)

@@ -1,0 +1,253 @@
+"""Changes of the pattern of contacts: a switch touches its level, an excursion ends, two events swap.
+
+An excursion of depth d lasts about sqrt(d): its event nodes' phases have no derivative in the parameter where
+it begins (Nordmark 1991). Without it the orbit is a smooth function of the parameter, with it of the
+excursion's length; so a branch is followed without it up to the touch, where the extremum of the switch lies
+on its level, and with it from a short excursion on. The other way round it is the same.
+
+References
+----------
+Nordmark, J. Sound Vib. 145 (1991) 279. di Bernardo, Budd, Champneys & Kowalczyk, Piecewise-smooth Dynamical
+Systems, 2008, chapter 7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.collocation.dense import Dense, Extremum, exact
+from periodic.correction.change import Beyond, Change
+from periodic.orbit.gradients import Points, Slopes, gathered
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.redistribution import redistribute
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.system import System
+
+SHORT = (1e-2, 1e-3, 1e-4)
+"""Lengths (rad) of the excursions at which patterns are exchanged, tried in turn."""
+
+VANISHING = 0.5
+"""An excursion of which a step would leave this part, by its tangent, may end within the step."""
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Side condition: the extremum of a switch nearest a phase lies on its level, min of side * s = 0."""
+
+    switch: int
+    side: int
+    phase: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
+        at = Dense(system, orbit).nearest(self.switch, self.side, self.phase)
+        return clearance(system, orbit, at, self.side, free)
+
+
+def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple[int, ...]) -> Row:
+    """Return side * s at a point of an orbit as a row."""
+    phase = np.array([at.phase])
+    basis = orbit.mesh.scheme.basis(np.array([at.theta]))
+    state = basis @ orbit.knots[at.interval]
+    points = Points(
+        np.array([at.interval]),
+        np.array([at.theta]),
+        phase,
+        basis @ orbit.knot_rates[at.interval],
+        state,
+        np.zeros((1, orbit.algebraic.shape[2])),
+    )
+    d_state, d_phase, d_parameter = (
+        side * g[:, at.switch] for g in system.switch_gradient(state, phase, orbit.parameter)
+    )
+    slopes = Slopes(np.zeros_like(state), d_state, np.zeros((1, 0)), d_phase, d_parameter[0, list(free)])
+    row = gathered(system, orbit, points, slopes, free)
+    value = side * float(system.switch(state, phase, orbit.parameter)[0, at.switch])
+    return Row(value, row.nodes, row.outer, row.stages)
+
+
+@dataclass(frozen=True)
+class Length:
+    """Side condition: the segment that begins at an event node has a given length (rad)."""
+
+    segment: int
+    length: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return its length less the given one."""
+        k = len(orbit.phases)
+        outer = np.zeros(k + len(free))
+        outer[self.segment] -= 1.0
+        outer[(self.segment + 1) % k] += 1.0
+        value = float(orbit.mesh.segment_lengths(orbit.phases)[self.segment]) - self.length
+        return Row(value, np.zeros_like(orbit.nodes), outer)
+
+
+@dataclass(frozen=True)
+class Birth:
+    """A switch touches its level from `side` where the mesh has no event nodes: an excursion begins."""
+
+    system: System
+    extremum: Extremum
+    side: int
+    part: float
+    shortest: float
+
+    touches = True
+    final = True
+
+    @property
+    def condition(self) -> Clearance:
+        """The touch."""
+        return Clearance(self.extremum.switch, self.side, self.extremum.phase)
+
+    @property
+    def name(self) -> str:
+        """Which switch touches."""
+        return f"{self.system.switches[self.extremum.switch].name} is touched"
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield meshes with a short excursion where the switch touches."""
+        at = Dense(system, orbit).nearest(self.extremum.switch, self.side, self.extremum.phase)
+        for length in SHORT:
+            events, phases, segment = inserted(orbit, at, self.side, length)
+            mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+            yield Beyond(mesh, phases, Length(segment, length), False)
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Two neighbouring event nodes come as near as `length`: an excursion ends, or they change places."""
+
+    system: System
+    segment: int
+    events: tuple[EventNode, EventNode]
+    length: float
+    part: float
+    shortest: float
+
+    touches = False
+
+    @property
+    def final(self) -> bool:
+        """Whether events are never looked at nearer to each other."""
+        return self.length == SHORT[-1]
+
+    @property
+    def condition(self) -> Length:
+        """How near they come."""
+        return Length(self.segment, self.length)
+
+    @property
+    def name(self) -> str:
+        """Which switches meet their levels at once."""
+        names = [self.system.switches[event.switch].name for event in self.events]
+        return f"the events {' and '.join(dict.fromkeys(names))} meet"
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield the mesh without the excursion, or with the two events the other way round."""
+        k, (first, second) = len(orbit.phases), self.events
+        i, j = self.segment, (self.segment + 1) % len(orbit.phases)
+        begin, end = orbit.phases[i], orbit.phases[j] + (orbit.mesh.period if j < i else 0.0)
+        if first.switch == second.switch:
+            kept = [m for m in range(k) if m not in (i, j)]
+            events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
+            mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+            yield Beyond(mesh, phases, Clearance(first.switch, second.direction, (begin + end) / 2), True)
+            return
+        others = [(orbit.mesh.events[m], orbit.phases[m]) for m in range(k) if m not in (i, j)]
+        middle = (begin + end) / 2
+        pair = [(second, middle - self.length / 2), (first, middle + self.length / 2)]
+        events, phases = ordered([*others, *pair], orbit)
+        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        yield Beyond(mesh, phases, Length(index_of(events, phases, pair[0], orbit), self.length), False)
+
+
+def ordered(both: list[tuple[EventNode, float]], orbit: Orbit) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and their phases in order, the first phase in [0, period)."""
+    period = orbit.mesh.period
+    wrapped = sorted(
+        ((float(np.mod(phase, period)), event) for event, phase in both), key=lambda pair: pair[0]
+    )
+    return tuple(event for _, event in wrapped), np.array([phase for phase, _ in wrapped])
+
+
+def index_of(
+    events: tuple[EventNode, ...], phases: Array, pair: tuple[EventNode, float], orbit: Orbit
+) -> int:
+    """Return the index of an event node."""
+    place = np.mod(pair[1], orbit.mesh.period)
+    return next(i for i, event in enumerate(events) if event == pair[0] and phases[i] == place)
+
+
+def inserted(
+    orbit: Orbit, at: Extremum, side: int, length: float
+) -> tuple[tuple[EventNode, ...], Array, int]:
+    """Return event nodes and phases with an excursion about a point, and the segment that it is."""
+    begin = EventNode(at.switch, -side), at.phase - length / 2
+    end = EventNode(at.switch, side), at.phase + length / 2
+    own = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
+    events, phases = ordered([*own, begin, end], orbit)
+    return events, phases, index_of(events, phases, begin, orbit)
+
+
+def pattern(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
+    """Return the event nodes of switches at whose level the equations change, sorted.
+
+    None where the orbit passes such a level elsewhere too, or not there.
+    """
+    dense, own = Dense(system, orbit), exact(system)
+    if any(dense.unseen(k, dense.side(k)) for k in own):
+        return None
+    tied = [event for event in orbit.mesh.events if event.switch in own]
+    return tuple(sorted(tied, key=lambda event: (event.switch, event.direction)))
+
+
+def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Change | None:
+    """Return the first change of pattern between two orbits on one mesh, where there is one.
+
+    `after` may be a guess, its event nodes out of order.
+    """
+    return _meeting(system, before, after, shortest) or _birth(system, before, after, shortest)
+
+
+def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Meeting | None:
+    own = exact(system)
+    if not before.mesh.events:
+        return None
+    now, then = before.mesh.segment_lengths(before.phases), after.mesh.segment_lengths(after.phases)
+    found = []
+    for i, first in enumerate(before.mesh.events):
+        second = before.mesh.events[(i + 1) % len(now)]
+        same = first.switch == second.switch
+        if first.switch not in own or second.switch not in own:
+            continue
+        nearest = next((length for length in SHORT if length < VANISHING * now[i]), None)
+        left = max(VANISHING * now[i], nearest or 0.0) if same else nearest or 0.0
+        if nearest is None or then[i] > left:
+            continue
+        part = (now[i] ** 2 - nearest**2) / (2 * now[i] * (now[i] - then[i])) if same else 1.0
+        if not same:
+            part = (now[i] - nearest) / (now[i] - then[i])
+        found.append(Meeting(system, i, (first, second), nearest, min(float(part), 1.0), shortest))
+    return min(found, key=lambda meeting: meeting.part, default=None)
+
+
+def _birth(system: System, before: Orbit, after: Orbit, shortest: float) -> Birth | None:
+    if not bool((after.mesh.segment_lengths(after.phases) > 0).all()):
+        return None
+    dense, base, found = Dense(system, after), Dense(system, before), []
+    for k in exact(system):
+        otherwise = base.side(k)
+        sides = dense.expected(k, otherwise)
+        for extremum in dense.unseen(k, otherwise):
+            side = int(sides[extremum.interval])
+            nearest = base.nearest(k, side, extremum.phase).value
+            gone = abs(nearest) / (abs(nearest) + abs(extremum.value))
+            found.append(Birth(system, extremum, side, float(gone), shortest))
+    return min(found, key=lambda birth: birth.part, default=None)

@@ -1,0 +1,76 @@
+"""Where the pattern of an orbit's events changes: an excursion begins or ends, two events swap.
+
+On either side of such a place an orbit takes a mesh of its own. A discretisation tells of a change between
+two orbits (`periodic.correction.discretisation.Discretisation.change`); the continuation ends its step there
+and goes on beyond it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from periodic.correction.condition import SideCondition
+from periodic.linear.unknowns import Increment
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.system import System
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """How an orbit goes on beyond a change: its mesh, the event nodes' phases, and the condition held there.
+
+    touches: whether that orbit is the one at which a switch just touches its level.
+    """
+
+    mesh: Mesh
+    phases: Array
+    condition: SideCondition
+    touches: bool
+
+
+class Change(Protocol):
+    """A change of pattern ahead of an orbit."""
+
+    @property
+    def condition(self) -> SideCondition:
+        """What holds where the step ends, on the mesh that the orbits have so far."""
+
+    @property
+    def touches(self) -> bool:
+        """Whether a switch just touches its level where the step ends."""
+
+    @property
+    def final(self) -> bool:
+        """Whether the branch cannot be followed nearer to the change than where the step ends."""
+
+    @property
+    def name(self) -> str:
+        """What changes, in words."""
+
+    @property
+    def part(self) -> float:
+        """The part of the way to the second orbit at which it lies, about."""
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield ways to go on from the orbit at which the step ended, the best first."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """A side condition in place of the arclength constraint, for orbits on the mesh of `origin`.
+
+    The tangent points along `direction`, or to where the condition grows if there is none.
+    """
+
+    origin: Orbit
+    condition: SideCondition
+    direction: Increment | None = None
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return value and gradient of the condition."""
+        return self.condition.linearise(system, orbit, free)

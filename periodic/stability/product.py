@@ -1,0 +1,55 @@
+"""Multipliers of a product of matrices over many decades: none is lost beside the largest.
+
+The columns of an orthogonal matrix are carried through all factors, orthogonalised after each (A_j Q_{j-1} =
+Q_j R_j); after some periods they span the motions in order of their growth, and the product is block upper
+triangular in them. Each block is multiplied up on its own, scaled, so that its multipliers keep their digits.
+
+References
+----------
+Bojanczyk, Golub & Van Dooren, Proc. SPIE 1770 (1992); Lust, Int. J. Bifurcation and Chaos 11 (2001) 2389.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.scheme import Array
+
+APART = np.log(10.0)
+"""Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
+
+PERIODS = 16
+"""How many periods the columns are carried at the most."""
+
+SETTLED = 1e-11
+"""What is left below the blocks when the columns span the motions in their order."""
+
+
+def multipliers(steps: Array) -> NDArray[np.complex128]:
+    """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first."""
+    n = steps.shape[1]
+    basis = np.eye(n)
+    for _ in range(PERIODS):
+        begun, triangles = basis, np.empty_like(steps)
+        for j, step in enumerate(steps):
+            basis, triangles[j] = np.linalg.qr(step @ basis)
+        growth = np.log(np.abs(np.diagonal(triangles, axis1=1, axis2=2))).sum(axis=0)
+        turn = begun.T @ basis
+        cuts = np.flatnonzero(growth[:-1] - growth[1:] > APART) + 1
+        blocks = np.split(np.arange(n), cuts)
+        if all(np.abs(turn[cut:, :cut]).max() < SETTLED for cut in cuts):
+            break
+    return np.concatenate([_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks])
+
+
+def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
+    """Eigenvalues of turn @ factors[-1] ... factors[0], largest modulus first."""
+    product, logarithm = np.eye(len(turn)), 0.0
+    for factor in factors:
+        product = factor @ product
+        size = np.abs(product).max()
+        product, logarithm = product / size, logarithm + float(np.log(size))
+    with np.errstate(over="ignore"):
+        values = np.linalg.eigvals(turn @ product) * np.exp(logarithm)
+    return values[np.argsort(-np.abs(values), kind="stable")].astype(np.complex128)

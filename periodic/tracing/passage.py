@@ -1,0 +1,127 @@
+"""Steps that end where the pattern of an orbit's events changes, and how the branch goes on from there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from periodic.correction.change import Change, Held
+from periodic.correction.condition import SideCondition
+from periodic.correction.identity import distance
+from periodic.correction.predictor import tangent
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.linear.unknowns import size_of
+from periodic.orbit.orbit import Orbit
+
+LONGER = 1.2
+"""A change of pattern that lies within so many steps is where the step ends."""
+
+CLOSE = 1e-8
+"""Newton's last increment there, before one more step."""
+
+NEAR = 0.02
+"""Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
+
+ROUNDS = 4
+"""How often the mesh of the orbit beyond a change is made anew."""
+
+TOUCHES = 8
+"""Most switches that touch within one step."""
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The end of a step at a change of pattern, and how far that is along the base's tangent."""
+
+    end: Solution
+    ds: float
+    change: Change
+
+
+def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, change: Change) -> Reached | None:
+    """Return the orbit at a change of pattern within a step, if one is found; `near` is a guess of it."""
+    method, system = solver.discretisation, solver.problem.system
+    for _ in range(TOUCHES):
+        guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
+        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent))
+        if not found.ok:
+            return None
+        along = progress(solver, base, found.orbit)
+        if not 0 < along <= LONGER * ds:
+            return None
+        earlier = method.change(system, base.orbit, found.orbit)
+        if earlier is None or (not change.touches and not earlier.touches):
+            return Reached(found, along, change)
+        change, near = earlier, found.orbit
+    return None
+
+
+def _held(solver: Solver, guess: Orbit, held: Held) -> Solution:
+    """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
+    newton = solver.tolerance.newton
+    return solver.on(guess, held, replace(newton, tolerance=min(CLOSE, newton.tolerance), close=0.0))
+
+
+def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:
+    """How far an orbit on the base's mesh lies along its tangent."""
+    problem, constraint = solver.problem, solver.constraint(base.orbit, base.tangent, 0.0)
+    row = constraint.linearise(problem.system, orbit, problem.free)
+    return row.value / constraint.rate(base.tangent)
+
+
+@dataclass(frozen=True)
+class Crossed:
+    """The orbit beyond a change of pattern, its distance from the one before, and whether it touches."""
+
+    solution: Solution
+    distance: float
+    touches: bool
+
+
+def crossed(solver: Solver, at: Reached) -> Crossed | None:
+    """Return an orbit beyond a change of pattern, the first whose branch goes on the same way.
+
+    Where all of them turn back in the parameter there is a fold in between: then none is returned as long as
+    the branch can be followed nearer to the change, and in the end the nearest.
+    """
+    turned: Crossed | None = None
+    for found in _beyond(solver, at):
+        if found.solution.tangent.parameter * at.end.tangent.parameter > 0:
+            return found
+        if turned is None or found.distance < turned.distance:
+            turned = found
+    return turned if at.change.final else None
+
+
+def _beyond(solver: Solver, at: Reached) -> Iterator[Crossed]:
+    problem, old = solver.problem, at.end.orbit
+    for way in at.change.beyond(problem.system, old):
+        for guess in solver.transfers(old, way.mesh, way.phases):
+            new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
+            if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+                continue
+            apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
+            if apart <= NEAR and low <= new.value <= high:
+                yield Crossed(new, apart, way.touches)
+                break
+
+
+def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solution:
+    """Return the solution on meshes made for it, as long as it misses the tolerance.
+
+    Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
+    """
+    for _ in range(ROUNDS):
+        if not found.ok or found.error.worst <= solver.tolerance.orbit:
+            break
+        mesh = found.refinement.refined()
+        if mesh.matches(found.orbit.mesh):
+            break
+        guesses = solver.transfers(found.orbit, mesh, found.orbit.phases)
+        finer = (_held(solver, guess, Held(guess, condition)) for guess in guesses)
+        better = next((solution for solution in finer if solution.ok), None)
+        if better is None:
+            break
+        found = better
+    return found

@@ -1,0 +1,95 @@
+"""A mass and a stop from soft to all but rigid: branches through the touch, judged in closed form."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from reference.piecewise import Piecewise
+from support.stops import errors, exactly, stopped
+
+import periodic as per
+from periodic.collocation.dense import Dense
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import uniform
+
+UP, DOWN = (0.65, 0.8), (0.8, 0.65)
+STIFFNESSES = [5.0, 1e2, 1e4]
+each_way = pytest.mark.parametrize("way", [UP, DOWN], ids=["up", "down"])
+
+
+@cache
+def branch(stiffness: float, way: tuple[float, float], tol: float = 1e-6) -> per.Branch:
+    """The branch through the touch."""
+    return per.trace(stopped(stiffness), "Omega", way, tol=tol)
+
+
+@each_way
+@pytest.mark.parametrize("stiffness", STIFFNESSES)
+def test_every_orbit_and_multiplier_is_right(stiffness: float, way: tuple[float, float]) -> None:
+    """Assert that the branch passes the touch, and what it claims of every point on the way."""
+    judged(branch(stiffness, way), exactly(stiffness))
+
+
+def test_all_but_rigid_stop() -> None:
+    """Assert the same of a stop a million times as stiff as the spring, to just past the touch."""
+    judged(branch(1e6, (0.65, 0.71075)), exactly(1e6))
+
+
+def judged(found: per.Branch, exact: Piecewise) -> None:
+    """Assert that a branch comes to its bound, and that its points are as accurate as it says."""
+    assert found.stop.reason is per.Reason.BOUND
+    for point in found:
+        if point.label is not per.Label.GRAZING:
+            gap, apart = errors(exact, point)
+            assert gap < 3 * max(point.error.orbit, 1e-11)
+            assert apart < max(1e-6, 3 * point.error.multiplier)
+            assert point.error.worst < 1e-6
+
+
+@each_way
+@pytest.mark.parametrize("tol", [1e-3, 1e-9])
+def test_any_tolerance_passes(tol: float, way: tuple[float, float]) -> None:
+    """Assert the same of a rough and of a fine branch."""
+    found, exact = branch(50.0, way, tol), exactly(50.0)
+    assert found.stop.reason is per.Reason.BOUND
+    for point in found:
+        if point.label is not per.Label.GRAZING:
+            gap, apart = errors(exact, point)
+            assert gap < tol
+            assert apart < max(tol, 3 * point.error.multiplier)
+
+
+@each_way
+def test_touch_is_a_point_of_the_branch(way: tuple[float, float]) -> None:
+    """Assert where it is, by the free response, and that the motion just reaches the stop."""
+    (point,) = branch(1e2, way).labelled(per.Label.GRAZING)
+    amplitude = 0.5 / abs(1 - point.parameter**2 + 0.1j * point.parameter)
+    assert amplitude == pytest.approx(1.0, abs=1e-8)
+    assert point.maximum["q"] == pytest.approx(1.0, abs=1e-8)
+    damped = np.exp(-0.05 * 2 * np.pi / point.parameter)
+    assert np.abs(point.multipliers) == pytest.approx([damped, damped], abs=1e-7)
+
+
+def test_meshes_stay_small() -> None:
+    """Assert that no point takes more than 200 intervals, however stiff the stop."""
+    traced = [branch(k, way) for k in STIFFNESSES for way in (UP, DOWN)]
+    assert max(point.orbit.mesh.ntst for found in traced for point in found) <= 200
+
+
+def test_excursion_between_collocation_points_is_seen() -> None:
+    """Assert that a switch that passes its level between two collocation points only is found."""
+    system = stopped(1e2)
+    orbit = at_rest(system, uniform(per.Scheme(per.Family.GAUSS, 4), 5), system.nominal)
+    width, points = orbit.grid.width[0], orbit.mesh.scheme.points
+    middle = orbit.grid.left[2] + width / 2
+    bump = 1.0 + 1e-4 - (orbit.stage_phases - middle) ** 2
+    ends = 1.0 + 1e-4 - (orbit.mesh.nodes(orbit.phases) - middle) ** 2
+    assert (bump < 1).all() and points[1] < 0.5 < points[2]
+    orbit.stages[:, :, 0], orbit.nodes[:, 0] = bump, ends
+    (found,) = Dense(system, orbit).unseen(0, -1)
+    assert (found.interval, found.theta) == (2, pytest.approx(0.5, abs=1e-9))
+    assert found.value == pytest.approx(1e-4, abs=1e-12)
+    begin, end = (phase for _, phase in Dense(system, orbit).passages(0))
+    assert end - begin == pytest.approx(0.02, abs=1e-9)
