@@ -21,7 +21,7 @@ DRY = Machine(
     key="ball-bearing",
     title="Ball bearing: varying compliance",
     range=(10.0, 4.0),
-    at=(7.0, 6.0),
+    at=(7.0, 6.0, 4.25),
     marched=(9.0, 8.0, 7.0, 6.0, 5.7, 4.3),
     words="A rigid shaft of 20 kg under its weight in a bearing of 8 balls with 6 µm of clearance: as balls "
     "pass, the stiffness varies, and near resonance all balls lose contact. The period is that of the "

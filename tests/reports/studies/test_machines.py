@@ -28,6 +28,7 @@ def test_known_numbers(name: str) -> None:
         assert kept[known.name] == pytest.approx(known.value, rel=near), known.name
 
 
+@pytest.mark.unaccounted  # where its slider first slips, the Jenkins damper's branch turns by 4e-6
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.long]) for n in MACHINES]
 )
