@@ -13,6 +13,7 @@ from periodic.condensed.motion import motion
 from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
 from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
 from periodic.conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
+from periodic.conditions.grazing import GrazingCondition
 from periodic.conditions.levels import Level, Peak
 from periodic.conditions.phase import Conservative, PhaseCondition
 from periodic.conditions.sensitivity import sensitivities
@@ -75,6 +76,7 @@ __all__ = [
     "Family",
     "FoldCondition",
     "Given",
+    "GrazingCondition",
     "Grid",
     "HarmonicBalance",
     "Highest",
