@@ -79,3 +79,20 @@ def shrinks(turn: Solution, *ends: Solution) -> bool:
 def is_one(point: Found, turn: Found, ds: float) -> bool:
     """Whether a special point is the turn of the branch, which has its name already."""
     return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds
+
+
+def at_once(before: Solution, after: Solution) -> list[Label]:
+    """Return the special points that sit on a touch, by the orbits just before and beyond it.
+
+    There multipliers jump, or change within a distance that tells them no more apart.
+    """
+    if codim2.picked(before.problem) is not None:
+        return []
+    turned = before.tangent.parameter * after.tangent.parameter < 0
+    tests = codim2.PASSAGES[before.discretisation.stability]
+    passed = [
+        test.label
+        for test in tests
+        if test.value(before) * test.value(after) < 0 and (test.genuine(before) or test.genuine(after))
+    ]
+    return [Label.FOLD] * turned + passed

@@ -20,7 +20,7 @@ from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
-from periodic.bifurcations.turning import Found
+from periodic.bifurcations.turning import Found, at_once
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.predictor import tangent
 from periodic.correction.refinement import carried, is_refined, refined, remeshed
@@ -279,10 +279,10 @@ class Continuation:
                     return
             self._completed(step)
             yield self.collected[-1]
-            if step.change is not None:
+            if self.stop is None and step.change is not None:
                 yield from self._crossed(step.change)
-                if self.stop is not None:
-                    return
+            if self.stop is not None:
+                return
             base = self._prepared(self.state.last)
         self.stop = Stop.max_points(self.control.max_points)
 
@@ -341,10 +341,14 @@ class Continuation:
         name = special.name if label is Label.USER and own else label.value
         if special.shrunk:
             self.stop = Stop.equilibrium(state.steps + 1)
+        self._counted(name)
+        yield self._emitted(special.solution, label, special.name if own else "")
+
+    def _counted(self, name: str) -> None:
+        """Count a label or event, and set `stop` where the branch shall end at it."""
         self._count[name] = self._count.get(name, 0) + 1
         if self.stop is None and self._count[name] == self.watch.stop.get(name):
             self.stop = Stop.asked(name, self._count[name])
-        yield self._emitted(special.solution, label, special.name if own else "")
 
     def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
         columns = self.watch.measured(self.solver.problem.system, solution.orbit)
@@ -357,11 +361,19 @@ class Continuation:
         assert self.state is not None
         found = crossed(self.solver, at)
         if found is not None:
+            touching = found.solution if found.touches else at.end
+            named = [Found(label, 0.0, touching) for label in at_once(at.end, found.solution)]
+            for special in [] if found.touches else named:
+                yield from self._met(special)
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
+            if found.touches:
+                self._counted(Label.GRAZING)
             ds = self.control.ds if found.touches else max(found.distance, self.control.ds_min)
             kept, last = len(self.collected), found.solution
             self.state = replace(self.state, last=last, ds=ds, kept=kept, course=Course())
             yield self.collected[-1]
+            for special in named if found.touches else []:
+                yield from self._met(special)
         elif at.change.touches:
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
 
@@ -370,6 +382,8 @@ class Continuation:
         assert self.state is not None
         new = step.end
         self._emitted(new, step.label)
+        if step.label:
+            self._counted(step.label)
         self.state = replace(
             self.state,
             last=new,
