@@ -34,3 +34,12 @@ def test_switch_that_there_is_not() -> None:
     known = stopped(5.0).switches[0].name
     with pytest.raises(ValueError, match=f"^switch is 'wall'; it must be one of {known}$"):
         per.trace(stopped(5.0), "Omega", (0.5, 1.0), determined=condition)
+
+
+def test_doubling_that_sits_on_a_touch() -> None:
+    """Assert that a stop 1e4 times as stiff, whose touch makes the orbit unstable, has a PD at the GR."""
+    branch = per.trace(stopped(1e4), "Omega", (0.3, 0.8), watch=per.Watch(stop={"PD": 1}))
+    graze, double = (p for p in branch.special_points if p.label is not per.Label.END)
+    assert (graze.label, double.label) == ("GR", "PD") and graze.parameter == double.parameter
+    assert str(branch.stop) == "stopped as asked: PD met 1 time"
+    assert branch.unaccounted == ()
