@@ -62,4 +62,6 @@ class Counted:
 
 def task(**numbers: per.Number) -> per.Task:
     """A linear oscillator below its resonance: quickly traced."""
-    return per.Task(LinearOscillator(), "Omega", BOUNDS, numbers=numbers or {"peak": height}, tol=1e-3)
+    steps = per.ArclengthControl(ds=0.5, ds_max=1.0)
+    numbers = numbers or {"peak": height}
+    return per.Task(LinearOscillator(), "Omega", BOUNDS, numbers=numbers, tol=1e-3, control=steps)

@@ -40,8 +40,14 @@ def linear() -> sym.CompiledSystem:
     return sym.compile(parts + sym.HarmonicForce(x, 1.0))
 
 
-@pytest.mark.parametrize("kind", [linear, LinearOscillator])
-@pytest.mark.parametrize("method", [per.Collocation(), per.HarmonicBalance()])
+@pytest.mark.parametrize(
+    ("kind", "method"),
+    [
+        (linear, per.Collocation()),
+        (LinearOscillator, per.Collocation()),
+        (linear, per.HarmonicBalance()),
+    ],
+)
 def test_peak_is_exact_between_points(kind: Any, method: Any) -> None:
     """Assert place (1e-7) and height (1e-7) of a linear resonance, with and without exact derivatives."""
     task = per.Task(

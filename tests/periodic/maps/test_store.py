@@ -131,7 +131,10 @@ def test_interrupted_map_has_what_there_is(tmp_path: Path) -> None:
     [
         ({"grid": {"F": [0.5, 1.0], "zeta": [0.1]}}, "grid zeta = .*; now they are"),
         ({"task": task(other=height)}, "numbers "),
-        ({"task": per.Task(LinearOscillator(), "Omega", (0.4, 0.55), numbers={"peak": height})}, "bounds "),
+        (
+            {"task": per.Task(LinearOscillator(), "Omega", (0.4, 0.55), numbers={"peak": height}, tol=1e-3)},
+            "bounds ",
+        ),
     ],
 )
 def test_other_map_is_not_gone_on_with(other: dict[str, Any], said: str, tmp_path: Path) -> None:
@@ -185,7 +188,7 @@ def test_damaged_journal_is_gone_on_with_up_to_the_damage(tmp_path: Path) -> Non
 
     with pytest.raises(per.MapInterrupted):
         per.map(task(), GRID, 1, store=store, chunk=3, progress=press)
-    for part in (0.9, 0.5, 0.0):
+    for part in (0.8, 0.0):
         content = (tmp_path / "copy").read_bytes()
         journal.write_bytes(content[: int(part * len(content))])
         found = per.map(task(), GRID, 1, store=store, chunk=3)
