@@ -113,20 +113,17 @@ def test_progress_counts_and_tells_the_time_left() -> None:
 
 
 def test_failed_cells_have_a_reason() -> None:
-    """Assert that a motion without bound and a number that cannot be read say so cell by cell."""
+    """Assert that a number that cannot be read says so, in the cells where it cannot."""
 
     def fussy(task: per.Task, branch: per.Branch) -> float:
         if branch[0].orbit.parameters["zeta"] > 0.3:
             raise ValueError("too much damping for me")
         return 1.0
 
-    given = per.Task(LinearOscillator(Omega=1.0), "F", (0.5, 2.0), numbers={"f": fussy})
-    found = per.map(given, {"zeta": [0.0, 0.1, 0.4]}, 1, store=None)
-    assert found["status"].values.tolist() == ["failed", "done", "failed"]
-    resonant, good, damped = found["reason"].values
-    assert resonant.startswith("no orbit found at the start: ") and good == ""
-    assert damped == "f: too much damping for me"
-    assert np.isnan(found["f"].values).tolist() == [True, False, True]
+    found = per.map(task(f=fussy), {"zeta": [0.1, 0.4]}, 1, store=None)
+    assert found["status"].values.tolist() == ["done", "failed"]
+    assert found["reason"].values.tolist() == ["", "f: too much damping for me"]
+    assert np.isnan(found["f"].values).tolist() == [False, True]
 
 
 def test_branch_that_is_cut_short_gives_no_numbers() -> None:
