@@ -14,7 +14,7 @@ from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
 from periodic.stability.spectrum import Stability
 from periodic.stability.winding import Motion, turned
-from periodic.system import resets_of
+from periodic.system import jumps_of, resets_of
 from periodic.tracing.stepsize import ArclengthControl
 
 
@@ -70,7 +70,8 @@ def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
         way.phases + mean.phases,
         way.parameters + mean.parameters,
     )
-    if len(base.orbit.mesh.exact_ends) and not resets_of(problem.system):
+    jumping = resets_of(problem.system) or jumps_of(problem.system)  # a node passes what jumps at fixed tau
+    if len(base.orbit.mesh.exact_ends) and not jumping:
         # an excursion's end moves as a root does, the motion smoothly
         at = base.orbit.mesh.nodes(base.orbit.phases)
         bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
