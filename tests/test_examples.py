@@ -41,6 +41,7 @@ def test_example(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the key number, a picture, and that it is short."""
     file = EXAMPLES / f"{name}.py"
     plt.switch_backend("Agg")
+    plt.close("all")
     said = runpy.run_path(str(file))
     number, precision = KEYS[name]
     assert said["key"] == pytest.approx(number, rel=precision)

@@ -13,6 +13,8 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from periodic.results.arrays import DAMAGE, FORMAT, attributes, record_of, tables
 from periodic.results.files import digest, replacing
 from periodic.results.record import Record
@@ -136,13 +138,18 @@ def sound(content: bytes) -> bool:
 
 def checksum(data: xr.Dataset) -> str:
     """Return the digest of all variables and attributes, by name."""
-    parts = [json.dumps({k: str(v) for k, v in sorted(data.attrs.items())}).encode()]
+    parts = [json.dumps({k: _text(v) for k, v in sorted(data.attrs.items())}).encode()]
     for name in sorted(map(str, data.variables)):
         values = data[name].values
         numeric = values.dtype.kind in "biuf"
         content = values.astype(float).tobytes() if numeric else repr(values.tolist()).encode()
         parts += [f"{name} {values.shape}".encode(), content]
     return digest(*parts)
+
+
+def _text(value: object) -> str:
+    """A value as text, whatever NumPy's printing is set to."""
+    return str(value.item() if isinstance(value, np.generic) else value)
 
 
 def dataset(record: Record) -> xr.Dataset:

@@ -109,5 +109,6 @@ def _filled(row: Any, column: Any, value: Any) -> Any:
 
 
 def _module(name: str) -> ModuleType:
-    """A package that is installed only for its format."""
-    return import_module(name)
+    """A package that is installed only for its format; how it sets NumPy's printing is undone."""
+    with np.printoptions():
+        return import_module(name)

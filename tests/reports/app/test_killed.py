@@ -78,7 +78,7 @@ def test_two_traces_into_one_directory(tmp_path: Path, capsys: pytest.CaptureFix
 def test_journal_reads_no_more_than_whole_steps(tmp_path: Path) -> None:
     """Assert that a journal cut or changed anywhere gives the steps before, or says that it has none."""
     path = tmp_path / "journal"
-    branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 0.6), watch=per.Watch(journal=path))
+    branch = per.trace(duffing_system(*DUFFING_A), "Omega", (0.3, 3.0), watch=per.Watch(journal=path))
     data = path.read_bytes()
     assert per.recovered(path).values == pytest.approx(branch.values)
     rng = np.random.default_rng(2)
