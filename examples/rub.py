@@ -11,5 +11,5 @@ import symbolic as sym
 rotor = sym.scene("jeffcott-rub")
 branch = per.trace(rotor, "speed", (0.2, 2.0), start=0.2)
 axes = per.plot(branch)
-key = branch.peak_to_peak("x").max()
-print(f"largest motion {key:.6f}; {branch.stop}")
+key = branch.labelled("LP")[0].parameter
+print(f"with contact all round up to a speed of {key:.8f}; {branch.stop}")

@@ -203,9 +203,10 @@ class Dense:
     def minima(self, switch: int, side: int) -> list[Extremum]:
         """Return all minima of side * s."""
         along = self.along(switch, everywhere=True)
-        value = side * along.value
+        points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
+        value = side * along.value[points]
         before, after = np.roll(value, 1), np.roll(value, -1)
-        low = np.flatnonzero((value <= before) & (value <= after))
+        low = points[(value <= before) & (value <= after)]
         return [along.extremum(switch, int(i)) for i in low]
 
 

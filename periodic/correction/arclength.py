@@ -10,7 +10,7 @@ from periodic.linear.unknowns import Increment, mean_weights, node_phase_gradien
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System
+from periodic.system import System, jumps_of, resets_of
 
 
 @dataclass(frozen=True)
@@ -30,24 +30,39 @@ class ArclengthConstraint:
 
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
-        weighted, outer = self._gradient(self.origin, (self.index,))
+        weighted, outer = self._gradient(self.origin, (self.index,), self.origin.node_rates)
         along = np.append(direction.phases, direction.parameter)
         return float(np.vdot(weighted, direction.nodes) + outer @ along)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return value and gradient; mesh points that move carry the origin's slope with them."""
-        weighted, outer = self._gradient(orbit, free)
-        shift = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
-        moved = np.append(orbit.phases - self.origin.phases, shift)
-        value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes) + outer @ moved
+        """Return value and gradient; mesh points that move meet the origin where they are now."""
+        state, slope = self._origin_at(system, orbit)
+        weighted, outer = self._gradient(orbit, free, slope)
+        further = orbit.parameter[self.index] - self.origin.parameter[self.index]
+        value = np.einsum("jn,jn->", weighted, orbit.nodes - state)
+        value += self.direction.parameter / self.scale**2 * further
         return Row(float(value) - self.distance, weighted, outer)
 
-    def _gradient(self, orbit: Orbit, free: tuple[int, ...]) -> tuple[Array, Array]:
-        slope, moving = self.origin.node_rates, node_phase_gradient(orbit)
+    def _origin_at(self, system: System, orbit: Orbit) -> tuple[Array, Array]:
+        """States and slopes of the origin at an orbit's mesh points, on its tangents where there are jumps.
+
+        Along the tangents points on a circle would leave it, with the square of their way: as much as the
+        branch moves while an excursion ends.
+        """
+        origin = self.origin
+        way = node_phase_gradient(orbit) @ (orbit.phases - origin.phases)
+        if not way.any():
+            return origin.nodes, origin.node_rates
+        if resets_of(system) or jumps_of(system):
+            return origin.nodes + way[:, None] * origin.node_rates, origin.node_rates
+        at = orbit.mesh.nodes(orbit.phases)
+        return origin.state(at), origin.rate(at)
+
+    def _gradient(self, orbit: Orbit, free: tuple[int, ...], slope: Array) -> tuple[Array, Array]:
         weights = mean_weights(self.origin) / self.size**2
         weighted = weights[:, None] * self.direction.profile
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
-        outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, moving)
+        outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
         outer[k + free.index(self.index)] = self.direction.parameter / self.scale**2
         return weighted, outer

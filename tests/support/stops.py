@@ -11,20 +11,20 @@ import symbolic as sym
 FORCE, DAMPING = 0.5, 0.1
 
 
-def stopped(stiffness: float) -> sym.CompiledSystem:
-    """q'' + .1 q' + q + k max(q - 1, 0) = .5 cos(Omega t)."""
+def stopped(stiffness: float, gap: float = 1.0) -> sym.CompiledSystem:
+    """q'' + .1 q' + q + k max(q - gap, 0) = .5 cos(Omega t)."""
     q = sym.coordinate("q")
     model = sym.Mass(q, 1.0) + sym.Damper(q, DAMPING) + sym.Spring(q, 1.0) + sym.HarmonicForce(q, FORCE)
-    return sym.compile(model + sym.Stop(q, sym.HertzLaw(stiffness, 1.0), gap=1.0))
+    return sym.compile(model + sym.Stop(q, sym.HertzLaw(stiffness, 1.0), gap=gap))
 
 
-def exactly(stiffness: float) -> Piecewise:
+def exactly(stiffness: float, gap: float = 1.0) -> Piecewise:
     """The same in closed form."""
     return Piecewise(
         matrix=np.array([[0.0, 1.0], [-1.0, -DAMPING]]),
         force=np.array([0.0, FORCE]),
         normals=np.array([[1.0, 0.0]]),
-        gaps=np.array([1.0]),
+        gaps=np.array([gap]),
         columns=np.array([[0.0, -stiffness]]),
     )
 
