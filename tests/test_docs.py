@@ -26,9 +26,13 @@ def run(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, A
     return said
 
 
-def test_first_branch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert the folds that the page prints, and its files."""
+def test_first_branch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Assert that the page prints what it shows, the folds, and its files."""
     said = run("tutorials/first-branch.md", tmp_path, monkeypatch)
+    shown = re.findall(r"```text\n(.*?)```", PAGES["tutorials/first-branch.md"].read_text("utf-8"), re.DOTALL)
+    assert capsys.readouterr().out.startswith(shown[0])
     folds = [p.parameter for p in said["branch"].labelled(per.Label.FOLD)]
     assert folds == pytest.approx([2.2119353, 1.4386701], rel=1e-7)
     assert (tmp_path / "duffing.png").is_file() and (tmp_path / "duffing.nc").is_file()

@@ -115,6 +115,8 @@ def setup(
     not allowed.
     """
     system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
+    if low < 0 and parameter in layout_of(system).frequency:
+        raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
     named("values", {} if values is None else values, "numbers")
     for name in set(method.watch.columns) & reserved(layout_of(system)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")

@@ -35,7 +35,7 @@ def contents(path: Path) -> dict[str, Any]:
         raise ValueError(f"file of matrices {str(path)!r} does not exist") from None
     except ModuleNotFoundError as error:
         raise ValueError(f"{path.name} needs the package {error.name}: {EXTRA}") from None
-    except (OSError, ValueError, TypeError, KeyError, AssertionError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, ValueError, TypeError, KeyError, AssertionError, zipfile.BadZipFile) as error:
         said = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(f"{str(path)!r} cannot be read as a {path.suffix} file: {said}") from None
 

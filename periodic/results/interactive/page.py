@@ -48,6 +48,8 @@ def page(
     OSError
         Where the file cannot be written.
     """
+    if not isinstance(branch, Branch):
+        raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
     file = Path(path)
     if file.suffix.lower() not in (".html", ".htm"):
         raise ValueError(f"path is {str(path)!r}; it must be a file that ends in .html")

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import casadi as ca
 
+from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.variables import Value
 from symbolic.parts.contact.preloaded import PowerLaw, Preloaded, solved
@@ -87,6 +88,13 @@ class HertzLaw(ContactLaw):
     def _numbers(self, assembly: Assembly) -> tuple[ca.SX, ca.SX]:
         stiffness = assembly.parameter(self.stiffness, "stiffness", "N/m^n")
         return stiffness, assembly.parameter(self.exponent, "exponent")
+
+
+def lawful(law: object) -> None:
+    """Refuse what is no law of contact. Raises ValueError."""
+    if not callable(getattr(law, "load", None)):
+        allowed = "a ContactLaw, as HertzLaw(1e9) is; a spring beyond a gap is a OneSidedSpring"
+        raise refusal("law", law, allowed)
 
 
 def deflection_under(law: ContactLaw, preload: float) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value
-from symbolic.parts.contact.law import ContactLaw
+from symbolic.parts.contact.law import ContactLaw, lawful
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,9 @@ class Stop(Part):
     q: Coordinate
     law: ContactLaw
     gap: Value = 0.0
+
+    def __post_init__(self) -> None:
+        lawful(self.law)
 
     def contribute(self, assembly: Assembly) -> None:
         """Subtract the load of the stop."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import casadi as ca
 
-from symbolic.checks import refusal
+from symbolic.checks import refusal, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Parameter, Value, not_negative
@@ -47,6 +47,7 @@ class OneSidedSpring(Part):
 
     def __post_init__(self) -> None:
         not_negative("stiffness k", self.k)
+        typed("below", self.below, bool, "True or False")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a kink where u passes the gap."""

@@ -124,6 +124,10 @@ class ModelScene(Table):
         except ValueError as error:
             raise InputError.said(str(error)) from None
         names = [p.name for p in system.parameters]
+        for name in self.parameters:
+            if name not in names:
+                allowed = "a part must name it, or it must go"
+                raise InputError(f"parameters.{name}", "is used by no part", allowed)
         for name in self.values:
             if name not in names:
                 raise unknown("[values]", name, names, "the name of a parameter of the model")

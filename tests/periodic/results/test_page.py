@@ -83,6 +83,8 @@ def test_what_is_no_page_is_refused(branch: per.Branch, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="^units has 'y'; its names must be among x, "):
         per.page(branch, tmp_path / "a.html", units={"y": ("mm", 1e-3)})
     nothing: Any = 3
+    with pytest.raises(ValueError, match="^branch is 3; it must be a Branch, as periodic.trace returns it$"):
+        per.page(nothing, tmp_path / "a.html")
     with pytest.raises(ValueError, match="^units is 3; it must give units by their names$"):
         per.page(branch, tmp_path / "a.html", units=nothing)
 

@@ -182,3 +182,11 @@ def test_what_is_no_orbit_or_system_is_refused(function: Any, arguments: tuple[A
     """Assert that functions of a system and an orbit say which of them is none."""
     with pytest.raises(ValueError, match="^(system|orbit) is a (str|NoneType)"):
         function(*arguments)
+
+
+def test_negative_frequencies_are_refused() -> None:
+    """Assert that a range of an excitation's frequency cannot begin below 0."""
+    with pytest.raises(
+        ValueError, match=r"^bounds is \(-1, 3\); 'Omega', a frequency, must not be negative$"
+    ):
+        per.trace(sym.scene("duffing"), "Omega", (-1, 3))

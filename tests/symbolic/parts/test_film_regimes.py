@@ -206,6 +206,11 @@ def test_what_makes_no_film_is_refused() -> None:
     film = sym.LubricantFilm(pair, sym.PowerFilm(3.85e-6, 810.0), SPEED, 0.051, 0.0)
     with pytest.raises(ValueError, match="^squeeze is 0; it must be a positive number$"):
         disc(film, pair=pair, x=x)
+    number: object = 100.0
+    with pytest.raises(ValueError, match="^law is 100.0; it must be a ContactLaw, as HertzLaw"):
+        sym.Stop(x, number)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="^below is 'no'; it must be True or False$"):
+        sym.OneSidedSpring(x, 1.0, below="no")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="^M is -1; it must be a positive number$"):
         sym.film_regime(-1, 1)
     changes: list[tuple[str, dict[str, str | float | None], str]] = [

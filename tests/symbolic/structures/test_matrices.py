@@ -187,6 +187,7 @@ def test_files_that_do_not_fit_are_refused(known: sym.Matrices, tmp_path: Path) 
     """Assert one sentence for each."""
     np.savez(tmp_path / "a.npz", M=known.M, stiffness=known.K)
     (tmp_path / "b.npz").write_text("no archive")
+    (tmp_path / "empty.npz").write_bytes(b"")
     (tmp_path / "c.mtx").write_text("1 2\n3 4\n")
     (tmp_path / "d.mtx").write_text("0 1 2.0\n1 1 3.0\n")
     for given, said in [
@@ -198,6 +199,7 @@ def test_files_that_do_not_fit_are_refused(known: sym.Matrices, tmp_path: Path) 
             {"file": tmp_path / "a.txt"},
             "a.txt' is no file of matrices; its name must end in .npz, .mat, .mtx, .op4$",
         ),
+        ({"file": tmp_path / "empty.npz"}, "empty.npz' cannot be read as a .npz file: "),
         ({"file": tmp_path / "none.npz"}, "none.npz' does not exist$"),
         ({"file": tmp_path / "b.npz"}, "b.npz' cannot be read as a .npz file: "),
         ({"K": tmp_path / "c.mtx"}, "its lines have 2 numbers; 3 or 5 are known$"),
