@@ -17,7 +17,7 @@ KEYS = {
     "duffing": (2.2119353, 1e-7),
     "elastic_stop": (1.38481692, 1e-7),
     "force_cusp": (0.0513635, 1e-6),
-    "friction_damper": (1.186191, 1e-5),
+    "friction_damper": (1.1992449, 1e-7),
     "gear_pair": (0.598153117, 1e-8),
     "impact": (0.09997075362630, 1e-8),
     "oil_whirl": (7771.187, 1e-6),

@@ -34,6 +34,12 @@ SHORT = (1e-2, 1e-3, 1e-4)
 VANISHING = 0.5
 """An excursion of which a step would leave this part, by its tangent, may end within the step."""
 
+SYMMETRIC = 1e-7
+"""Switches this near to their levels, as a part of their largest values, touch at once."""
+
+ALIKE = 1e-3
+"""Excursions whose lengths differ by this part end at once."""
+
 
 @dataclass(frozen=True)
 class Clearance:
@@ -112,12 +118,14 @@ class Birth:
         return f"{self.system.switches[self.extremum.switch].name} is touched"
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
-        """Yield meshes with a short excursion where the switch touches."""
+        """Yield meshes with a short excursion where the switch touches, and where others do by symmetry."""
         at = Dense(system, orbit).nearest(self.extremum.switch, self.side, self.extremum.phase)
+        others = [(e, side) for e, side in touching(system, orbit) if not _same(e, at, orbit.mesh.period)]
         for length in SHORT:
-            events, phases, segment = inserted(orbit, at, self.side, length)
-            mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-            yield Beyond(mesh, phases, Length(segment, length), False)
+            for touches in ([(at, self.side), *others], [(at, self.side)])[: 2 if others else 1]:
+                events, phases, segment = inserted(orbit, touches, length)
+                mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+                yield Beyond(mesh, phases, Length(segment, length), False)
 
 
 @dataclass(frozen=True)
@@ -155,10 +163,12 @@ class Meeting:
         i, j = self.segment, (self.segment + 1) % len(orbit.phases)
         begin, end = orbit.phases[i], orbit.phases[j] + (orbit.mesh.period if j < i else 0.0)
         if first.switch == second.switch:
-            kept = [m for m in range(k) if m not in (i, j)]
-            events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
-            mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-            yield Beyond(mesh, phases, Clearance(first.switch, second.direction, (begin + end) / 2), True)
+            condition = Clearance(first.switch, second.direction, (begin + end) / 2)
+            for ended in dict.fromkeys((self._as_short(orbit), (i, j))):
+                kept = [m for m in range(k) if m not in ended]
+                events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
+                mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+                yield Beyond(mesh, phases, condition, True)
             return
         others = [(orbit.mesh.events[m], orbit.phases[m]) for m in range(k) if m not in (i, j)]
         middle = (begin + end) / 2
@@ -166,6 +176,34 @@ class Meeting:
         events, phases = ordered([*others, *pair], orbit)
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         yield Beyond(mesh, phases, Length(index_of(events, phases, pair[0], orbit), self.length), False)
+
+    def _as_short(self, orbit: Orbit) -> tuple[int, ...]:
+        """Return the event nodes of all excursions as short as this one: by symmetry several end at once."""
+        events, length = orbit.mesh.events, orbit.mesh.segment_lengths(orbit.phases)
+        k, ended = len(events), [self.segment, (self.segment + 1) % len(events)]
+        for i in range(k):
+            pair = (i, (i + 1) % k)
+            alike = abs(length[i] / self.length - 1) < ALIKE and events[i].switch == events[pair[1]].switch
+            if alike and not set(pair) & set(ended):
+                ended += pair
+        return tuple(ended)
+
+
+def touching(system: System, orbit: Orbit) -> list[tuple[Extremum, int]]:
+    """Return where switches touch their levels, the mesh having no event nodes there, and from which side."""
+    dense, found = Dense(system, orbit), []
+    for k in exact(system):
+        sides = dense.expected(k, dense.side(k))
+        near = SYMMETRIC * float(np.abs(dense.knots[:, :, k]).max())
+        for side in np.unique(sides):
+            low = [e for e in dense.minima(k, int(side)) if sides[e.interval] == side and e.theta < 1.0]
+            found += [(e, int(side)) for e in low if abs(e.value) < near]
+    return found
+
+
+def _same(one: Extremum, other: Extremum, period: float) -> bool:
+    apart = np.mod(one.phase - other.phase + period / 2, period) - period / 2
+    return one.switch == other.switch and bool(abs(apart) <= SHORT[0])
 
 
 def ordered(both: list[tuple[EventNode, float]], orbit: Orbit) -> tuple[tuple[EventNode, ...], Array]:
@@ -186,14 +224,16 @@ def index_of(
 
 
 def inserted(
-    orbit: Orbit, at: Extremum, side: int, length: float
+    orbit: Orbit, touches: list[tuple[Extremum, int]], length: float
 ) -> tuple[tuple[EventNode, ...], Array, int]:
-    """Return event nodes and phases with an excursion about a point, and the segment that it is."""
-    begin = EventNode(at.switch, -side), at.phase - length / 2
-    end = EventNode(at.switch, side), at.phase + length / 2
-    own = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
-    events, phases = ordered([*own, begin, end], orbit)
-    return events, phases, index_of(events, phases, begin, orbit)
+    """Return event nodes and phases with excursions about points, and the segment that is the first one."""
+    every = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
+    for at, side in touches:
+        every.append((EventNode(at.switch, -side), at.phase - length / 2))
+        every.append((EventNode(at.switch, side), at.phase + length / 2))
+    events, phases = ordered(every, orbit)
+    first = every[len(orbit.phases)]
+    return events, phases, index_of(events, phases, first, orbit)
 
 
 def pattern(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

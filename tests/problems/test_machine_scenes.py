@@ -175,7 +175,6 @@ def _range(name: str) -> tuple[float, float]:
     return (begin * RPM, end * RPM) if max(begin, end) > 100 else (begin, end)
 
 
-@pytest.mark.unaccounted  # where its slider first slips, the Jenkins damper's branch turns by 4e-6
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.long]) for n in CASES]
 )

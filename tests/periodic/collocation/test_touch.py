@@ -10,6 +10,7 @@ from reference.piecewise import Piecewise
 from support.stops import errors, exactly, stopped
 
 import periodic as per
+import symbolic as sym
 from periodic.collocation.dense import Dense
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
@@ -72,6 +73,23 @@ def test_touch_is_a_point_of_the_branch(way: tuple[float, float]) -> None:
     assert point.maximum["q"] == pytest.approx(1.0, abs=1e-8)
     damped = np.exp(-0.05 * 2 * np.pi / point.parameter)
     assert np.abs(point.multipliers) == pytest.approx([damped, damped], abs=1e-7)
+
+
+@pytest.mark.parametrize("way", [(0.5, 2.0), (2.0, 0.5)], ids=["up", "down"])
+def test_two_stops_are_touched_at_once(way: tuple[float, float]) -> None:
+    """Assert that a mass between equal stops meets and leaves both at once, where the free motion does."""
+    q = sym.coordinate("q")
+    model = sym.Mass(q, 1.0) + sym.Damper(q, 0.5) + sym.Spring(q, 1.0) + sym.HarmonicForce(q, 0.7)
+    found = per.trace(sym.compile(model + sym.Backlash(q, 5.0, 1.0)), "Omega", way)
+    assert found.stop.reason is per.Reason.BOUND
+    touched = sorted(point.parameter for point in found.labelled(per.Label.GRAZING))
+    free = sorted(np.sqrt(np.roots([1.0, 0.5**2 - 2.0, 1.0 - 0.7**2])))
+    assert touched == pytest.approx(free, abs=1e-8)
+    beyond = [point for point in found if point.maximum["q"] > 1 + 1e-8]
+    assert beyond
+    for point in beyond:
+        assert len(point.orbit.mesh.events) == 4
+        assert point.maximum["q"] == pytest.approx(-point.minimum["q"], abs=1e-6)
 
 
 def test_meshes_stay_small() -> None:
