@@ -23,6 +23,9 @@ from periodic.system import System, jumps_of, resets_of, slides_of
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
 
+SHARED = 1e-9
+"""A switch that is as near to its level at another one's event node passes it there too."""
+
 
 def exact(system: System) -> list[int]:
     """Return the switches at whose level 0 the equations have a kink: those without further levels.
@@ -137,17 +140,27 @@ class Dense:
     def _tied(self, switch: int) -> dict[int, float]:
         """Phases of a switch's event nodes, by the intervals that begin there."""
         orbit = self.orbit
-        each = zip(orbit.mesh.starts, orbit.mesh.events, orbit.phases, strict=True)
-        return {int(j): float(phase) for j, event, phase in each if event.switch == switch}
+        each = zip(orbit.mesh.starts, self._directions(switch), orbit.phases, strict=True)
+        return {int(j): float(phase) for j, direction, phase in each if direction}
+
+    def _directions(self, switch: int) -> list[int]:
+        """Directions in which a switch passes its level at the event nodes, 0 where it does not.
+
+        It shares the nodes of other switches that are equal to it.
+        """
+        values, found = self.knots[:, :, switch], []
+        near = SHARED * float(np.abs(values).max())
+        for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
+            before, after = values[j - 1, -2], values[j, 1]
+            shared = abs(values[j, 0]) <= near and before * after < 0
+            other = int(np.sign(after)) if shared and event.switch != switch else 0
+            found.append(event.direction if event.switch == switch else other)
+        return found
 
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
         """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any."""
         mesh = self.orbit.mesh
-        own = [
-            (j, event.direction)
-            for j, event in zip(mesh.starts, mesh.events, strict=True)
-            if event.switch == switch
-        ]
+        own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
         sides = np.full(mesh.ntst, otherwise if not own else own[-1][1])
         for start, direction in own:
             sides[start:] = direction

@@ -120,9 +120,15 @@ class KinkSettings:
 
 
 def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
-    """Return all passages, on the whole orbit, of the switches at whose level the equations change."""
-    dense = Dense(system, orbit)
-    return [Crossing(*passage, 0.0) for k in exact(system) for passage in dense.passages(k)]
+    """Return all passages, on the whole orbit, of the switches at whose level the equations change.
+
+    Of switches that are equal, those of the first.
+    """
+    dense, found = Dense(system, orbit), list[Crossing]()
+    for k in exact(system):
+        new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
+        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME for f in found)]
+    return found
 
 
 def crossings(system: System, orbit: Orbit) -> list[Crossing]:
