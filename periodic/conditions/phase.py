@@ -16,6 +16,8 @@ from periodic.system import System
 
 PROBED = 8
 """Phases at which it is looked whether equations depend on them."""
+SHIFTED = 1e-9
+"""Relative remainder up to which the dependence on the phase is that of a shift of the unknowns."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +37,7 @@ class PhaseCondition(Condition):
 
     def check(self, system: System, parameter: Array) -> None:
         """Refuse an excited system, whose equations hold the phase of its orbits."""
-        state, algebraic = system.rest(parameter)
-        tau = np.linspace(0, FORCED, PROBED, endpoint=False)
-        away = np.tile(state, (PROBED, 1)) + np.cos(np.arange(state.size) + tau[:, None])
-        unknowns = np.tile(algebraic, (PROBED, 1))
-        line = system.linearise(np.zeros_like(away), away, unknowns, tau, parameter, ())
-        if np.abs(np.nan_to_num(line.d_phase)).max(initial=0.0) > 0:
+        if _excited(system, parameter):
             raise ValueError(
                 f"determined has {type(self).__name__}(), for orbits whose phase is free; "
                 f"it must be left out, as the system is excited: its equations depend on the phase"
@@ -81,3 +78,21 @@ class _Phase:
         value = np.einsum("jn,jn->", weighted, orbit.nodes - self.origin.nodes)
         value += outer[:k] @ (orbit.phases - self.origin.phases)
         return Row(float(value), weighted, outer)
+
+
+def _excited(system: System, parameter: Array) -> bool:
+    """Whether the equations depend on the phase otherwise than by a constant shift of the unknowns.
+
+    Where F(x', x + s e, tau + s) = F(x', x, tau) for one vector e, as with angles ahead of a mean rotation,
+    the phase is free all the same: then d F / d tau = -(d F / d x) e at all points.
+    """
+    state, algebraic = system.rest(parameter)
+    tau = np.linspace(0, FORCED, PROBED, endpoint=False)
+    away = np.tile(state, (PROBED, 1)) + np.cos(np.arange(state.size) + tau[:, None])
+    unknowns = np.tile(algebraic, (PROBED, 1))
+    line = system.linearise(np.zeros_like(away), away, unknowns, tau, parameter, ())
+    phase = np.nan_to_num(line.d_phase).ravel()
+    shifts = np.nan_to_num(np.concatenate([line.d_state, line.d_algebraic], axis=2))
+    shifts = shifts.reshape(phase.size, -1)
+    left = phase - shifts @ np.linalg.lstsq(shifts, phase)[0]
+    return bool(np.linalg.norm(left) > SHIFTED * np.linalg.norm(phase))
