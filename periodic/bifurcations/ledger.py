@@ -94,8 +94,11 @@ class Entry:
     def _outside(growth: np.ndarray, noise: float) -> set[int]:
         return set(range(int((growth > noise).sum()), int((growth >= -noise).sum()) + 1))
 
-    def after(self, before: set[int]) -> set[int]:
-        """How many may lie outside after the point, of those that may before it; none is a contradiction."""
+    def after(self, before: set[int], turns: bool = False) -> set[int]:
+        """How many may lie outside after the point, of those that may before it; none is a contradiction.
+
+        turns: whether the parameter turns from the point before it to the one after it.
+        """
         if self.label is Label.END:  # a branch that was begun at a special point may change there
             return self.unstable if before & self.unstable else set()
         if self.label in PLAIN:
@@ -105,7 +108,7 @@ class Entry:
             return set(range(len(self.growth) + 1))
         few = self.beside
         more = {count + passing for count in few}
-        stay = self.label is Label.BRANCH and abs(self.slope) <= STEEP  # it turns, and mu touches 1
+        stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
         up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
@@ -157,8 +160,9 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
     turns: whether turns of the parameter have labels there, as folds of a branch have.
     """
     found = []
-    for (last, entry), (before, after) in zip(pairwise(entries), pairwise(counts(entries)), strict=True):
-        if not entry.after(before):
+    both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
+    for (last, entry), (before, after), turning in both:
+        if not entry.after(before, turning):
             found.append(Gap(last.value, entry.value, _passed(before, after, entry.label)))
         elif turns and _turned(last, entry):
             found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
@@ -168,9 +172,16 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 def counts(entries: Sequence[Entry]) -> list[set[int]]:
     """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
     found = [entry.after(set(range(len(entry.growth) + 1))) for entry in entries[:1]]
-    for entry in entries[1:]:
-        found.append(entry.after(found[-1]) or entry.unstable)
+    for entry, turning in zip(entries[1:], _turning(entries)[1:], strict=True):
+        found.append(entry.after(found[-1], turning) or entry.unstable)
     return found
+
+
+def _turning(entries: Sequence[Entry]) -> list[bool]:
+    """Whether the parameter goes one way at the point before each and the other way at the one after it."""
+    slopes = [entry.slope for entry in entries]
+    inner = [before * after < 0 for before, after in zip(slopes, slopes[2:], strict=False)]
+    return [False, *inner, False][: len(slopes)]
 
 
 def _turned(last: Entry, entry: Entry) -> bool:

@@ -148,6 +148,7 @@ PAIR = (0.8 + 0.6j, 0.8 - 0.6j)
         [entry("", 0, 0.9, 0.2), entry("NS", 1, *PAIR), entry("UZ", 1.5, 1.2, 1.2), entry("", 2, 1.3, 1.3)],
         [entry("", 0, 1.5, 0.2), entry("BP", 1, 1, 0.2), entry("", 2, 0.5, 0.2)],
         [entry("", 0, 1.5, 0.2), entry("BP", 1, 1, 0.2, slope=0), entry("", 0, 1.5, 0.2, slope=-1)],
+        [entry("", 0, 0.5, 0.2), entry("BP", 1, 1 + 2e-6, 0.2, slope=3e-5), entry("", 0, 0.5, 0.2, slope=-1)],
         [
             entry("", 0, 0.5, 0.2),
             entry("LP", 1, 1, 0.9, slope=0),
