@@ -12,12 +12,15 @@ import pytest
 from support.commands import Capture, Patch, changed, command, refusal, wait_for_points
 
 import periodic as per
+import symbolic as sym
 from periodic.results.files import replacing
 from periodic.results.journal import Journal
 from reports.app.cli import main
 
+SCENES = ", ".join(sym.scene_names())
+
 REFUSALS = {
-    "trace vitrea80": 'scene is "vitrea80"; it must be one of cavitating-film-810N, dry-810N',
+    "trace vitrea80": f'scene is "vitrea80"; it must be one of {SCENES} or the path of a TOML file',
     "report paper": "No such command 'report'.",
     "trace duffing --set mess=1": '--set key is "mess"; it must be one of oscillator.mass',
     "trace duffing --set force": '--set is "force"; it must be KEY=VALUE',
