@@ -2,8 +2,7 @@
 Two cylinders and their film
 ============================
 
-The disc as a cylinder: along a line the film is thinner than under a point, yet damps more, and the resonance
-bends without a fold.
+The disc as a cylinder: contact along a line, with its own laws of deflection, film and squeeze.
 """
 
 import math

@@ -2,7 +2,7 @@
 Oil whirl
 =========
 
-A rigid rotor in short journal bearings: at some speed the film begins to drive it round at half the speed.
+A rigid rotor in short journal bearings: at some speed the film begins to drive it round.
 """
 
 import math

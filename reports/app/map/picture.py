@@ -13,6 +13,7 @@ from reports.app.drawing import BLUE, INK, ORANGE, figure, legend, write
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
 
 
 def draw(path: Path, title: str, data: xr.Dataset, keys: Mapping[str, str]) -> None:
@@ -50,13 +51,15 @@ def _line(axes: Axes, data: xr.Dataset, name: str) -> None:
     axes.plot(x[order], data["stable peak"].values[order], "--", color=ORANGE, label="highest stable")
 
 
-def _field(axes: Axes, data: xr.Dataset, names: list[str]):  # type: ignore[no-untyped-def]
+def _field(axes: Axes, data: xr.Dataset, names: list[str]) -> ScalarMappable:
     """Draw the peak as a field over two parameters, with a line where branches begin to have folds."""
     x, y = (data[name].values for name in names)
     folds = np.isfinite(data["folds"].values).sum(axis=-1) if data["folds"].ndim > data["peak"].ndim else None
     if data["peak"].dims == ("cell",):
         axes.plot(x, y, ".", color=INK, markersize=1.5)
-        return axes.tripcolor(x, y, np.nan_to_num(data["peak"].values), shading="gouraud")
+        done = np.isfinite(data["peak"].values)  # a cell that failed has no colour
+        x, y, peak = x[done], y[done], data["peak"].values[done]
+        return axes.tripcolor(x, y, peak, shading="gouraud") if len(x) > 2 else axes.scatter(x, y, c=peak)
     if folds is not None and min(folds.shape) > 1 and folds.min() < 1 <= folds.max():
         axes.contour(x, y, folds.T, levels=[0.5], colors=INK, linewidths=1.2)
         axes.plot([], [], color=INK, linewidth=1.2, label="folds within")
