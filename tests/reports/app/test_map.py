@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 from support.commands import check_sentence, refusal
 
 import periodic as per
 import symbolic as sym
 from reports.app.cli import main
 from reports.app.map import run
+from reports.app.map.picture import _field
 
 Capture = pytest.CaptureFixture[str]
 QUICK = ("--from", "1.3", "--to", "1.9", "--accuracy", "draft", "--jobs", "1")
@@ -100,3 +102,18 @@ def test_stores_of_something_else(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / "map.nc").write_text("a diary")
     assert "is not written over" in refusal(capsys, *arguments)
     assert (tmp_path / "map.nc").read_text() == "a diary"
+
+
+def test_picture_leaves_out_cells_that_failed() -> None:
+    """Assert that an adaptive map with a failed cell has colours for the others only."""
+
+    data = xr.Dataset(
+        {
+            "peak": ("cell", [1.0, 2.0, np.nan, 3.0]),
+            "F": ("cell", [0.0, 0.0, 1.0, 1.0]),
+            "c": ("cell", [0.0, 1.0, 0.0, 1.0]),
+            "folds": ("cell", [np.nan] * 4),
+        }
+    )
+    shown = _field(Figure().add_subplot(), data, ["F", "c"])
+    assert sorted(np.unique(shown.get_array()).tolist()) == [1.0, 2.0, 3.0]
