@@ -63,6 +63,15 @@ class Range(Table):
         copy._shown = axis
         return copy
 
+    @model_validator(mode="after")
+    def _two_ends(self) -> Self:
+        begin, end = (getattr(self, key) for key in self.keys)
+        if begin == end:
+            field, other = (f"trace.{name}" for name in reversed(self.written))
+            remedy = f"it must differ from {other} so that there is a range"
+            raise InputError(field, f"is {end:g}", remedy)
+        return self
+
 
 class SpeedRange(Range):
     """Where the trace starts and which way it goes, in rev/min of the discs."""
@@ -76,12 +85,6 @@ class SpeedRange(Range):
         """rev/min."""
         return "rev/min"
 
-    @model_validator(mode="after")
-    def _two_ends(self) -> SpeedRange:
-        if self.from_rpm == self.to_rpm:
-            raise one_point("trace.to_rpm", self.to_rpm, "trace.from_rpm")
-        return self
-
 
 class FrequencyRange(Range):
     """Where the trace starts and which way it goes: angular frequency Omega in rad/s."""
@@ -94,14 +97,3 @@ class FrequencyRange(Range):
     def own(self) -> str:
         """rad/s."""
         return "rad/s"
-
-    @model_validator(mode="after")
-    def _two_ends(self) -> FrequencyRange:
-        if self.from_frequency == self.to_frequency:
-            raise one_point("trace.to_frequency", self.to_frequency, "trace.from_frequency")
-        return self
-
-
-def one_point(field: str, value: float, other: str) -> InputError:
-    """Return the error of a range without length."""
-    return InputError(field, f"is {value:g}", f"it must differ from {other} so that there is a range")

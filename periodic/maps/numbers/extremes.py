@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from periodic.results.branch import Branch
 
 
 @dataclass(frozen=True)
-class Highest:
-    """The highest value of a functional along the branch, and where it is: a resonance peak, say.
+class Extreme:
+    """The value of a functional that lies furthest up or down along the branch, and where it is.
 
     Between points the place is where the functional is stationary along the branch, found exactly; at an end
     of the branch or of a stable stretch it is that end.
@@ -34,6 +35,7 @@ class Highest:
         For what is no functional.
     """
 
+    sign: ClassVar[float]
     functional: Functional
     stable: bool = False
 
@@ -42,15 +44,28 @@ class Highest:
 
     def __call__(self, task: Task, branch: Branch) -> dict[str, float]:
         """Return the value (SI) and, as "at", the parameter; NaN where no orbit counts."""
-        return _extreme(task, branch, self.functional, 1.0, self.stable)
+        return _extreme(task, branch, self.functional, self.sign, self.stable)
 
     def units(self, task: Task) -> dict[str, str]:
         """Return the units of value and place."""
         return {"": unit_of(task.system, self.functional), "at": parameter_unit(task)}
 
 
-@dataclass(frozen=True)
-class Lowest:
+class Highest(Extreme):
+    """The highest value of a functional along the branch, and where it is: a resonance peak, say.
+
+    Parameters
+    ----------
+    functional : Functional
+        As PeakToPeak("x").
+    stable : bool
+        Whether only stable orbits count.
+    """
+
+    sign = 1.0
+
+
+class Lowest(Extreme):
     """The lowest value of a functional along the branch, and where it is: the least load of a contact, say.
 
     Parameters
@@ -59,26 +74,9 @@ class Lowest:
         As Minimum("load").
     stable : bool
         Whether only stable orbits count.
-
-    Raises
-    ------
-    ValueError
-        For what is no functional.
     """
 
-    functional: Functional
-    stable: bool = False
-
-    def __post_init__(self) -> None:
-        check_functional(self.functional)
-
-    def __call__(self, task: Task, branch: Branch) -> dict[str, float]:
-        """Return the value (SI) and, as "at", the parameter; NaN where no orbit counts."""
-        return _extreme(task, branch, self.functional, -1.0, self.stable)
-
-    def units(self, task: Task) -> dict[str, str]:
-        """Return the units of value and place."""
-        return {"": unit_of(task.system, self.functional), "at": parameter_unit(task)}
+    sign = -1.0
 
 
 def _extreme(

@@ -15,7 +15,7 @@ from symbolic.scenes.errors import InputError, shown
 from symbolic.scenes.model.bench import unknown
 from symbolic.scenes.model.composing import composed
 from symbolic.scenes.model.structures import StructureTable
-from symbolic.scenes.ranges import Range, one_point
+from symbolic.scenes.ranges import Range
 from symbolic.scenes.tables import Table, Title
 from symbolic.system.compile import compile, with_nominal
 from symbolic.system.compiled import CompiledSystem, with_values
@@ -62,12 +62,6 @@ class ModelRange(Range):
     def own(self) -> str | None:
         """The axis, if there is one."""
         return self.axis_unit
-
-    @model_validator(mode="after")
-    def _two_ends(self) -> ModelRange:
-        if self.begin == self.end:
-            raise one_point("trace.to", self.end, "trace.from")
-        return self
 
 
 @dataclass(frozen=True)
