@@ -285,6 +285,31 @@ class Flowing(System, Protocol):
         """
 
 
+class TrajectoryLike(Protocol):
+    """A trajectory at K phases, phase (K,): state (K, n), algebraic (K, m)."""
+
+    @property
+    def phase(self) -> Array: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def algebraic(self) -> Array: ...
+
+
+class Moving(System, Protocol):
+    """A system that can be followed in time, through impacts too."""
+
+    def motion(
+        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+    ) -> TrajectoryLike:
+        """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
+
+        algebraic (m,) is a guess of the unknowns at phase[0]; tolerance is relative and absolute. The
+        trajectory has two points of one phase at each impact, with the states before and after it. Raises
+        ArithmeticError where the integration fails.
+        """
+
+
 class Resetting(System, Protocol):
     """A system with impacts: the state is mapped, x+ = r(x-, tau, p), where some switches pass their level.
 

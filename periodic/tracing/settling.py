@@ -10,7 +10,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Flowing, System, linear_of, resets_of
+from periodic.system import Moving, System, linear_of
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -28,22 +28,22 @@ SAMPLES = 193
 def settled(system: System, start: Orbit) -> Orbit | None:
     """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    None where it does not settle within PERIODS, where its integration fails, and of a system without a flow
-    or with impacts.
+    None where it does not settle within PERIODS, where its integration fails, and of a system that cannot be
+    followed in time.
     """
-    if not hasattr(system, "flow") or resets_of(system) or linear_of(system):
+    if not hasattr(system, "motion") or linear_of(system):
         return None
-    flowing, phase = cast(Flowing, system), np.linspace(0, FORCED, SAMPLES)
+    moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]
     for _ in range(PERIODS):
         try:
-            path = flowing.flow(state, algebraic, start.parameter, phase, (), TOLERANCE)
+            path = moving.motion(state, algebraic, start.parameter, phase, TOLERANCE)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
         if _closed(path.state):
-            return sampled(phase, path.state, path.algebraic, start.parameter)
+            return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None
 

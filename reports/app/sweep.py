@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from symbolic import CompiledSystem
     from symbolic.arrays import Array
-    from symbolic.motion.flow import Flow, Trajectory
+    from symbolic.integration.flow import Flow, Trajectory
 
 log = logging.getLogger(__name__)
 
@@ -58,7 +58,7 @@ def sweep(
     the log says so.
     """
     from symbolic.integration.cvodes import IntegrationError
-    from symbolic.motion.flow import Flow
+    from symbolic.integration.flow import Flow
     from symbolic.motion.linear import modes
     from symbolic.system.compiled import with_values
 

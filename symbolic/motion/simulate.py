@@ -11,7 +11,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
 from symbolic.integration.cvodes import IntegrationError
-from symbolic.motion.flow import Flow, Trajectory
+from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import RestFinder
 from symbolic.system.compiled import CompiledSystem, with_values
 

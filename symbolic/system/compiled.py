@@ -16,6 +16,7 @@ from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.kernels.choice import Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
@@ -299,6 +300,12 @@ class CompiledSystem:
     ) -> Sensitivities:
         """Integrate with sensitivities: see `periodic.system.Flowing`. Raises ArithmeticError."""
         return self._flow.run(state, algebraic, parameter, phase, free, tolerance)
+
+    def motion(
+        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+    ) -> Trajectory:
+        """Integrate, through impacts too: see `periodic.system.Moving`. Raises ArithmeticError."""
+        return Flow(self, tolerance).run(state, algebraic, parameter, phase)
 
     @cached_property
     def _flow(self) -> SensitiveFlow:

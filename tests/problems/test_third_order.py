@@ -6,8 +6,8 @@ from support.traces import RPM, disc_system, user_points
 
 import periodic as per
 import symbolic as sym
+from symbolic.integration.flow import Flow
 from symbolic.motion.explicit import rates
-from symbolic.motion.flow import Flow
 from symbolic.motion.linear import modes
 from symbolic.scenes.errors import InputError
 from symbolic.scenes.files import load

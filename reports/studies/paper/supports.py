@@ -13,7 +13,7 @@ from reports.studies.paper.common.discs import MICRO
 from reports.studies.paper.common.figures import COLOURS, SPEED, SWING, curve
 from reports.studies.paper.common.scenes import nominal, system
 from reports.studies.paper.common.tracing import at_speed, branch
-from symbolic.motion.flow import Flow
+from symbolic.integration.flow import Flow
 from symbolic.motion.linear import modes
 from symbolic.scenes.axes import RPM
 

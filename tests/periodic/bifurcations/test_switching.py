@@ -16,7 +16,7 @@ from support.traces import RPM, disc_system
 
 import periodic as per
 from periodic.system import index_of
-from symbolic.motion.flow import Flow, Trajectory
+from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import modes
 from symbolic.system.compiled import with_values
 

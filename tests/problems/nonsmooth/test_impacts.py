@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from reference.hybrid import Hybrid, Surface, periodic_orbit
 from reference.shooting import Motion, in_order
 from scipy.linalg import expm
@@ -58,6 +59,11 @@ def branch() -> per.Branch:
 def exact(point: per.Point) -> Motion:
     """The orbit by event-exact shooting, its perturbations by saltation."""
     force, w = (point.orbit.parameters[name] for name in ("A", "w"))
+    return shot(force, point.orbit.state(np.zeros(1))[0], w)
+
+
+def shot(force: float, begin: NDArray[np.float64], w: float = 1.0) -> Motion:
+    """The orbit that begins near a state, by event-exact shooting."""
     reset = lambda t, y: (np.array([y[0], -E * y[1]]), np.zeros(2), np.diag([1.0, -E]))  # noqa: E731
     surface = Surface(lambda t, y: D - y[0], lambda t, y: (0.0, np.array([-1.0, 0.0])), reset)
     system = Hybrid(
@@ -65,7 +71,7 @@ def exact(point: per.Point) -> Motion:
         lambda t, y, signs: [[0, 1 / w], [-1 / w, -C / w]],
         [surface],
     )
-    return periodic_orbit(system, point.orbit.state(np.zeros(1))[0])
+    return periodic_orbit(system, begin)
 
 
 def closed_form() -> tuple[float, float]:
@@ -105,13 +111,32 @@ def test_fold_and_grazing() -> None:
 
 
 def test_branch_without_impact_ends_at_the_wall() -> None:
-    """Assert that linear orbits are followed to A = c d, not through the wall, and none starts beyond."""
+    """Assert that linear orbits are followed to A = c d, not through the wall; beyond, one settles on it."""
     system = hspo()
     linear = per.trace(system, "A", (0.01, 1.0))
     np.testing.assert_allclose(linear[-1].parameter, C * D, rtol=1e-5)
     assert "passes where an impact would be" in str(linear.stop)
     assert linear[-1].maximum["x"] <= D * (1 + 1e-5)
-    assert len(per.trace(system, "A", (0.5, 1.0))) == 0
+    beyond = per.trace(system, "A", (0.5, 1.0))[0]
+    assert (beyond.parameter, len(beyond.orbit.phases)) == (0.5, 1)
+    np.testing.assert_allclose(in_order(beyond.multipliers), exact(beyond).multipliers, rtol=1e-4)
+
+
+def test_scene() -> None:
+    """Assert the scene at five places against event-exact shooting, its fold and its end, without a guess."""
+    places = (0.9, 0.7, 0.5, 0.3, 0.15)
+    found = per.trace(sym.scene("impact-oscillator"), "A", (0.01, 1.0), start=1.0, at=places)
+    points = found.labelled(per.Label.USER)
+    assert [point.parameter for point in points] == list(places)
+    for point in points:
+        own = shot(point.parameter, point.orbit.state(np.zeros(1))[0])
+        np.testing.assert_allclose(point.orbit.state(np.zeros(1)), own.state(np.zeros(1)), atol=3e-7)
+        np.testing.assert_allclose(in_order(point.multipliers), own.multipliers, atol=2e-5)
+    (fold,) = found.labelled(per.Label.FOLD)
+    np.testing.assert_allclose(fold.parameter, closed_form()[0], rtol=1e-8)
+    np.testing.assert_allclose(
+        min(p.parameter for p in found if len(p.orbit.phases)), closed_form()[0], rtol=1e-8
+    )
 
 
 def test_rigid_stop_is_the_wall() -> None:

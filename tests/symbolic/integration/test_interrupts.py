@@ -13,7 +13,7 @@ from contextlib import nullcontext
 import numpy as np
 import symbolic as sym
 from reports.app.interrupts import heard_at_once, heard_once, unheard
-from symbolic.motion.flow import Flow
+from symbolic.integration.flow import Flow
 
 block, number, how, length = sys.argv[1:]
 system = sym.compile(

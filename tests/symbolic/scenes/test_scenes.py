@@ -17,6 +17,7 @@ SIZES = {
     "duffing": (2, 0),
     "friction-damper": (2, 0),
     "gear-pair": (2, 0),
+    "impact-oscillator": (2, 0),
     "jeffcott-internal-damping": (4, 0),
     "jeffcott-rub": (4, 0),
     "jenkins-damper": (3, 0),

@@ -11,7 +11,7 @@ from periodic import Branch, Label
 from reports.studies.paper.common.discs import HEAVY, OIL_A, OIL_B, OIL_B_HEAVY
 from reports.studies.paper.common.scenes import system
 from reports.studies.paper.common.tracing import branch, traced
-from symbolic.motion.flow import Flow, Trajectory
+from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import modes
 from symbolic.scenes.axes import RPM
 from symbolic.system.compiled import with_values

@@ -15,7 +15,7 @@ from reports.studies.paper.common.scenes import at_paper_speed, system
 from reports.studies.paper.common.tracing import at_speed, branch
 from reports.studies.paper.marching.breakdown import swing
 from reports.studies.paper.marching.rungekutta import march
-from reports.studies.paper.marching.started import Form, ramped, runs
+from reports.studies.paper.marching.started import Form, ramped, runs, started
 from symbolic.arrays import Array
 from symbolic.motion.explicit import rates
 
@@ -63,9 +63,9 @@ def trusted(name: str, duration: float, rpm: float = RPM_SHOWN, samples: int = S
     count = round(duration * omega / (2 * math.pi) * samples)
     time = np.linspace(0.0, 2 * math.pi * count / samples / omega, count + 1)
     path = flow.run(ramp.state[-1], ramp.algebraic[-1], parameter, ramp.phase[-1] + omega * time)
-    still = np.zeros_like(path.state)
-    values = flow.system.output(still, path.state, path.algebraic, path.phase, parameter)
-    names = [output.name for output in flow.system.outputs]
+    still, system = np.zeros_like(path.state), started(Form.UNKNOWN, name)
+    values = system.output(still, path.state, path.algebraic, path.phase, parameter)
+    names = [output.name for output in system.outputs]
     return History(time=time, **{key: values[:, names.index(key)] for key in SHOWN})
 
 

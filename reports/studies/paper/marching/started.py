@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import symbolic as sym
 from symbolic.arrays import Array
-from symbolic.motion.flow import Flow, Trajectory
+from symbolic.integration.flow import Flow, Trajectory
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import disc_model
 from symbolic.scenes.files import load
@@ -35,7 +35,7 @@ class Form(Enum):
 def started(form: Form, name: str = "vitrea79-810N") -> sym.CompiledSystem:
     """Return the system of a built-in disc scene whose waviness starts with the ramp, in one of the forms.
 
-    UNKNOWN is for the trusted integrator `symbolic.motion.flow.Flow`, the other two are explicit.
+    UNKNOWN is for the trusted integrator `symbolic.integration.flow.Flow`, the other two are explicit.
     """
     scene = load(name)
     assert isinstance(scene, DiscScene)

@@ -16,7 +16,7 @@ from reports.studies.paper.common.scenes import PAPER_SPEED, at_paper_speed, sys
 from reports.studies.paper.marching.equivalent import WAVINESS, orbit_at
 from reports.studies.paper.marching.histories import stepped
 from symbolic.arrays import Array
-from symbolic.motion.flow import Flow
+from symbolic.integration.flow import Flow
 from symbolic.motion.linear import RestFinder
 from symbolic.system.compiled import with_values
 

@@ -15,8 +15,8 @@ from periodic.orbit.scheme import Array
 from reports.studies.paper.marching.rungekutta import march
 from reports.studies.trade.methods.direct import FailedError
 from reports.studies.trade.methods.problems import Problem, nearby
+from symbolic.integration.flow import Flow
 from symbolic.motion.explicit import rates
-from symbolic.motion.flow import Flow
 
 BLOCK = 10
 """Periods that are timed together."""

@@ -14,7 +14,7 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Array
 from reports.benchmarks.work import chain_model
-from symbolic.motion.flow import Flow
+from symbolic.integration.flow import Flow
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build, disc_model
 from symbolic.scenes.files import load

@@ -5,19 +5,32 @@ CVODES is fast and gives up now and then where contact is lost; LSODA is slower 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import finite
+from symbolic.equations.expressions import Expressions
 from symbolic.integration.cvodes import integrated, integrator
 from symbolic.integration.impacting import Reset, Switch, bouncing
 from symbolic.integration.lsoda import failure, followed
 from symbolic.integration.rates import constraint_rows, ode
-from symbolic.system.compiled import CompiledSystem
+
+
+class Followed(Protocol):
+    """What is asked of a system that is integrated: its expressions, and its impacts."""
+
+    @property
+    def expressions(self) -> Expressions: ...
+    @property
+    def resets(self) -> Sequence[int]: ...
+    def switch(self, state: Array, phase: Array, parameter: Array) -> Array: ...
+    def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array: ...
 
 
 @dataclass(frozen=True)
@@ -33,7 +46,7 @@ class Trajectory:
 class Flow:
     """Integrates `system` with relative and absolute tolerance `tolerance` (scaled variables)."""
 
-    system: CompiledSystem
+    system: Followed
     tolerance: float = 1e-8
     _integrators: dict[tuple[float, ...], ca.Function] = field(default_factory=dict, repr=False)
 
@@ -46,7 +59,7 @@ class Flow:
 
         Raises IntegrationError where the integrator fails.
         """
-        n = len(self.system.states)
+        n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
         if self.system.resets:
             return self._bounced(start, parameter, np.asarray(phase, dtype=float))
@@ -57,7 +70,8 @@ class Flow:
 
     def _bounced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
         """The motion through impacts: at each of them there are two points of one phase."""
-        system, n, (rates, _) = self.system, len(self.system.states), self._rates
+        system, (rates, _) = self.system, self._rates
+        n = system.expressions.state.numel()
 
         def impact(k: int) -> tuple[Switch, Reset]:
             def value(tau: float, y: Array) -> float:
