@@ -36,12 +36,16 @@ REVERSED = 0.05
 
 
 def second_at(solution: Solution, at: float) -> float:
-    """Sum of the products of all (mu_i - at) / (1 + |mu_i|) but one, the trivial multiplier left out."""
+    """Sum of the products of all d_i = (mu_i - at) / (1 + |mu_i|) but one; 0 where it is 0 within its error.
+
+    The trivial multiplier is left out. Two that coincide are known to the square root of the multipliers'
+    error only, their sum to the error itself.
+    """
     found = solution.spectrum.nontrivial
-    if np.sort(np.abs(found - at))[1:2].min(initial=np.inf) < noise(solution):
-        return 0.0
-    factors = np.poly((found - at) / (1 + np.abs(found)))
-    return float(factors[-2].real)
+    factors = (found - at) / (1 + np.abs(found))
+    value = float(np.poly(factors)[-2].real)
+    both_out = np.poly(-np.abs(factors))[-3:-2].sum()  # products of all but two
+    return value if abs(value) > noise(solution) * both_out else 0.0
 
 
 def _cosine(solution: Solution) -> float:

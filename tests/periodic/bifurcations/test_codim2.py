@@ -45,9 +45,10 @@ def saddle(x: Any, p: Any) -> dict[str, Any]:
     return {"y": x.w, "w": -(p.F - CRITICAL) * x.w + 0.1 * x.y}
 
 
-def fold_curve(system: per.System, tol: float = 1e-8) -> per.Branch:
-    """The curve of the upper fold over Omega and F, between F = 0.2 and 0.5."""
-    branch = per.trace(system, "Omega", (1.2, 3.0), watch=per.Watch(stop={"LP": 1}), tol=tol)
+def fold_curve(system: per.System, tol: float = 1e-8, start: float = 1.2, ds_max: float = 0.2) -> per.Branch:
+    """The curve of the first fold from a start in Omega, over Omega and F, between F = 0.2 and 0.5."""
+    branch = per.trace(system, "Omega", (1.2, 3.0), start=start, watch=per.Watch(stop={"LP": 1}), tol=tol)
+    assert branch[-1].label is per.Label.FOLD
     return per.trace(
         system,
         "Omega",
@@ -56,6 +57,7 @@ def fold_curve(system: per.System, tol: float = 1e-8) -> per.Branch:
         determined={"F": per.FoldCondition()},
         watch=per.Watch(limits={"F": (0.2, 0.5)}),
         tol=tol,
+        control=per.ArclengthControl(ds_max=ds_max),
     )
 
 
@@ -76,8 +78,10 @@ def test_what_a_fold_curve_passes(rates: Rates, states: tuple[str, ...], labels:
 @pytest.mark.parametrize("tol", [1e-6, 1e-9])
 def test_conserved_products_are_no_resonance(tol: float) -> None:
     """Assert that folds without damping, where both multipliers are 1 throughout, have no R1."""
-    curve = fold_curve(duffing_system(0.0, 1.0, 0.5), tol)
-    assert {p.label for p in curve.special_points} <= {per.Label.END, per.Label.CUSP}
+    curve = fold_curve(duffing_system(0.0, 1.0, 0.5), tol, start=3.0, ds_max=0.02)
+    assert len(curve) >= 10
+    assert np.sort(curve.column("F"))[[0, -1]] == pytest.approx([0.2, 0.5], rel=1e-9)
+    assert {p.label for p in curve.special_points} == {per.Label.END}
 
 
 def test_limit_at_the_start_ends_the_branch() -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
+from reference import piecewise
 from reference.shooting import Motion, in_order, oscillator, periodic_orbit
 from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, MeissnerOscillator
 
 import periodic as per
+import symbolic as sym
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.outcome import Outcome
 from periodic.orbit.construction import transfer
@@ -164,6 +167,48 @@ def test_kinks_come_and_go_at_standard_accuracy() -> None:
     branch = per.trace(BilinearOscillator(zeta=DAMPING), "Omega", (3.0, 0.5))
     assert branch.stop.reason is per.Reason.BOUND
     assert {2, 4} <= {len(point.orbit.phases) for point in branch}
+
+
+@cache
+def late() -> sym.CompiledSystem:
+    """x'' + .2 x' + x + 3 min(x, 0) = cos(Omega t + phi): phi is where the excitation is at tau = 0."""
+    f = sym.functions
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        force = f.cos(p.phi) * wave.cos - f.sin(p.phi) * wave.sin
+        return {"x": x.v, "v": force - 0.2 * x.v - x.x - 3 * f.fmin(x.x, 0)}
+
+    values = {"Omega": 1.3, "phi": 0.0}
+    return sym.compile(sym.Equations(rates, {"x": 0.0, "v": 0.0}, values, frequency="Omega"))
+
+
+@pytest.mark.parametrize("kink", [0, 1])
+@pytest.mark.parametrize("after", [0.0, 1e-14, 1e-10, 1e-6, 1e-3, -1e-14, -1e-10, -1e-6])
+def test_kink_beside_the_start_of_the_period(after: float, kink: int) -> None:
+    """Assert orbit and multipliers in closed form where a kink lies on tau = 0, or just beside it."""
+    excitation = np.sort(np.mod(excited_at_zero().orbit.phases, 2 * np.pi))[kink]
+    phi = excitation - after
+    point = per.trace(late(), "phi", (phi, phi + 1e-3), tol=1e-8)[0]
+    exact = piecewise.period(STIFF_BELOW, 1.3, point.orbit.state(np.zeros(1))[0], phase=phi)
+    assert exact.end == pytest.approx(exact.start, abs=1e-9)
+    assert in_order(point.multipliers) == pytest.approx(exact.multipliers, abs=1e-9)
+    assert np.min(np.abs(np.exp(1j * point.orbit.phases) - np.exp(1j * after))) < 1e-9
+
+
+@cache
+def excited_at_zero() -> per.Point:
+    """The orbit at phi = 0."""
+    return per.trace(late(), "phi", (0.0, 1e-3), tol=1e-8)[0]
+
+
+STIFF_BELOW = piecewise.Piecewise(
+    matrix=np.array([[0.0, 1.0], [-4.0, -0.2]]),
+    force=np.array([0.0, 1.0]),
+    normals=np.array([[1.0, 0.0]]),
+    gaps=np.zeros(1),
+    columns=np.array([[0.0, 3.0]]),
+)
+"""The same above and below 0, x' and v' in t."""
 
 
 @pytest.mark.parametrize("family", per.Family)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+from typing import Any
+
 import numpy as np
 import pytest
 
 import periodic as per
 import symbolic as sym
+from symbolic.integration import flow
 
 RPM = 2 * np.pi / 60
 
@@ -111,6 +115,29 @@ def test_motion_that_cannot_be_followed(knock: float, monkeypatch: pytest.Monkey
     hard = sym.compile(sym.combine([*PARTS, sym.CubicSpring(X, 1.0)]))
     with pytest.raises(sym.IntegrationError, match="^the motion could not be followed past .* s; CVODES and"):
         sym.simulate(hard, knock={"x": knock})
+
+
+def test_lsoda_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that where CVODES gives up LSODA goes on, as accurate, and there only."""
+    integrated, followed = flow.integrated, flow.followed
+    asked, by_lsoda = itertools.count(), []
+
+    def gives_up(*arguments: Any) -> Any:
+        return None if next(asked) in (3, 4, 8) else integrated(*arguments)
+
+    def noted(*arguments: Any) -> Any:
+        by_lsoda.append(arguments[3][-1])
+        return followed(*arguments)
+
+    system = sym.compile(sym.combine([*PARTS, sym.CubicSpring(X, 3.0)]))
+    settings: dict[str, Any] = {"settle": 8, "samples": 50, "tolerance": 1e-12}
+    whole = sym.simulate(system, **settings)
+    monkeypatch.setattr(flow, "integrated", gives_up)
+    monkeypatch.setattr(flow, "followed", noted)
+    motion = sym.simulate(system, **settings)
+    assert by_lsoda == [2 * np.pi] * 3
+    for name in ("x", "x'"):
+        assert motion[name] == pytest.approx(whole[name], abs=1e-8)
 
 
 def test_unknown_quantity() -> None:
