@@ -10,6 +10,7 @@ from periodic.bifurcations.testfunction import TestFunction
 from periodic.collocation.kinks import KinkSettings
 from periodic.collocation.method import Collocation
 from periodic.condensed.motion import motion
+from periodic.condensed.recovery import recovery
 from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
 from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
 from periodic.conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
@@ -140,6 +141,7 @@ __all__ = [
     "page",
     "plot",
     "recovered",
+    "recovery",
     "sampled",
     "sensitivities",
     "trace",

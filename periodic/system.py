@@ -476,8 +476,8 @@ class LinearPart(Protocol):
     def slope(self, parameter: Array, index: int) -> ModesLike | None:
         """Their derivative in a parameter; None where they do not depend on it."""
 
-    def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> ModesLike:
-        """Its modes with displacement and velocity (SI) of other degrees of freedom in turn as `outputs`."""
+    def observed(self, parameter: Array, freedoms: Sequence[int] | None, structure: str | None) -> ModesLike:
+        """Its modes with displacement and velocity (SI) of degrees of freedom (None: all) as `outputs`."""
 
 
 class Split(System, Protocol):

@@ -65,6 +65,7 @@ from .scenes.laws import register_contact_law
 from .scenes.model.catalogue import register_part
 from .structures.beam import beam
 from .structures.campbell import Campbell, campbell
+from .structures.energy import modal_energy
 from .structures.files import read_matrices
 from .structures.flexibility import flexibility
 from .structures.matrices import Matrices
@@ -181,6 +182,7 @@ __all__ = [
     "film_regime",
     "flexibility",
     "functions",
+    "modal_energy",
     "modes",
     "parameter",
     "read_matrices",

@@ -21,12 +21,12 @@ SCHEME = Scheme(Family.RADAU, 7)
 
 
 def motion(
-    system: System, orbit: Orbit, freedoms: Sequence[int], tau: ArrayLike, structure: str | None = None
+    system: System, orbit: Orbit, freedoms: Sequence[int] | None, tau: ArrayLike, structure: str | None = None
 ) -> tuple[Array, Array]:
     """Return displacements and velocities of any degrees of freedom of a structure along an orbit.
 
-    Stresses are a recovery matrix times the displacements; an operating deflection shape is those of all
-    degrees of freedom at one phase.
+    An operating deflection shape is the displacement of all degrees of freedom at one phase. What a recovery
+    matrix makes of them, stresses say, is `recovery`.
 
     Parameters
     ----------
@@ -34,8 +34,8 @@ def motion(
         A system compiled from a structure.
     orbit : Orbit
         An orbit of it.
-    freedoms : sequence of int
-        Indices of d degrees of freedom, counted from 0.
+    freedoms : sequence of int, or None
+        Indices of d degrees of freedom, counted from 0; None for all of them.
     tau : array_like, shape (K,)
         Phases in rad; tau = Omega t.
     structure : str, optional

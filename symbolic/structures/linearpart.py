@@ -132,15 +132,15 @@ class LinearPart:
         zero = np.zeros_like(at.direct)
         return Modes(scale * at.exponents, scale * at.inputs, velocity * at.outputs, zero, zero)
 
-    def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> Modes:
+    def observed(self, parameter: Array, freedoms: Sequence[int] | None, structure: str | None) -> Modes:
         """Return the modes with displacement and velocity (SI) of degrees of freedom in turn as outputs.
 
         Parameters
         ----------
         parameter : ndarray, shape (p,)
             Parameters in SI.
-        freedoms : sequence of int
-            Indices of d degrees of freedom, counted from 0.
+        freedoms : sequence of int, or None
+            Indices of d degrees of freedom, counted from 0; None for all of them.
         structure : str, optional
             Name of the structure, where there are several.
 
@@ -155,7 +155,8 @@ class LinearPart:
             For a name or an index that is none.
         """
         chosen = self._named(structure)
-        at = [index(f"freedom {k}", freedom, chosen.size) for k, freedom in enumerate(freedoms)]
+        wanted = range(chosen.size) if freedoms is None else freedoms
+        at = [index(f"freedom {k}", freedom, chosen.size) for k, freedom in enumerate(wanted)]
         omega = self.omega(parameter)
         modes, count, k = self._at(omega), len(at), len(self.places)
         form = chosen.modal(omega)
