@@ -44,7 +44,7 @@ def test_tip_is_the_place() -> None:
 
 
 def test_recovery_is_the_matrix_times_the_motion() -> None:
-    """Assert a bending moment at the clamp to rounding, from the freedoms that it reads; one sentence each."""
+    """Assert a bending moment at the clamp to rounding, and one sentence for each bad matrix."""
     system = cantilever(2, cubic)
     ours = per.trace(system, "Omega", (3.0, 3.2), tol=1e-7).points[0].orbit
     place, _ = per.motion(system, ours, None, PHASES)
