@@ -488,19 +488,6 @@ class Split(System, Protocol):
         """The linear part; None of a system that is not split."""
 
 
-class SplitError(ValueError, ArithmeticError):
-    """What is asked for needs all equations of a system, whose linear part is condensed."""
-
-
-def check_whole(system: System) -> None:
-    """Raise SplitError for a system whose rows are not all of its equations."""
-    if linear_of(system) is not None:
-        raise SplitError(
-            "the system's linear part is condensed; curves of special points, sensitivities and branches "
-            "that leave another need all of its states: compile it with condense=False"
-        )
-
-
 def linear_of(system: System) -> LinearPart | None:
     """Return the linear part of a system that is split, None of any other."""
     return cast(Split, system).linear if hasattr(system, "linear") else None

@@ -11,19 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.condensation import condensed
-from periodic.collocation.method import Collocation
+from periodic.conditions.variations import equations, variations
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import Condition, side_conditions
 from periodic.correction.newton import correct, moved
 from periodic.equilibrium.crossing import tangents
 from periodic.equilibrium.linearise import linearise
-from periodic.linear.bordering import Chain
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array
+from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
 FAR = 0.02
@@ -168,8 +166,7 @@ def switched(
     constraint = ArclengthConstraint(origin, direction, length, 1.0, free[0])
     guess = moved(system, free, origin, direction, length)
     closing = [*side_conditions(list(determined.values()), free[1:], guess), constraint]
-    equations = linearise if origin.equilibrium else Collocation().linearise
-    found = correct(equations, system, guess, free, closing)
+    found = correct(linearise if origin.equilibrium else equations, system, guess, free, closing)
     if not found.ok:
         raise SwitchError(f"no orbit of the new branch was found {length:.3g} away: {found.outcome.value}")
     return found.orbit
@@ -195,17 +192,13 @@ def repeated(orbit: Orbit, times: int) -> Orbit:
 def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Increment:
     """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
     orbit = orbit.collocated()
-    chain = Chain(condensed(system, orbit, ()))
-    fundamental = chain.fundamental
-    flow = orbit.node_rates[0] if autonomous and multiplier == 1 else None
-    nodes = fundamental @ _kept(fundamental[-1] - multiplier * np.eye(len(fundamental[-1])), flow)
+    closed = variations(system, orbit, ()).repeating(multiplier)
+    matrix = closed.matrix
+    if autonomous and multiplier == 1:  # across the flow
+        flow = np.zeros_like(orbit.nodes)
+        flow[0] = orbit.node_rates[0]
+        across = closed.functional(Row(0.0, flow, np.zeros(len(orbit.phases))))
+        matrix = np.concatenate([matrix, across[None] / np.linalg.norm(across)])
+    found = closed.tangent(np.linalg.svd(matrix)[2][-1])
     still = np.zeros(len(orbit.phases))
-    stages, algebraic = chain.condensed.recover(nodes, still, 0.0)
-    return Increment(nodes, stages, algebraic, still, np.zeros(1), nodes)
-
-
-def _kept(matrix: Array, flow: Array | None) -> Array:
-    """The vector nearest to the kernel of a matrix, across the flow if there is one."""
-    if flow is not None:
-        matrix = np.concatenate([matrix, flow[None, :] / np.linalg.norm(flow)])
-    return np.linalg.svd(matrix)[2][-1]
+    return Increment(found.nodes, found.stages, found.algebraic, still, np.zeros(1), found.nodes)

@@ -23,7 +23,7 @@ from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import LinearisationLike, System, check_whole
+from periodic.system import LinearisationLike, System
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,6 @@ def _condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condense
 
 def condensed(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
     """Linearise the collocation equations at an orbit and condense them. Raises as `condense`."""
-    check_whole(system)
     return condense(system, orbit, evaluated(system, orbit, free), jumps_of(system, orbit, free))
 
 

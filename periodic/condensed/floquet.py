@@ -58,16 +58,12 @@ class Floquet:
         return np.flatnonzero(np.concatenate([np.ones(len(oscillates), dtype=bool), oscillates, own]))
 
     @cached_property
-    def _free(self) -> tuple[Array, Complex]:
-        return self.given.response.free()
-
-    @cached_property
     def answers(self) -> Array:
         """Forces and own states at the points, (P ka + P o, coordinates)."""
         given = self.given
-        system = Coupled(given, given.flexibility[1], wraps=False)
+        system = Coupled(given, given.flexibility[1], wraps=0.0)
         n, modes = system.n, 2 * len(given.response.modes.exponents)
-        shown = self._free[0].reshape(system.points, len(system.places), modes)
+        shown = given.response.free().reshape(system.points, len(system.places), modes)
         places = [1 + n + k for k in system.places]
         right = np.zeros((system.size, modes + len(system.others)))
         forces = given.local.forces[:, system.active]
@@ -89,7 +85,7 @@ class Floquet:
     def _forces(self, answers: Array) -> Array:
         """All forces at the points, (N, b, k, r), of the active ones."""
         given = self.given
-        system = Coupled(given, given.flexibility[1], wraps=False)
+        system = Coupled(given, given.flexibility[1], wraps=0.0)
         count, points, _ = given.orbit.stages.shape
         found = np.zeros((count, points, system.k, answers.shape[1]))
         found[:, :, system.active] = answers[: system.count].reshape(count, points, -1, answers.shape[1])
@@ -99,7 +95,7 @@ class Floquet:
     def monodromy(self) -> Array:
         """M, (coordinates, coordinates)."""
         given, kept = self.given, self.kept
-        growth = self._free[1][-1]
+        growth = given.response.growth[-1]
         modes, own = 2 * len(growth), len(given.others)
         whole = np.zeros((modes + own, modes + own))
         each = np.arange(len(growth))
@@ -116,7 +112,7 @@ class Floquet:
 
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
-        growth, own = self._free[1], len(self.given.others)
+        growth, own = self.given.response.growth, len(self.given.others)
         whole = np.zeros((2 * growth.shape[1] + own, basis.shape[1]))
         whole[self.kept] = basis
         modes = whole[: growth.shape[1]] + 1j * whole[growth.shape[1] : 2 * growth.shape[1]]

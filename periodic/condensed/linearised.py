@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.condensed.moments import Complex
+from periodic.condensed.reduction import audible, reduced, reduced_slope
 from periodic.condensed.response import Response
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import LinearPart, ModesLike, System
+from periodic.system import LinearPart, ModesLike, System, linear_of
 
 
 @dataclass(frozen=True)
@@ -21,13 +22,14 @@ class Local:
     """The rows at the points, each a map of (1, d rate, d state, dy) with y the event phases and parameters.
 
     forces (P, k, w): the increments of the forces; own (P, o, w): rows of the own states; unknowns (P, m, w):
-    increments of all unknowns; residual the largest one.
+    increments of all unknowns; residual the largest one; rows (o,): which rows are those of own states.
     """
 
     forces: Array
     own: Array
     unknowns: Array
     residual: float
+    rows: NDArray[np.int_]
 
 
 def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...]) -> Local:
@@ -45,7 +47,18 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
     rates = [1 + k for k in states]
     if unknowns[:, list(part.forces)][:, :, rates].any() or own[:, :, rates].any():
         raise ValueError("forces at the places depend on accelerations there; a condensed system has none")
-    return Local(-unknowns[:, list(part.forces)], own, -unknowns, rows.residual)
+    return Local(-unknowns[:, list(part.forces)], own, -unknowns, rows.residual, np.flatnonzero(filled))
+
+
+def answer(
+    part: LinearPart, orbit: Orbit, parameter: Array, free: tuple[int, ...], tolerance: float = 0.0
+) -> tuple[Response, list[ModesLike | None]]:
+    """Return the modes that matter at a tolerance on an orbit's mesh, and their derivatives."""
+    whole = part.modes(parameter)
+    heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
+    kept = audible(whole, heard, orbit.mesh.period, tolerance)
+    changes = [reduced_slope(whole, part.slope(parameter, k), kept) for k in free]
+    return Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period), changes
 
 
 @dataclass(frozen=True)
@@ -71,6 +84,18 @@ class Linearised:
     response: Response
     changes: list[ModesLike | None]
     local: Local
+
+    @classmethod
+    def about(cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0) -> Linearised:
+        """Return it with the modes that matter at a tolerance, with all of them by default.
+
+        Raises ValueError for a system without a linear part, and as `condense` does.
+        """
+        part = linear_of(system)
+        if part is None:
+            raise ValueError("the system has no linear part; condensation needs one")
+        response, changes = answer(part, orbit, orbit.parameter, free, tolerance)
+        return cls(orbit, part, response, changes, local_rows(system, part, orbit, free))
 
     @cached_property
     def others(self) -> NDArray[np.int_]:

@@ -10,10 +10,8 @@ import numpy as np
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, CollocationRefinement, scheme_for
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised, local_rows
+from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
-from periodic.condensed.reduction import audible, reduced, reduced_slope
-from periodic.condensed.response import Response
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement
@@ -28,7 +26,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.spectrum import Spectrum
-from periodic.system import LinearPart, System, linear_of
+from periodic.system import System, linear_of
 
 
 @dataclass(frozen=True)
@@ -55,14 +53,8 @@ class CondensedCollocation(Collocation):
         """Return the equations of the places, and those of the event nodes."""
         if not in_order(orbit):
             raise EventsCrossedError
-        part = _linear(system)
-        whole = part.modes(orbit.parameter)
-        heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
-        kept = audible(whole, heard, orbit.mesh.period, self.tolerance)
-        changes = [reduced_slope(whole, part.slope(orbit.parameter, k), kept) for k in free]
-        response = Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period)
-        local = local_rows(system, part, orbit, free)
-        return Condensed(Linearised(orbit, part, response, changes, local), event_rows(system, orbit, free))
+        given = Linearised.about(system, orbit, free, self.tolerance)
+        return Condensed(given, event_rows(system, orbit, free))
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
@@ -91,7 +83,8 @@ class CondensedCollocation(Collocation):
         Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
         the forces, however fast they change between them.
         """
-        velocities = _linear(problem.system).velocities
+        part = linear_of(problem.system)
+        velocities = () if part is None else part.velocities
         return deferred(self.linearise, problem, correction.orbit, tangent, spectrum, velocities)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
@@ -124,10 +117,3 @@ class CondensedRefinement(CollocationRefinement):
     def _even(self) -> Mesh:
         mesh = self.orbit.mesh
         return Mesh(mesh.scheme, (np.linspace(0, 1, self._ntst + 1),), (), mesh.period)
-
-
-def _linear(system: System) -> LinearPart:
-    part = linear_of(system)
-    if part is None:
-        raise ValueError("the system has no linear part; CondensedCollocation needs one")
-    return part

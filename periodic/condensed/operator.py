@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.condensed.coupled import Coupled
+from periodic.condensed.coupled import Coupled, folded
 from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
 from periodic.linear.unknowns import Increment
@@ -45,7 +45,7 @@ class Condensed:
     @cached_property
     def system(self) -> Coupled:
         """The equations of forces and own states in periodic motion."""
-        return Coupled(self.given, self.given.flexibility[0], wraps=True)
+        return Coupled(self.given, self.given.flexibility[0], wraps=1.0)
 
     @property
     def effect(self) -> Array:
@@ -64,7 +64,7 @@ class Condensed:
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         system, k = self.system, len(self.orbit.phases)
-        every = [self._folded(row) for row in (*self.own, *rows)]
+        every = [folded(self.orbit, row) for row in (*self.own, *rows)]
         border = [system.restricted(*row) for row in every]
         width = system.right.shape[1]
         inner = np.array([row[0] for row in border]).reshape(len(border), system.size)
@@ -77,16 +77,6 @@ class Condensed:
             raise np.linalg.LinAlgError("the bordered matrix is singular")
         pairs = zip(right[0], found.T, strict=True)
         return tuple(self._recovered(float(s), u[: system.size], u[system.size :], k) for s, u in pairs)
-
-    def _folded(self, row: Row) -> tuple[Array, Array]:
-        """A row in the states at the points, (P, n), and in (1, dy); mesh points are ends of intervals."""
-        orbit = self.orbit
-        stages = np.zeros_like(orbit.stages) if row.stages is None else row.stages.copy()
-        stages[:, -1] += row.nodes[1:]
-        stages[-1, -1] += row.nodes[0]
-        gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:, -1]]) - orbit.nodes
-        value = row.value + float(np.vdot(row.nodes, gap))
-        return stages.reshape(-1, orbit.nodes.shape[1]), np.append(value, row.outer)
 
     def _recovered(self, constant: float, inner: Array, outer: Array, k: int) -> Increment:
         """The increment of forces and own states, and dy."""

@@ -192,25 +192,44 @@ class Response:
             response[each, :, :, each] += self.local
         return whole, first
 
-    def history(self, forces: Array) -> Complex:
-        """Return the modes at the left ends and at the end in periodic motion, (N+1, J); forces (N, b, k)."""
+    def history(self, forces: Array, closing: Complex | None = None) -> Complex:
+        """Return the modes at the left ends and at the end in periodic motion, (N+1, J); forces (N, b, k).
+
+        Another `closing` than the periodic one is that of `closings`.
+        """
         last = self.table.moment[:, :, -1:]
         left = self._applied(last, self._driving(forces, self.modes.inputs))[..., 0]
-        return self._closed(self.grid.width[:, None] * left)
+        return self._closed(self.grid.width[:, None] * left, self.closing if closing is None else closing)
 
-    def _closed(self, left: Complex) -> Complex:
-        """The periodic history of what each interval leaves in the modes, (N, J, ...)."""
+    def closings(self, multiplier: complex) -> tuple[Complex, Complex]:
+        """Return 1/(mu - exp(lambda T)) of the modes and of their conjugates, each (J,).
+
+        With them z(T) = mu z(0), as with `closing` z(T) = z(0).
+        """
+        grown = np.exp(self.modes.exponents * self.period)
+        return 1 / (multiplier - grown), 1 / (multiplier - grown.conj())
+
+    def earlier(self, closing: Complex, conjugate: Complex) -> Complex:
+        """Return the response to the periods before, (P s, P k), by the closings of modes and conjugates."""
+        rows = self._ahead.reshape(-1, len(self.modes.exponents))
+        columns = self._left.reshape(len(self.modes.exponents), -1)
+        one, other = rows @ (closing[:, None] * columns), rows @ (conjugate.conj()[:, None] * columns)
+        return np.asarray((one + other.conj()) / 2)
+
+    def _closed(self, left: Complex, closing: Complex) -> Complex:
+        """The history of what each interval leaves in the modes, (N, J, ...)."""
         decay = self.table.growth[:, :, -1].reshape(*left.shape[:2], *[1] * (left.ndim - 2))
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
         for i in range(len(left)):
             found[i + 1] = decay[i] * found[i] + left[i]
-        closing = self.closing.reshape(-1, *[1] * (left.ndim - 2))
-        found[0] = closing * found[-1]
+        found[0] = closing.reshape(-1, *[1] * (left.ndim - 2)) * found[-1]
         for i in range(len(left)):
             found[i + 1] = decay[i] * found[i] + left[i]
         return found
 
-    def slopes(self, forces: Array, widths: Array, changes: list[ModesLike | None]) -> tuple[Array, Complex]:
+    def slopes(
+        self, forces: Array, widths: Array, changes: list[ModesLike | None], multiplier: complex = 1.0
+    ) -> tuple[Array, Complex]:
         """Return how the motion changes with widths and modes, forces held.
 
         The states at the points, (N, a, s, q), and the modes at the beginning, (J, q).
@@ -223,20 +242,32 @@ class Response:
             Changes of the widths in the first q1 directions.
         changes : list of ModesLike or None
             Changes of the modes in further ones.
+        multiplier : complex
+            What forces and motion are multiplied by over the period; with a complex one the forces may be
+            complex, and the modes at the beginning are left out.
         """
         count, points = len(self.grid.width), self.scheme.ncol
         s, q = self.modes.direct.shape[0], widths.shape[1] + len(changes)
-        found = np.zeros((count, points, s, q))
+        turning = np.iscomplexobj(forces)
+        found = np.zeros((count, points, s, q), dtype=complex if turning else float)
         begun = np.zeros((len(self.modes.exponents), q), dtype=complex)
         active = [i for i, change in enumerate(changes) if change is not None]
         given = [change for change in changes if change is not None]
         if widths.shape[1] + len(given) == 0:
             return found, begun
         columns = [*range(widths.shape[1]), *(widths.shape[1] + i for i in active)]
-        found[..., columns], begun[:, columns] = self._slopes(forces, widths, given)
+        closing, conjugate = (self.closing,) * 2 if multiplier == 1.0 else self.closings(multiplier)
+        shown, begun[:, columns] = self._slopes(forces, widths, given, closing)
+        if turning:
+            other, _ = self._slopes(forces.conj(), widths, given, conjugate.conj())
+            found[..., columns] = (shown + other.conj()) / 2
+        else:
+            found[..., columns] = shown.real
         return found, begun
 
-    def _slopes(self, forces: Array, widths: Array, changes: list[ModesLike]) -> tuple[Array, Complex]:
+    def _slopes(
+        self, forces: Array, widths: Array, changes: list[ModesLike], closing: Complex
+    ) -> tuple[Complex, Complex]:
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
         stretch = np.zeros((len(width), q))
@@ -246,7 +277,7 @@ class Response:
             faster[:, first + i] = change.exponents
         # x = lambda h
         shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
-        history = self.history(forces)
+        history = self.history(forces, closing)
         driven = self._driving(forces, modes.inputs)
         answer, steeper = self._applied(table.moment, driven), self._applied(table.slope, driven)
         inner = stretch[:, None, None, :] * answer[..., None]
@@ -256,15 +287,15 @@ class Response:
         for i, change in enumerate(changes):
             other = self._driving(forces, change.inputs)
             inner[..., first + i] += width[:, None, None] * self._applied(table.moment, other)
-        moved = self._closed(inner[:, :, -1])
+        moved = self._closed(inner[:, :, -1], closing)
         states = inner + table.growth[..., None] * moved[:-1, :, None]
         count, points = len(width), len(self.scheme.points)
         flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
-        found = _real_product(modes.outputs, flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
+        found = (modes.outputs @ flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
         stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
         rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
         for i, change in enumerate(changes):
-            found[..., first + i] += (change.outputs @ stages).real.transpose(0, 2, 1)
+            found[..., first + i] += (change.outputs @ stages).transpose(0, 2, 1)
             found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
         lost = rates @ modes.direct_rate.T
         found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
@@ -281,14 +312,26 @@ class Response:
             return np.asarray((moment[0] @ driven.transpose(1, 2, 0)).transpose(2, 0, 1))
         return np.asarray((moment @ driven[..., None])[..., 0])
 
-    def free(self) -> tuple[Array, Complex]:
-        """Return free motion: states at the points by (Re z, Im z) of the start, (N, a, s, 2J), and how the
-        modes have grown at the mesh points, (N+1, J).
-        """
-        exponents = self.modes.exponents
-        ahead = np.exp(exponents * np.append(self.start, self.period)[:, None])
-        shown = self._shown(np.arange(len(exponents))) * ahead[:-1, None, None]
-        return np.concatenate([shown.real, -shown.imag], axis=-1), ahead
+    @property
+    def growth(self) -> Complex:
+        """How the modes have grown at the mesh points, (N+1, J)."""
+        return np.exp(self.modes.exponents * np.append(self.start, self.period)[:, None])
+
+    @cached_property
+    def _ahead(self) -> Complex:
+        """States at the points by the modes at the beginning, (N, a, s, J)."""
+        return self._shown(np.arange(len(self.modes.exponents))) * self.growth[:-1, None, None]
+
+    @cached_property
+    def _left(self) -> Complex:
+        """What forces leave in the modes at the end of the period, (J, N, b, k)."""
+        after = self.period - self.start - self.grid.width
+        left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse
+        return np.moveaxis(left, 1, 0)
+
+    def free(self) -> Array:
+        """Return free motion: states at the points by (Re z, Im z) of the start, (N, a, s, 2J)."""
+        return np.concatenate([self._ahead.real, -self._ahead.imag], axis=-1)
 
     def driven(self, forces: Array) -> Complex:
         """Return the modes at the mesh points from z(0) = 0, (N+1, J, r); forces (N, b, k, r)."""
@@ -302,10 +345,7 @@ class Response:
 
     def final(self) -> Array:
         """Return what forces leave in (Re z, Im z) at the end of the period, (2J, N, b, k)."""
-        after = self.period - self.start - self.grid.width
-        left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse
-        left = np.moveaxis(left, 1, 0)
-        return np.concatenate([left.real, left.imag])
+        return np.concatenate([self._left.real, self._left.imag])
 
 
 def _real_product(rows: Complex, columns: Complex) -> Array:

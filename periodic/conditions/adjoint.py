@@ -11,67 +11,90 @@ of Dynamical Equilibria, 2000, ch. 5).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+import scipy
 
 from periodic.collocation.condensation import Condensed, condensed
-from periodic.linear.bordering import chain, onto_start
+from periodic.linear.bordering import Chain, chain, onto_start
+from periodic.linear.variation import Complex, Tangent
 from periodic.orbit.gradients import Points, Slopes, collocation_points, gathered, solved
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.system import Differentiable, LinearisationLike, jumps_of, resets_of
-
-
-@dataclass(frozen=True)
-class Tangent:
-    """A solution of the linearised equations: mesh points (N+1, n), stages (N, ncol, n), unknowns
-    (N, ncol, m), and the parameters' part (p,)."""
-
-    nodes: Array
-    stages: Array
-    algebraic: Array
-    parameter: Array
-
-    def moved(self, orbit: Orbit, step: float) -> Orbit:
-        """Return the orbit a step along the tangent."""
-        return replace(
-            orbit,
-            nodes=orbit.nodes + step * self.nodes,
-            stages=orbit.stages + step * self.stages,
-            algebraic=orbit.algebraic + step * self.algebraic,
-            parameter=orbit.parameter + step * self.parameter,
-        )
+from periodic.system import LinearisationLike, System, differentiable, jumps_of, resets_of
 
 
 @dataclass(frozen=True)
 class Linear:
-    """The linearised flow of an orbit: maps (1, dx_0, dphi, dy) -> dx_j, and its parts."""
+    """The linearised flow of an orbit: maps (1, dx_0, dphi, dy) -> dx_j, and its parts.
 
-    system: Differentiable
+    See `periodic.linear.variation.Variations`.
+    """
+
+    system: System
     orbit: Orbit
     free: tuple[int, ...]
     condensed: Condensed
     maps: Array
 
     @staticmethod
-    def about(system: Differentiable, orbit: Orbit, free: tuple[int, ...]) -> Linear:
-        """Linearise; `free` are the parameters that tangents may change.
-
-        Raises ValueError for an orbit that is no piecewise polynomial.
-        """
-        polynomial(orbit)
-        if resets_of(system) or jumps_of(system):
-            raise ValueError("system has impacts or jumps; exact second derivatives need one without")
+    def about(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linear:
+        """Linearise; `free` are the parameters that tangents may change."""
         local = condensed(system, orbit, free)
         return Linear(system, orbit, free, local, chain(local))
+
+    @cached_property
+    def fundamental(self) -> Array:
+        """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
+        return Chain(self.condensed).fundamental
 
     @property
     def monodromy(self) -> Array:
         """The monodromy matrix, shape (n, n)."""
-        n = self.maps.shape[1]
-        return self.maps[-1][:, 1 : 1 + n]
+        return self.fundamental[-1]
+
+    @property
+    def ways(self) -> Array:
+        """How (v_0, v_y) move the mesh points, shape (N+1, n, n+q)."""
+        first = 1 + self.maps.shape[1] + len(self.orbit.phases)
+        return np.concatenate([self.fundamental, self.maps[:, :, first:]], axis=2)
+
+    def repeating(self, multiplier: float) -> Closed:
+        """Return the equations of motions that are multiplied by a number."""
+        return Closed(self, multiplier)
+
+    @cached_property
+    def _eigen(self) -> tuple[Complex, Complex]:
+        values, vectors = np.linalg.eig(self.monodromy)
+        return values.astype(np.complex128), vectors.astype(np.complex128)
+
+    @property
+    def multipliers(self) -> Complex:
+        """All multipliers."""
+        return self._eigen[0]
+
+    def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
+        """Return the gradient of Re(factor mu), d mu = w' dM v / w' v."""
+        value, right = self._eigen[0][which], self._eigen[1][:, which]
+        others, vectors = np.linalg.eig(self.monodromy.T)
+        left = vectors[:, np.abs(others - value).argmin()]
+        left = factor * left / (left @ right)
+        row = gradient(self, self.tangent(right.real), self.source(left.real), free)
+        return row + gradient(self, self.tangent(right.imag), self.source(-left.imag), free)
+
+    def pair(self, near: Array | None, free: tuple[int, ...]) -> tuple[Row, Array]:
+        """Return det B - 1, B the monodromy matrix on the pair's subspace, and a basis of that."""
+        right, left = _subspaces(self.monodromy, near)
+        block = left.T @ self.monodromy @ right
+        size = float(np.linalg.det(block))
+        weights = left @ (size * np.linalg.inv(block).T)
+        total = Row(size - 1, np.zeros_like(self.orbit.nodes), np.zeros(len(self.orbit.phases) + len(free)))
+        for column, weight in zip(right.T, weights.T, strict=True):
+            total += gradient(self, self.tangent(column), self.source(weight), free)
+        return total, right if near is None else near
 
     def columns(self, maps: Array) -> Array:
         """Leave out the constant's and the event nodes' columns of maps (..., w): (dx_0, dy) are left."""
@@ -82,7 +105,7 @@ class Linear:
         """Return the tangent of (v_0, v_y)."""
         n, k = self.orbit.nodes.shape[1], len(self.orbit.phases)
         outer = np.concatenate([np.zeros(k), unknown[n:]])
-        nodes = self.columns(self.maps) @ unknown
+        nodes = self.ways @ unknown
         stages, algebraic = self.condensed.recover(nodes, outer, 0.0)
         parameter = np.zeros_like(self.orbit.parameter)
         parameter[list(self.free)] = unknown[n:]
@@ -99,6 +122,35 @@ class Linear:
         return Row(0.0, nodes, np.zeros(len(self.orbit.phases) + len(self.free)))
 
 
+@dataclass(frozen=True)
+class Closed:
+    """The flow closed by v_N = mu v_0; see `periodic.linear.variation.Repeating`."""
+
+    linear: Linear
+    multiplier: float
+
+    @property
+    def matrix(self) -> Array:
+        """M - mu I, with the columns of the free parameters."""
+        top = self.linear.ways[-1]
+        n = len(top)
+        top[:, :n] -= self.multiplier * np.eye(n)
+        return top
+
+    def functional(self, row: Row) -> Array:
+        """Return a row as a functional of (v_0, v_y)."""
+        return self.linear.functional(row)
+
+    def tangent(self, unknown: Array) -> Tangent:
+        """Return the tangent of (v_0, v_y)."""
+        return self.linear.tangent(unknown)
+
+    def gradient(self, unknown: Array, left: Array, source: Row | None, free: tuple[int, ...]) -> Row:
+        """Return the gradient of left . (M - mu I) v_0 + source . v."""
+        end = self.linear.source(left)
+        return gradient(self.linear, self.tangent(unknown), end if source is None else end + source, free)
+
+
 def polynomial(orbit: Orbit) -> None:
     """Raise ValueError for an orbit that is no piecewise polynomial."""
     if orbit.mesh.scheme not in (Scheme(f, orbit.mesh.scheme.ncol) for f in Family):
@@ -110,7 +162,9 @@ def gradient(linear: Linear, tangent: Tangent, source: Row, free: tuple[int, ...
 
     The row's value is what the algebraic rows, not yet met, will add.
     """
-    system, orbit = linear.system, linear.orbit
+    system, orbit = differentiable(linear.system), linear.orbit
+    if resets_of(system) or jumps_of(system):
+        raise ValueError("system has impacts or jumps; exact second derivatives need one without")
     points = collocation_points(orbit)
     line = system.linearise(*points.arguments(orbit), ())
     weights = _adjoint(linear, line, source)
@@ -170,3 +224,34 @@ def _stage_matrix(orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array]:
     each = np.arange(ncol)
     matrix[:, each, :, each, :] += np.moveaxis(d_state.reshape(count, ncol, n, n), 1, 0)
     return matrix.reshape(count, ncol * n, ncol * n), eliminated
+
+
+def _subspaces(matrix: Array, basis: Array | None) -> tuple[Array, Array]:
+    """Right and left bases (n, 2) of a pair's invariant subspace, with left.T right = I.
+
+    The pair is the one whose product is nearest to 1, or whose subspace is nearest to `basis`.
+    """
+    chosen = _nearest(matrix, basis)
+
+    def wanted(real: float, imag: float) -> bool:
+        return bool(np.abs(chosen - complex(real, imag)).min() < SAME * np.abs(chosen).max())
+
+    right = scipy.linalg.schur(matrix, sort=wanted)[1][:, :2]
+    left = scipy.linalg.schur(matrix.T, sort=wanted)[1][:, :2]
+    return right, left @ np.linalg.inv(right.T @ left)
+
+
+SAME = 1e-6
+"""Multipliers nearer to each other than this, relatively, belong to one pair."""
+
+
+def _nearest(matrix: Array, basis: Array | None) -> Array:
+    values, vectors = np.linalg.eig(matrix)
+    first, second = np.triu_indices(len(values), 1)
+    if basis is None:
+        partners = np.abs(values[first] * values[second] - 1)
+    else:
+        outside = np.linalg.norm(vectors - basis @ (basis.T @ vectors), axis=0)
+        partners = outside[first] + outside[second]
+    k = partners.argmin()
+    return np.array([values[first[k]], values[second[k]]])

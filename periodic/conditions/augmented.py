@@ -14,14 +14,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy
 
-from periodic.conditions.adjoint import Linear, gradient
+from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System, differentiable
+from periodic.system import System
 
 
 @dataclass(frozen=True)
@@ -87,17 +86,13 @@ class _Singular:
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return g and its gradient."""
-        linear = Linear.about(differentiable(system), orbit, self.given.free)
+        closed = variations(system, orbit, self.given.free).repeating(self.multiplier)
         rows = [c.linearise(system, orbit, self.given.free) for c in self.given.conditions]
-        n = orbit.nodes.shape[1]
-        top = linear.columns(linear.maps[-1])
-        top[:, :n] -= self.multiplier * np.eye(n)
-        matrix = np.concatenate([top, *(linear.functional(row)[None] for row in rows)])
+        top = closed.matrix
+        matrix = np.concatenate([top, *(closed.functional(row)[None] for row in rows)])
         value, right, left = self.border.around(matrix)
-        source = linear.source(left[:n])
-        for weight, row in zip(left[n:], rows, strict=True):
-            source += row.scaled(float(weight))
-        found = gradient(linear, linear.tangent(right), source, free).scaled(-1.0)
+        source = weighted(rows, left[len(top) :])
+        found = closed.gradient(right, left[: len(top)], source, free).scaled(-1.0)
         return Row(value + found.value, found.nodes, found.outer, found.stages)
 
 
@@ -105,49 +100,9 @@ class _Singular:
 class _Pair:
     """The product of a pair of multipliers is 1; the pair nearest to it at the first orbit, then followed."""
 
-    basis: Array | None = None
+    near: Array | None = None
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return det B - 1, B the monodromy matrix on the pair's subspace, and its gradient."""
-        linear = Linear.about(differentiable(system), orbit, ())
-        right, left = _subspaces(linear.monodromy, self.basis)
-        if self.basis is None:
-            self.basis = right
-        block = left.T @ linear.monodromy @ right
-        size = float(np.linalg.det(block))
-        weights = left @ (size * np.linalg.inv(block).T)
-        total = Row(size - 1, np.zeros_like(orbit.nodes), np.zeros(len(orbit.phases) + len(free)))
-        for column, weight in zip(right.T, weights.T, strict=True):
-            total += gradient(linear, linear.tangent(column), linear.source(weight), free)
-        return total
-
-
-def _subspaces(matrix: Array, basis: Array | None) -> tuple[Array, Array]:
-    """Right and left bases (n, 2) of a pair's invariant subspace, with left.T right = I.
-
-    The pair is the one whose product is nearest to 1, or whose subspace is nearest to `basis`.
-    """
-    chosen = _nearest(matrix, basis)
-
-    def wanted(real: float, imag: float) -> bool:
-        return bool(np.abs(chosen - complex(real, imag)).min() < SAME * np.abs(chosen).max())
-
-    right = scipy.linalg.schur(matrix, sort=wanted)[1][:, :2]
-    left = scipy.linalg.schur(matrix.T, sort=wanted)[1][:, :2]
-    return right, left @ np.linalg.inv(right.T @ left)
-
-
-SAME = 1e-6
-"""Multipliers nearer to each other than this, relatively, belong to one pair."""
-
-
-def _nearest(matrix: Array, basis: Array | None) -> Array:
-    values, vectors = np.linalg.eig(matrix)
-    first, second = np.triu_indices(len(values), 1)
-    if basis is None:
-        partners = np.abs(values[first] * values[second] - 1)
-    else:
-        outside = np.linalg.norm(vectors - basis @ (basis.T @ vectors), axis=0)
-        partners = outside[first] + outside[second]
-    k = partners.argmin()
-    return np.array([values[first[k]], values[second[k]]])
+        """Return the product less 1, and its gradient."""
+        row, self.near = variations(system, orbit, ()).pair(self.near, free)
+        return row

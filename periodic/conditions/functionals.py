@@ -12,13 +12,14 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.conditions.adjoint import Linear, gradient
+from periodic.conditions.variations import variations
+from periodic.linear.variation import Variations
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.gradients import Points, Slopes, collocation_points, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Differentiable, System, differentiable, index_of
+from periodic.system import System, differentiable, index_of
 
 Complex = NDArray[np.complex128]
 
@@ -235,17 +236,16 @@ class Multiplier:
 
     def __call__(self, system: System, orbit: Orbit) -> float:
         """Return the value."""
-        return self._taken(self._eigen(differentiable(system), orbit)[1])
+        found, k = self._found(system, as_read_by(system, orbit))
+        return self._taken(complex(found.multipliers[k]))
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return value and gradient, d mu = w' dM v / w' v; the multiplier must be a simple one."""
-        linear, value, right, left = self._eigen(differentiable(system), orbit)
+        """Return value and gradient; the multiplier must be a simple one."""
+        found, k = self._found(system, orbit)
+        value = complex(found.multipliers[k])
         unit = np.conj(value) / abs(value)
         factors = {"modulus": unit, "angle": -1j * unit / abs(value), "real": 1.0, "imaginary": -1j}
-        left = factors[self.part] * left / (left @ right)
-        source = (linear.source(left.real), linear.source(-left.imag))
-        row = gradient(linear, linear.tangent(right.real), source[0], free)
-        row += gradient(linear, linear.tangent(right.imag), source[1], free)
+        row = found.multiplier(k, complex(factors[self.part]), free)
         return Row(self._taken(value) + row.value, row.nodes, row.outer, row.stages)
 
     @property
@@ -257,13 +257,10 @@ class Multiplier:
         angle = float(np.angle(value))
         return {"modulus": abs(value), "angle": angle, "real": value.real, "imaginary": value.imag}[self.part]
 
-    def _eigen(self, system: Differentiable, orbit: Orbit) -> tuple[Linear, complex, Complex, Complex]:
-        """The linearised flow; the multiplier, its eigenvector v and left eigenvector w (w' M = mu w')."""
-        linear = Linear.about(system, as_read_by(system, orbit), ())
-        values, vectors = np.linalg.eig(linear.monodromy)
+    def _found(self, system: System, orbit: Orbit) -> tuple[Variations, int]:
+        """All multipliers, and the index of this one."""
+        found = variations(system, orbit, ())
+        values = found.multipliers
         if not 0 <= self.which < len(values):
             raise ValueError(f"which is {self.which}; the orbit has the multipliers 0 to {len(values) - 1}")
-        k = np.lexsort((-values.imag, -np.abs(values)))[self.which]
-        others, left = np.linalg.eig(linear.monodromy.T)
-        nearest = np.abs(others - values[k]).argmin()
-        return linear, complex(values[k]), vectors[:, k] + 0j, left[:, nearest] + 0j
+        return found, int(np.lexsort((-values.imag, -np.abs(values)))[self.which])

@@ -7,13 +7,14 @@ from typing import cast
 
 import numpy as np
 
-from periodic.conditions.adjoint import Linear, Tangent, gradient
 from periodic.conditions.functionals import Functional, Smooth, apart
+from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
+from periodic.linear.variation import Tangent
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System, differentiable
+from periodic.system import System
 
 STEP = 1e-4
 """Step, in peak-to-peak values, of differences of a functional's derivative."""
@@ -97,12 +98,10 @@ class _Peak:
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return df/du t and its gradient; t is the kernel of the branch's equations, c' t = 1."""
         given = (*self.given.free, self.given.own)
-        linear = Linear.about(differentiable(system), orbit, given)
+        closed = variations(system, orbit, given).repeating(1.0)
         rows = [c.linearise(system, orbit, given) for c in self.given.conditions]
-        n = orbit.nodes.shape[1]
-        top = linear.columns(linear.maps[-1])
-        top[:, :n] -= np.eye(n)
-        matrix = np.concatenate([top, *(linear.functional(row)[None] for row in rows)])
+        top = closed.matrix
+        matrix = np.concatenate([top, *(closed.functional(row)[None] for row in rows)])
         if self.across is None:
             self.across = np.linalg.svd(matrix)[2][-1]
         bordered = np.concatenate([matrix, self.across[None]])
@@ -111,13 +110,12 @@ class _Peak:
         k = len(orbit.phases)
         own = [*range(k), *(k + free.index(i) for i in given)]
         along = Row(0.0, aim.nodes, aim.outer[own], aim.stages)
-        slope = linear.functional(along)
+        slope = closed.functional(along)
         weights = -np.linalg.solve(bordered.T, slope)[:-1]
-        source = linear.source(weights[:n]) + along
-        for weight, row in zip(weights[n:], rows, strict=True):
-            source += row.scaled(float(weight))
-        tangent = linear.tangent(direction)
-        found = gradient(linear, tangent, source, free)
+        others = weighted(rows, weights[len(top) :])
+        source = along if others is None else along + others
+        tangent = closed.tangent(direction)
+        found = closed.gradient(direction, weights[: len(top)], source, free)
         found += self._bent(system, orbit, tangent, free)
         value = float(slope @ direction) + found.value
         return Row(value, found.nodes, found.outer, found.stages)

@@ -6,17 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from periodic.collocation.condensation import condensed
-from periodic.collocation.event import event_rows
 from periodic.conditions.adjoint import polynomial
 from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import smooth
+from periodic.conditions.variations import equations
 from periodic.correction.condition import Condition, side_conditions
-from periodic.linear.bordering import chain, onto_start
+from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
-from periodic.orbit.scheme import Array
 from periodic.system import System, index_of
 
 
@@ -61,24 +59,28 @@ def sensitivities(
     names = [p.name for p in system.parameters]
     own = tuple(index_of(system, name) for name in determined or {})
     others = tuple(k for k in range(len(names)) if k not in own)
-    free = (*own, *others)
-    local = condensed(system, orbit, free)
-    maps = chain(local)
-    n, inner = orbit.nodes.shape[1], orbit.nodes.shape[1] + len(orbit.phases) + len(own)
+    free, first = (*own, *others), len(orbit.phases) + len(own)
     closing = side_conditions(list((determined or {}).values()), own, orbit)
-    rows = event_rows(system, orbit, free)
-    rows += [condition.linearise(system, orbit, free) for condition in closing]
-    top = maps[-1][:, 1:].copy()
-    top[:, :n] -= np.eye(n)
-
-    def flat(row: Row) -> Array:
-        return onto_start(local.reduced(row), maps)[1:]
-
-    matrix = np.concatenate([top, *(flat(row)[None] for row in rows)])
-    moved = -np.linalg.solve(matrix[:, :inner], matrix[:, inner:])
+    rows = [condition.linearise(system, orbit, free) for condition in closing]
+    rows += [_held(orbit, first + i, len(free)) for i in range(len(others))]
+    right = np.zeros((1 + len(rows), len(others)))
+    right[1 + len(own) :] = np.eye(len(others))
+    ways = equations(system, orbit, free).solve(rows, right)
     found = {}
     for label, functional in functionals.items():
-        slope = flat(smooth(functional).linearise(system, orbit, free))
-        total = slope[inner:] + slope[:inner] @ moved
-        found[label] = {names[k]: float(value) for k, value in zip(others, total, strict=True)}
+        slope = smooth(functional).linearise(system, orbit, free)
+        found[label] = {names[k]: _along(slope, way) for k, way in zip(others, ways, strict=True)}
     return found
+
+
+def _held(orbit: Orbit, index: int, free: int) -> Row:
+    """The row of one of the free numbers."""
+    outer = np.zeros(len(orbit.phases) + free)
+    outer[index] = 1.0
+    return Row(0.0, np.zeros_like(orbit.nodes), outer)
+
+
+def _along(slope: Row, way: Increment) -> float:
+    """How a functional changes along an increment."""
+    found = np.vdot(slope.nodes, way.nodes) + slope.outer @ np.append(way.phases, way.parameters)
+    return float(found if slope.stages is None else found + np.vdot(slope.stages, way.stages))

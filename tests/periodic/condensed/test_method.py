@@ -104,12 +104,9 @@ def test_three_methods_agree(condense: bool) -> None:
     assert np.abs(found[0].multipliers).max() == pytest.approx(np.abs(found[1].multipliers).max(), rel=1e-8)
 
 
-def test_what_needs_all_states_is_refused(tmp_path: Path) -> None:
-    """Assert one sentence for a curve of folds; a journal takes the leading multipliers."""
+def test_journal_has_the_leading_multipliers(tmp_path: Path) -> None:
+    """Assert that a branch is recovered whole."""
     journal = tmp_path / "branch.journal"
     system = cantilever(1, cubic)
     of = per.trace(system, "Omega", (3.0, 3.05), tol=1e-5, watch=per.Watch(journal=journal))
     assert len(per.recovered(journal).points) == len(of.points)
-    point = of.points[-1].orbit
-    with pytest.raises(ValueError, match="the system's linear part is condensed; curves of special points"):
-        per.sensitivities(system, point, {"mean": per.mean("tip")})
