@@ -33,6 +33,19 @@ class VariableLike(Protocol):
     def value(self) -> float: ...
 
 
+class Checked(VariableLike, Protocol):
+    """A parameter that may not have every value."""
+
+    def check(self, value: float) -> None:
+        """Refuse a value (SI). Raises ValueError, in one sentence."""
+
+
+def check_value(parameter: VariableLike, value: float) -> None:
+    """Refuse a value (SI) that a parameter may not have. Raises ValueError."""
+    if hasattr(parameter, "check"):
+        cast(Checked, parameter).check(value)
+
+
 class SwitchLike(Protocol):
     """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from periodic.checks import named, number, whole
 from periodic.maps.cell import Arrangement, Cell, Chunk, Outcome
-from periodic.maps.grid import check_names
+from periodic.maps.grid import check_names, check_values
 from periodic.maps.task import Task
 
 ROUND = 16
@@ -63,6 +63,7 @@ class Adaptive:
     def check(self, task: Task) -> None:
         """Check that the task has the parameters and the number, and that there is the sampler."""
         check_names("bounds", self.names, task)
+        check_values(task, self.bounds)
         known = [n for n in task.numbers if self.number == n or self.number.startswith(f"{n} ")]
         if not known:
             raise ValueError(f"number is {self.number!r}; it must be one of {', '.join(task.numbers)}")

@@ -13,6 +13,7 @@ import numpy as np
 from periodic.checks import named, number
 from periodic.maps.cell import Arrangement, Cell, Chunk, Outcome
 from periodic.maps.task import Task
+from periodic.system import check_value, index_of
 
 
 class Plan(Protocol):
@@ -114,6 +115,7 @@ class Grid:
     def check(self, task: Task) -> None:
         """Check that the task has the parameters and may have each of their values."""
         check_names("grid", self.names, task)
+        check_values(task, self.values)
 
     def rounds(self, found: Mapping[Cell, Outcome], size: int) -> Iterator[list[Chunk]]:
         """Yield all chunks at once."""
@@ -138,6 +140,13 @@ class Grid:
     def described(self) -> Any:
         """Return the values by name."""
         return {name: list(values) for name, values in self.values.items()}
+
+
+def check_values(task: Task, values: Mapping[str, Sequence[float]]) -> None:
+    """Refuse values of parameters that these may not have. Raises ValueError."""
+    for name, given in values.items():
+        for value in given:
+            check_value(task.system.parameters[index_of(task.system, name)], value)
 
 
 def check_names(what: str, names: Sequence[str], task: Task) -> None:

@@ -18,7 +18,7 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.frames import reserved
-from periodic.system import System, index_of
+from periodic.system import System, check_value, index_of
 from periodic.tracing.continuation import Continuation
 from periodic.tracing.stepsize import ArclengthControl
 from periodic.tracing.suited import suited
@@ -117,6 +117,8 @@ def setup(
     system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
     if low < 0 and parameter in layout_of(system).frequency:
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
+    for end in (low, high):
+        _check_bound(system, parameter, end)
     named("values", {} if values is None else values, "numbers")
     for name in set(method.watch.columns) & reserved(layout_of(system)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
@@ -154,6 +156,13 @@ def setup(
     )
 
 
+def _check_bound(system: System, parameter: str, end: float) -> None:
+    try:
+        check_value(system.parameters[index_of(system, parameter)], end)
+    except ValueError as error:
+        raise ValueError(f"bound of {error}") from None
+
+
 def _expressed(system: System, guess: Orbit) -> Orbit:
     """The guess in the system's scales."""
     if not isinstance(guess, Orbit):
@@ -170,5 +179,7 @@ def _parameters(system: System, base: Array, values: Mapping[str, float]) -> Arr
     for name, value in values.items():
         if not (isinstance(value, int | float | np.number) and math.isfinite(value)):
             raise ValueError(f"value of {name} is {value!r}; it must be a finite number")
-        parameter[index_of(system, name)] = value
+        index = index_of(system, name)
+        check_value(system.parameters[index], float(value))
+        parameter[index] = value
     return parameter

@@ -17,10 +17,12 @@ from typing import Protocol
 
 import casadi as ca
 
-from symbolic.checks import typed
+from symbolic.checks import refusal, typed
 from symbolic.equations.excitation import Excitation, Order
+from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, Place, State, Unknown
+from symbolic.equations.units import ANGULAR
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
 
 
@@ -74,6 +76,17 @@ class Body(Protocol):
         assembly : Assembly
             The workbench of the model, all its parts laid.
         """
+
+
+def _turning(value: Value, symbol: ca.SX) -> ca.SX:
+    """An angular frequency in rad/s, from the unit of the user's parameter."""
+    given = value.unit if isinstance(value, Parameter) else ""
+    if given not in ("", *ANGULAR):
+        raise refusal(
+            f"unit of {symbol.name()!r}", given, f"that of an angular frequency, {', '.join(ANGULAR)}"
+        )
+    factor = ANGULAR.get(given, 1.0)
+    return symbol if factor == 1 else factor * symbol
 
 
 def _added(symbol: ca.SX, increment: ca.SX) -> ca.SX:
@@ -223,7 +236,16 @@ class Assembly:
         positions = [motion.position for motion in self.motions.values()]
         return [(Variable(x.name, x.unit), x.symbol) for x in positions] + self.outputs
 
-    def parameter(self, value: Value, name: str, unit: str = "") -> ca.SX:
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """The parameters of the model with the values that they may have."""
+        found = self.numbers.named().items()
+        return tuple(
+            Variable(name, own.unit, 1.0, own.value, self.numbers.interval(symbols))
+            for name, (own, symbols) in found
+        )
+
+    def parameter(self, value: Value, name: str, unit: str = "", allowed: Interval = ANY) -> ca.SX:
         """Register a part's number and return its symbol.
 
         Parameters
@@ -235,18 +257,23 @@ class Assembly:
             What a bare number is called.
         unit : str
             Its SI unit.
+        allowed : Interval
+            Values that it may have, now and in traces and maps.
 
         Returns
         -------
         casadi.SX
-            The parameter's symbol.
+            The parameter's symbol; times 2 pi (or 2 pi/60) where rad/s is asked for and a parameter in Hz (or
+            rev/min) is given.
 
         Raises
         ------
         ValueError
-            For a value that is no finite number.
+            For a value that is no finite number, or not allowed, and for an angular frequency in a unit of
+            something else.
         """
-        return self.numbers.symbol(value, name, unit, self.owner)
+        symbol = self.numbers.symbol(value, name, unit, self.owner, allowed)
+        return _turning(value, symbol) if unit == "rad/s" else symbol
 
     def excite(self, frequency: ca.SX) -> None:
         """Set Omega, the angular frequency of the excitation: theta = Omega t.
@@ -263,7 +290,11 @@ class Assembly:
         """
         frequency, known = self.numbers.canonical(frequency), self.excitation.frequency
         if known is not None and not ca.is_equal(known, frequency, 10):
-            raise ValueError("two parts excite the model at different frequencies; all must share one")
+            first, second = (f"{name} = {self.nominal(name):g} rad/s" for name in (known, frequency))
+            raise ValueError(
+                f"parts excite the model at two frequencies, {first} and {second} ({self.owner}); "
+                f"all must share one, a symbolic.parameter, to which `order` may be given"
+            )
         self.excitation.frequency = frequency
 
     def nominal(self, expression: ca.SX) -> float:

@@ -89,14 +89,17 @@ class Model:
     Raises
     ------
     ValueError
-        For what is no part.
+        For what is no part, and for none at all.
     """
 
     parts: tuple[Part, ...]
 
     def __post_init__(self) -> None:
-        for part in self.parts:
+        if not isinstance(self.parts, Iterable) or not (parts := tuple(self.parts)):
+            raise refusal("parts", self.parts, f"a sequence of at least one {PART}")
+        for part in parts:
             typed("part", part, Part, f"a {PART}")
+        object.__setattr__(self, "parts", parts)
 
     def __add__(self, other: Part | Model) -> Model:
         if isinstance(other, Model):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.variables import Parameter, Value
 
 
@@ -35,17 +36,33 @@ class Numbers:
     """
 
     taken: list[Number] = field(default_factory=list)
+    allowed: dict[Parameter, Interval] = field(default_factory=dict)
 
-    def symbol(self, value: Value, name: str, unit: str, owner: str) -> ca.SX:
+    def symbol(self, value: Value, name: str, unit: str, owner: str, allowed: Interval = ANY) -> ca.SX:
         """Return the symbol of a part's number, one for all numbers of one owner, name and value."""
         bare = not isinstance(value, Parameter)
         wanted = value if isinstance(value, Parameter) else Parameter(name, value, unit)
+        allowed.check(f"{name} of {owner}" if owner else name, wanted.value)
+        own = self._taken(wanted, owner, bare)
+        self.allowed[own] = allowed.within(self.allowed.get(own, ANY))
+        return own.symbol
+
+    def _taken(self, wanted: Parameter, owner: str, bare: bool) -> Parameter:
+        """The number that is there already, or the new one."""
         for known in self.taken:
             same = known.bare and bare and known.owner == owner and _alike(known.parameter, wanted)
             if same or known.parameter is wanted:
-                return known.parameter.symbol
+                return known.parameter
         self.taken.append(Number(wanted, owner, bare))
-        return wanted.symbol
+        return wanted
+
+    def interval(self, symbols: list[ca.SX]) -> Interval:
+        """Return the values that all numbers of one name may have, by their symbols."""
+        found = ANY
+        for number, allowed in self.allowed.items():
+            if any(number.symbol is symbol for symbol in symbols):
+                found = found.within(allowed)
+        return found
 
     def named(self) -> dict[str, tuple[Parameter, list[ca.SX]]]:
         """Return the parameters by name, in the order of the parts, with the symbols that stand for each.

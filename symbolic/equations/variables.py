@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import casadi as ca
 
 from symbolic.checks import finite, positive, refusal, text, typed, whole
+from symbolic.equations.interval import ANY, NOT_NEGATIVE, POSITIVE, Interval
 
 
 @dataclass(frozen=True)
@@ -22,12 +24,30 @@ class Variable:
         SI value of one internal unit; 1 of parameters and outputs, which are kept in SI.
     value : float
         Nominal value (parameters only).
+    allowed : Interval
+        Values that it may have (parameters only).
     """
 
     name: str
     unit: str = ""
     scale: float = 1.0
     value: float = math.nan
+    allowed: Interval = ANY
+
+    def check(self, value: float) -> None:
+        """Refuse a value that the parameter may not have.
+
+        Parameters
+        ----------
+        value : float
+            In SI.
+
+        Raises
+        ------
+        ValueError
+            In one sentence.
+        """
+        self.allowed.check(f"parameter {self.name!r}", value)
 
 
 @dataclass(frozen=True)
@@ -82,16 +102,25 @@ Value = float | Parameter
 
 def not_negative(field: str, value: Value) -> None:
     """Refuse a part's number that is negative; what is none is refused on compilation. Raises ValueError."""
-    number = value.value if isinstance(value, Parameter) else value
-    if isinstance(number, int | float) and -math.inf < number < 0:
-        raise refusal(field, number, "a number of at least 0")
+    _within(NOT_NEGATIVE, field, value)
 
 
 def above_zero(field: str, value: Value) -> None:
     """Refuse a part's number that is not positive; what is none, compilation refuses. Raises ValueError."""
+    _within(POSITIVE, field, value)
+
+
+def _within(allowed: Interval, field: str, value: Value) -> None:
     number = value.value if isinstance(value, Parameter) else value
-    if isinstance(number, int | float) and -math.inf < number <= 0:
-        raise refusal(field, number, "a positive number")
+    if isinstance(number, int | float) and math.isfinite(number):
+        allowed.check(field, number)
+
+
+def several(field: str, values: object) -> tuple[Value, ...]:
+    """Return a part's numbers in order; what is no number is refused on compilation. Raises ValueError."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise refusal(field, values, "a sequence of numbers")
+    return tuple(values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +155,12 @@ class Coordinate:
         if self.scale is not None:
             positive(f"scale of coordinate {self.name!r}", self.scale)
         object.__setattr__(self, "start", finite(f"start of coordinate {self.name!r}", self.start))
+
+
+def apart(field: str, one: Coordinate, other: Coordinate | None) -> None:
+    """Refuse one coordinate for both ends, or both directions, of a part. Raises ValueError."""
+    if one is other:
+        raise ValueError(f"{field} is {one.name!r} too; it must be another coordinate")
 
 
 def parameter(name: str, value: float, unit: str = "") -> Parameter:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
+from symbolic.equations.units import ANGULAR
 
-RPM = 2 * math.pi / 60
+RPM = ANGULAR["rev/min"]
 """rad/s in one rev/min."""
 
-AXES = {"rev/min": RPM, "Hz": 2 * math.pi, "rad/s": 1.0}
+AXES = ANGULAR
 """rad/s in one of each unit."""
 
 SHORT = {"rev/min": "rpm", "Hz": "hz", "rad/s": "rad_s"}

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 
 from symbolic.scenes.changing import Steps, Value, address, complaint, keys_of, set_value
 from symbolic.scenes.errors import LONGEST, InputError, cut, refused
+from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.schema import Scene, schema_of
@@ -84,6 +85,7 @@ def _validated(schema: type[Scene], tables: Mapping[str, Any], folder: Path) -> 
 def _text(source: str) -> str:
     if source in scene_names():
         return built_in(source)
+    near = nearest(source, scene_names())
     names = f"one of {', '.join(scene_names())} or the path of a TOML file"
     path = Path(source)
     if not source.strip():
@@ -101,7 +103,7 @@ def _text(source: str) -> str:
         if path.is_file():
             found = f'file "{source}" is not text in UTF-8'
             raise InputError("scene", found, "it must be a TOML file") from error
-        raise refused("scene", source, names) from None
+        raise refused("scene", source, f"{names}; nearest is {near}" if near else names) from None
     except OSError as error:
         found = f'file "{source}" cannot be read ({error.strerror})'
         raise InputError("scene", found, f"it must be {names}") from error

@@ -86,6 +86,8 @@ class Valued:
 def with_nominal(system: CompiledSystem, values: Mapping[str, float]) -> CompiledSystem:
     """Return a compiled system with other nominal values of some parameters (SI), by name."""
     assert system.recipe is not None
+    for parameter in system.parameters:
+        parameter.check(values.get(parameter.name, parameter.value))
     parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in system.parameters)
     return replace(system, parameters=parameters, recipe=Valued(system.recipe, dict(values)))
 
@@ -95,7 +97,7 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
     return CompiledSystem(
         states=tuple(Variable(s.name, s.unit, s.scale) for s in assembly.states),
         algebraics=tuple(Variable(u.name, u.unit, u.scale) for u in assembly.unknowns),
-        parameters=tuple(Variable(p.name, p.unit, 1.0, p.value) for p in assembly.parameters.values()),
+        parameters=assembly.variables,
         outputs=tuple(variable for variable, _ in assembly.described),
         switches=(*(info for info, _ in assembly.switches), *_releases(assembly, expressions)),
         expressions=expressions,

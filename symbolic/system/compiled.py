@@ -412,7 +412,9 @@ def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:
     parameter = system.nominal
     names = [p.name for p in system.parameters]
     for name, value in numbers("values", values, "value").items():
-        parameter[names.index(one_of("parameter", name, names))] = value
+        index = names.index(one_of("parameter", name, names))
+        system.parameters[index].check(value)
+        parameter[index] = value
     if not (omega := system.omega(parameter)) > 0:
         raise refusal("the frequency of the excitation in rad/s", omega, "greater than 0")
     return parameter

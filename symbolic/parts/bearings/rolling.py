@@ -7,20 +7,24 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from symbolic.checks import positive, refusal, whole
+from symbolic.checks import refusal, typed, whole
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.excitation import Order, order_of
+from symbolic.equations.interval import POSITIVE, Interval
 from symbolic.equations.model import Part
 from symbolic.equations.rest import steady_force
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, apart
 from symbolic.parts.bearings.ranked import ranked
 from symbolic.parts.bearings.waves import RaceWave, Turns
-from symbolic.parts.contact.law import ContactLaw
+from symbolic.parts.contact.law import ContactLaw, lawful
 from symbolic.parts.films.series import SeriesFilm
 
 NEAR = 0.02
 """Relative difference between `passages` and what the race diameters say, up to which it is a rounding."""
 
+
+PRESSED = 0.01
+"""Largest preload, in diameters of an element: beyond, the law of an elastic contact says nothing."""
 
 WEAK = (-1.0,)
 """Level of the switches, not 0: the equations do not change there, only a derivative of theirs does."""
@@ -46,7 +50,7 @@ class RollingBearing(Part):
     law : ContactLaw
         F, of both contacts of an element together: HertzLaw with exponent 3/2 for balls, 10/9 for rollers.
     clearance : float or Parameter
-        g in m, radial; negative for a preloaded bearing.
+        g in m, radial; negative for a preloaded bearing, down to -1 % of an element's diameter (D_o - D_i)/2.
     speed : float or Parameter
         Omega of the shaft in rad/s.
     inner, outer : float or Parameter
@@ -62,7 +66,8 @@ class RollingBearing(Part):
     Raises
     ------
     ValueError
-        For fewer than one element, diameters that are no races, and passages that do not fit them.
+        For fewer than one element, diameters that are no races, a clearance or preload beyond the size of the
+        elements, and passages that do not fit them.
 
     References
     ----------
@@ -85,11 +90,17 @@ class RollingBearing(Part):
 
     def __post_init__(self) -> None:
         whole("elements", self.elements, 1)
+        apart("y", self.x, self.y)
+        lawful(self.law)
+        if not isinstance(self.waves, Sequence) or not all(isinstance(w, RaceWave) for w in self.waves):
+            raise refusal("waves", self.waves, "a sequence of RaceWave")
+        if self.film is not None:
+            typed("film", self.film, SeriesFilm, "a SeriesFilm")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the forces of all elements, and begin the search for a rest where they carry the load."""
         x, y = assembly.motion(self.x), assembly.motion(self.y)
-        g = assembly.parameter(self.clearance, "clearance", self.x.unit)
+        g = assembly.parameter(self.clearance, "clearance", self.x.unit, self._room(assembly))
         approaches, places = [], self._places(assembly)
         for turns in places:
             height = sum((wave.height(assembly, turns) for wave in self.waves), ca.SX(0))
@@ -132,11 +143,22 @@ class RollingBearing(Part):
 
     def _cage(self, assembly: Assembly) -> ca.SX:
         """Turns of the cage in one of the shaft."""
-        inner = assembly.parameter(self.inner, "inner_race", "m")
-        outer = assembly.parameter(self.outer, "outer_race", "m")
-        if positive("inner", assembly.nominal(inner)) >= assembly.nominal(outer):
-            raise refusal("outer", assembly.nominal(outer), "greater than the diameter of the inner race")
+        inner, outer = self._races(assembly)
         return inner / (inner + outer)
+
+    def _races(self, assembly: Assembly) -> tuple[ca.SX, ca.SX]:
+        """D_i and D_o."""
+        inner = assembly.parameter(self.inner, "inner_race", "m", POSITIVE)
+        outer = assembly.parameter(self.outer, "outer_race", "m", POSITIVE)
+        if assembly.nominal(inner) >= assembly.nominal(outer):
+            raise refusal("outer", assembly.nominal(outer), "greater than the diameter of the inner race")
+        return inner, outer
+
+    def _room(self, assembly: Assembly) -> Interval:
+        """Clearances of a bearing whose elements, of the diameter (D_o - D_i)/2, are pressed elastically."""
+        inner, outer = self._races(assembly)
+        diameter = assembly.nominal(outer - inner) / 2
+        return Interval(-PRESSED * diameter, diameter)
 
     def _checked(self, assembly: Assembly, exact: ca.SX) -> Order:
         """The passages in one turn of the shaft, which the diameters have to allow."""

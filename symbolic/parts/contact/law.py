@@ -9,7 +9,8 @@ import casadi as ca
 
 from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.variables import Value
+from symbolic.equations.interval import POSITIVE
+from symbolic.equations.variables import Value, above_zero
 from symbolic.parts.contact.preloaded import PowerLaw, Preloaded, solved
 
 
@@ -67,6 +68,11 @@ class HertzLaw(ContactLaw):
     exponent : float or Parameter
         n: 3/2 for elliptic contacts.
 
+    Raises
+    ------
+    ValueError
+        For numbers that are not positive.
+
     References
     ----------
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), section 3.
@@ -74,6 +80,10 @@ class HertzLaw(ContactLaw):
 
     stiffness: Value
     exponent: Value = 1.5
+
+    def __post_init__(self) -> None:
+        above_zero("stiffness of a HertzLaw", self.stiffness)
+        above_zero("exponent of a HertzLaw", self.exponent)
 
     def load(self, assembly: Assembly, deflection: ca.SX) -> ca.SX:
         """Return K max(delta, 0)^n."""
@@ -86,8 +96,8 @@ class HertzLaw(ContactLaw):
         return PowerLaw((preload / stiffness) ** (1 / exponent), exponent)
 
     def _numbers(self, assembly: Assembly) -> tuple[ca.SX, ca.SX]:
-        stiffness = assembly.parameter(self.stiffness, "stiffness", "N/m^n")
-        return stiffness, assembly.parameter(self.exponent, "exponent")
+        stiffness = assembly.parameter(self.stiffness, "stiffness", "N/m^n", POSITIVE)
+        return stiffness, assembly.parameter(self.exponent, "exponent", "", POSITIVE)
 
 
 def lawful(law: object) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symbolic.checks import refusal
+import casadi as ca
+
+from symbolic.checks import refusal, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Parameter, Value
@@ -28,7 +30,7 @@ class RigidStop(Part):
     Raises
     ------
     ValueError
-        For a restitution out of range.
+        For a restitution out of range; on compilation, for a wall behind which the search for a rest begins.
     """
 
     q: Coordinate
@@ -39,6 +41,7 @@ class RigidStop(Part):
     def __post_init__(self) -> None:
         given = self.restitution
         value = given.value if isinstance(given, Parameter) else given
+        typed("below", self.below, bool, "True or False")
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
             raise refusal("restitution", value, "a number greater than 0 and up to 1")
 
@@ -52,3 +55,24 @@ class RigidStop(Part):
         assembly.reset(
             f"impact at {self.q.name} = {which}", free, {motion.velocity: -e * motion.velocity.symbol}
         )
+        before = Before(self, gap)
+        assembly.joints[before] = before
+
+
+@dataclass(frozen=True, eq=False)
+class Before:
+    """The search for a rest begins before the wall."""
+
+    stop: RigidStop
+    gap: ca.SX
+
+    def close(self, assembly: Assembly) -> None:
+        """Check it. Raises ValueError."""
+        q, side = self.stop.q, -1 if self.stop.below else 1
+        rest = assembly.nominal(assembly.motion(q).position.rest)
+        if side * rest >= assembly.nominal(self.gap):
+            wall = side * assembly.nominal(self.gap)
+            raise ValueError(
+                f"the rigid stop at {q.name} = {wall:g} leaves no equilibrium: the search for one begins "
+                f"behind it, at {q.name} = {rest:g}; move it, or give the coordinate a start before it"
+            )

@@ -8,7 +8,8 @@ from typing import Protocol
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.variables import Value
+from symbolic.equations.interval import POSITIVE
+from symbolic.equations.variables import Value, above_zero
 
 
 class FilmLaw(Protocol):
@@ -49,6 +50,11 @@ class PowerFilm(FilmLaw):
     beta : float or Parameter
         Exponent of the film's stiffness.
 
+    Raises
+    ------
+    ValueError
+        For numbers that are not positive.
+
     References
     ----------
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eq. (13) without squeeze.
@@ -58,8 +64,12 @@ class PowerFilm(FilmLaw):
     load: Value
     beta: Value = 22.23
 
+    def __post_init__(self) -> None:
+        for name in ("h0", "load", "beta"):
+            above_zero(f"{name} of a PowerFilm", getattr(self, name))
+
     def thickness(self, assembly: Assembly, load: ca.SX) -> ca.SX:
         """Return h in m."""
-        h0 = assembly.parameter(self.h0, "h0", "m")
-        at = assembly.parameter(self.load, "film_load", "N")
-        return h0 * ca.exp((ca.log(at) - ca.log(load)) / assembly.parameter(self.beta, "beta"))
+        h0 = assembly.parameter(self.h0, "h0", "m", POSITIVE)
+        at = assembly.parameter(self.load, "film_load", "N", POSITIVE)
+        return h0 * ca.exp((ca.log(at) - ca.log(load)) / assembly.parameter(self.beta, "beta", "", POSITIVE))

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from symbolic.checks import positive, refusal, whole
 from symbolic.equations.assembly import Assembly
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.films.law import FilmLaw
@@ -34,11 +35,22 @@ class SeriesFilm:
         c: 2 where an element has a film on either side.
     typical : float
         A load in N from which the equation is solved; the result does not depend on it.
+
+    Raises
+    ------
+    ValueError
+        For what is no law, no contact at all, and a load that is not positive.
     """
 
     law: FilmLaw
     contacts: int = 1
     typical: float = 100.0
+
+    def __post_init__(self) -> None:
+        if not callable(getattr(self.law, "thickness", None)):
+            raise refusal("law of a film", self.law, "a FilmLaw, as PowerFilm(1e-6, 100.0) is")
+        whole("contacts", self.contacts, 1)
+        positive("typical load", self.typical)
 
     def load(self, assembly: Assembly, contact: ContactLaw, approach: ca.SX) -> ca.SX:
         """Return the load under the film.

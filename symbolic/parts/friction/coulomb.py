@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, not_negative
 from symbolic.parts.mechanics.ends import resist, speed
@@ -43,7 +44,7 @@ class CoulombFriction(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a jump where the speed passes zero."""
-        force = assembly.parameter(self.force, "F_f", "N")
+        force = assembly.parameter(self.force, "F_f", "N", NOT_NEGATIVE)
         rate = speed(assembly, self.q, self.to)
         resist(assembly, self.q, self.to, force * ca.sign(rate))
         scale = assembly.omega * assembly.motion(self.q).position.scale

@@ -9,8 +9,9 @@ import casadi as ca
 
 from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative
+from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative, several
 from symbolic.parts.mechanics.ends import deflection, resist
 
 CREEP = 1e-2
@@ -67,8 +68,8 @@ class Jenkins(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the slider."""
-        k = assembly.parameter(self.stiffness, "k_slider", "N/m")
-        slide(assembly, self, k, assembly.parameter(self.limit, "F_slider", "N"), "z")
+        k = assembly.parameter(self.stiffness, "k_slider", "N/m", POSITIVE)
+        slide(assembly, self, k, assembly.parameter(self.limit, "F_slider", "N", NOT_NEGATIVE), "z")
 
 
 @dataclass(frozen=True)
@@ -107,16 +108,18 @@ class Iwan(Part):
     def __post_init__(self) -> None:
         above_zero("stiffness of the sliders", self.stiffness)
         above_zero("creep of the sliders", self.creep)
-        if len(self.limits) == 0:
+        object.__setattr__(self, "limits", several("limits", self.limits))
+        if not self.limits:
             raise refusal("limits", self.limits, "a sequence of at least one force in N")
         for limit in self.limits:
             not_negative("limit of a slider", limit)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the sliders."""
-        k = assembly.parameter(self.stiffness, "k_sliders", "N/m") / len(self.limits)
+        k = assembly.parameter(self.stiffness, "k_sliders", "N/m", POSITIVE) / len(self.limits)
         for count, value in enumerate(self.limits, 1):
-            slide(assembly, self, k, assembly.parameter(value, f"F_slider_{count}", "N"), f"z{count}")
+            limit = assembly.parameter(value, f"F_slider_{count}", "N", NOT_NEGATIVE)
+            slide(assembly, self, k, limit, f"z{count}")
 
 
 def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name: str) -> None:
@@ -124,7 +127,7 @@ def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name
     q, to = part.q, part.to
     between = q.name if to is None else f"{q.name} - {to.name}"
     scale = assembly.motion(q).position.scale
-    creep = assembly.parameter(part.creep, "creep", "rad")
+    creep = assembly.parameter(part.creep, "creep", "rad", POSITIVE)
     z = assembly.state(f"{name} of {between}", q.unit, scale, ca.SX(0))
     force = k * (deflection(assembly, q, to) - z.symbol)
     over = ca.fmax(force - limit, 0) + ca.fmin(force + limit, 0)

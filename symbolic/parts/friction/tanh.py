@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative
 from symbolic.parts.mechanics.ends import resist, speed
@@ -50,6 +51,6 @@ class TanhFriction(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force."""
-        limit = assembly.parameter(self.force, "F_f", "N")
-        v0 = assembly.parameter(self.speed, "v0", "m/s")
+        limit = assembly.parameter(self.force, "F_f", "N", NOT_NEGATIVE)
+        v0 = assembly.parameter(self.speed, "v0", "m/s", POSITIVE)
         resist(assembly, self.q, self.to, limit * ca.tanh(speed(assembly, self.q, self.to) / v0))

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, several
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,11 @@ class TransmissionError(Part):
         Mesh frequency Omega in rad/s, teeth times the speed of a wheel; a bare number becomes the parameter
         Omega.
 
+    Raises
+    ------
+    ValueError
+        For amplitudes that are no sequence.
+
     References
     ----------
     Kahraman & Singh, J. Sound Vib. 142 (1990) 49-75 and 146 (1991) 135-156.
@@ -39,9 +45,12 @@ class TransmissionError(Part):
     amplitudes: Sequence[Value]
     frequency: Value = 1.0
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "amplitudes", several("amplitudes", self.amplitudes))
+
     def contribute(self, assembly: Assembly) -> None:
         """Add the force and set the frequency of the excitation."""
-        m = assembly.parameter(self.m, "m", "kg")
+        m = assembly.parameter(self.m, "m", "kg", NOT_NEGATIVE)
         omega = assembly.parameter(self.frequency, "Omega", "rad/s")
         assembly.excite(omega)
         for order, value in enumerate(self.amplitudes, 1):

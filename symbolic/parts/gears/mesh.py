@@ -9,9 +9,10 @@ import casadi as ca
 
 from symbolic.checks import positive
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
 from symbolic.equations.rest import steady_force
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative, several
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,11 @@ class GearMesh(Part):
     variation : sequence of float or Parameter
         k_1, k_2, ..., relative to k.
 
+    Raises
+    ------
+    ValueError
+        For a negative stiffness, a backlash that is not positive, and a variation that is no sequence.
+
     References
     ----------
     Kahraman & Singh, J. Sound Vib. 142 (1990) 49-75 and 146 (1991) 135-156.
@@ -43,11 +49,16 @@ class GearMesh(Part):
     backlash: Value
     variation: Sequence[Value] = ()
 
+    def __post_init__(self) -> None:
+        not_negative("mean stiffness of the mesh", self.stiffness)
+        above_zero("backlash", self.backlash)
+        object.__setattr__(self, "variation", several("variation", self.variation))
+
     def contribute(self, assembly: Assembly) -> None:
         """Add the force."""
         motion = assembly.motion(self.q)
-        k = assembly.parameter(self.stiffness, "mesh_stiffness", "N/m")
-        b = assembly.parameter(self.backlash, "backlash", self.q.unit)
+        k = assembly.parameter(self.stiffness, "mesh_stiffness", "N/m", NOT_NEGATIVE)
+        b = assembly.parameter(self.backlash, "backlash", self.q.unit, POSITIVE)
         assembly.suggest_scale(self.q, positive("backlash", assembly.nominal(b)))
         varying = ca.SX(1)
         for order, value in enumerate(self.variation, 1):

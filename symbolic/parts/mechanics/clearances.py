@@ -8,8 +8,9 @@ from typing import ClassVar
 
 import casadi as ca
 
-from symbolic.checks import refusal, typed
+from symbolic.checks import finite, refusal, typed
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Parameter, Value, not_negative
 from symbolic.parts.mechanics.ends import deflection, kink, resist
@@ -51,7 +52,7 @@ class OneSidedSpring(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a kink where u passes the gap."""
-        k = assembly.parameter(self.k, "k_s", "N/m")
+        k = assembly.parameter(self.k, "k_s", "N/m", NOT_NEGATIVE)
         gap = assembly.parameter(self.gap, "gap", self.q.unit)
         side = -1 if self.below else 1
         past = side * deflection(assembly, self.q, self.to) - gap
@@ -89,13 +90,14 @@ class Gap(Part):
 
     def __post_init__(self) -> None:
         not_negative("stiffness k", self.k)
-        lower, upper = (v.value if isinstance(v, Parameter) else v for v in (self.lower, self.upper))
+        stops = (("lower", self.lower), ("upper", self.upper))
+        lower, upper = (finite(f"{n} stop", v.value if isinstance(v, Parameter) else v) for n, v in stops)
         if not lower < upper:
             raise refusal("upper stop of a Gap", upper, f"above the lower stop {lower:g}, or the two overlap")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a kink at each stop."""
-        k = assembly.parameter(self.k, "k_g", "N/m")
+        k = assembly.parameter(self.k, "k_g", "N/m", NOT_NEGATIVE)
         lower = assembly.parameter(self.lower, "lower", self.q.unit)
         upper = assembly.parameter(self.upper, "upper", self.q.unit)
         u = deflection(assembly, self.q, self.to)
@@ -146,7 +148,8 @@ class Backlash(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a kink at each end of the backlash."""
-        k, b = assembly.parameter(self.k, "k_b", "N/m"), assembly.parameter(self.b, "b", self.q.unit)
+        k = assembly.parameter(self.k, "k_b", "N/m", NOT_NEGATIVE)
+        b = assembly.parameter(self.b, "b", self.q.unit, NOT_NEGATIVE)
         if self.variation is not None:
             k *= 1 + excited_by(assembly, self.variation, self.frequency).value
         u = deflection(assembly, self.q, self.to)

@@ -5,17 +5,19 @@ from __future__ import annotations
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.variables import Coordinate
+from symbolic.equations.variables import Coordinate, apart
 
 
 def deflection(assembly: Assembly, q: Coordinate, to: Coordinate | None) -> ca.SX:
-    """Return u = q - r, or q where there is no r."""
+    """Return u = q - r, or q where there is no r. Raises ValueError where both are one."""
+    apart("to", q, to)
     own = assembly.motion(q).position.symbol
     return own if to is None else own - assembly.motion(to).position.symbol
 
 
 def speed(assembly: Assembly, q: Coordinate, to: Coordinate | None) -> ca.SX:
-    """Return du/dt."""
+    """Return du/dt. Raises ValueError where both ends are one."""
+    apart("to", q, to)
     own = assembly.speed_of(q)
     return own if to is None else own - assembly.speed_of(to)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, not_negative
 
@@ -34,7 +35,7 @@ class Mass(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add m to the coordinate's mass."""
-        assembly.motion(self.q).mass += assembly.parameter(self.m, "m", "kg")
+        assembly.motion(self.q).mass += assembly.parameter(self.m, "m", "kg", NOT_NEGATIVE)
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,6 @@ class ReducedMass(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the reduced mass to the coordinate's mass."""
-        m1 = assembly.parameter(self.m1, "m1", "kg")
-        m2 = assembly.parameter(self.m2, "m2", "kg")
+        m1 = assembly.parameter(self.m1, "m1", "kg", NOT_NEGATIVE)
+        m2 = assembly.parameter(self.m2, "m2", "kg", NOT_NEGATIVE)
         assembly.motion(self.q).mass += m1 * m2 / (m1 + m2)

@@ -11,7 +11,7 @@ import casadi as ca
 from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Parameter, Value
+from symbolic.equations.variables import Coordinate, Parameter, Value, several
 from symbolic.parts.mechanics.ends import deflection, kink, resist
 
 
@@ -45,8 +45,8 @@ class PiecewiseLinearSpring(Part):
     to: Coordinate | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "stiffnesses", tuple(self.stiffnesses))
-        object.__setattr__(self, "corners", tuple(self.corners))
+        object.__setattr__(self, "stiffnesses", several("stiffnesses", self.stiffnesses))
+        object.__setattr__(self, "corners", several("corners", self.corners))
         at = [c.value if isinstance(c, Parameter) else c for c in self.corners]
         if not at or any(a >= b for a, b in zip(at, at[1:], strict=False)):
             raise refusal("corners of a PiecewiseLinearSpring", self.corners, "at least one number, rising")

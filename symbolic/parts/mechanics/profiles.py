@@ -13,7 +13,7 @@ import numpy as np
 from symbolic.checks import refusal, sequence
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.excitation import Order, order_of
-from symbolic.equations.variables import Value
+from symbolic.equations.variables import Value, several
 
 
 @dataclass(frozen=True)
@@ -106,8 +106,8 @@ class FourierSeries(Profile):
     mean: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "cosines", tuple(self.cosines))
-        object.__setattr__(self, "sines", tuple(self.sines))
+        object.__setattr__(self, "cosines", several("cosines of a FourierSeries", self.cosines))
+        object.__setattr__(self, "sines", several("sines of a FourierSeries", self.sines))
         if not self.cosines and not self.sines:
             raise refusal("cosines of a FourierSeries", self.cosines, "at least one number, or sines given")
 
@@ -169,7 +169,12 @@ class Samples(Profile):
 
 
 def excited_by(assembly: Assembly, profile: Profile, frequency: Value) -> Terms:
-    """Return the terms of a profile, with the frequency of the excitation set to `frequency`, Omega."""
+    """Return the terms of a profile, with the frequency of the excitation set to `frequency`, Omega.
+
+    Raises ValueError for what is no profile.
+    """
+    if not callable(getattr(profile, "terms", None)):
+        raise refusal("profile", profile, "a Profile, as Harmonic(1.0) or FourierSeries((1.0, 0.5)) is")
     assembly.excite(assembly.parameter(frequency, "Omega", "rad/s"))
     return profile.terms(assembly)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, apart
 from symbolic.parts.mechanics.ends import deflection, resist, speed
 
 
@@ -107,6 +107,7 @@ class Coupling(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force to both coordinates."""
+        apart("r", self.q, self.r)
         q, r = assembly.motion(self.q), assembly.motion(self.r)
         k = assembly.parameter(self.k, "coupling_stiffness", "N/m")
         c = assembly.parameter(self.c, "coupling_damping", "N s/m")

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero
+from symbolic.equations.variables import Coordinate, Value, above_zero, apart
 from symbolic.parts.rotors.shortfilm import resultant
 
 
@@ -100,15 +101,16 @@ class SqueezeFilmDamper(Part):
 
 
 def _positive(part: JournalBearing | SqueezeFilmDamper) -> None:
+    apart("y", part.x, part.y)
     for name in ("viscosity", "radius", "length", "clearance"):
         above_zero(name, getattr(part, name))
 
 
 def _film(assembly: Assembly, part: JournalBearing | SqueezeFilmDamper, turn: ca.SX, pace: ca.SX) -> None:
-    mu = assembly.parameter(part.viscosity, "viscosity", "Pa s")
-    radius = assembly.parameter(part.radius, "radius", "m")
-    length = assembly.parameter(part.length, "length", "m")
-    c = assembly.parameter(part.clearance, "clearance", "m")
+    mu = assembly.parameter(part.viscosity, "viscosity", "Pa s", POSITIVE)
+    radius = assembly.parameter(part.radius, "radius", "m", POSITIVE)
+    length = assembly.parameter(part.length, "length", "m", POSITIVE)
+    c = assembly.parameter(part.clearance, "clearance", "m", POSITIVE)
     x, y = assembly.motion(part.x), assembly.motion(part.y)
     places = (x.position.symbol / c, y.position.symbol / c)
     rates = (assembly.speed_of(part.x) / c, assembly.speed_of(part.y) / c)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, apart
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,11 @@ class GyroscopicMoment(Part):
     speed : float or Parameter
         Omega in rad/s.
 
+    Raises
+    ------
+    ValueError
+        For one coordinate in both directions.
+
     References
     ----------
     Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, Cambridge 2010, section 3.3.
@@ -31,6 +36,9 @@ class GyroscopicMoment(Part):
     y: Coordinate
     inertia: Value
     speed: Value = 1.0
+
+    def __post_init__(self) -> None:
+        apart("y", self.x, self.y)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the moments."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, not_negative
+from symbolic.equations.variables import Coordinate, Value, apart, not_negative
 
 
 @dataclass(frozen=True)
@@ -42,11 +43,12 @@ class InternalDamping(Part):
     speed: Value = 1.0
 
     def __post_init__(self) -> None:
+        apart("y", self.x, self.y)
         not_negative("internal damping c", self.c)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the forces."""
-        c = assembly.parameter(self.c, "c_internal", "N s/m")
+        c = assembly.parameter(self.c, "c_internal", "N s/m", NOT_NEGATIVE)
         omega = assembly.parameter(self.speed, "speed", "rad/s")
         x, y = assembly.motion(self.x), assembly.motion(self.y)
         x.force -= c * (assembly.speed_of(self.x) + omega * y.position.symbol)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative
+from symbolic.equations.variables import Coordinate, Value, above_zero, apart, not_negative
 
 CENTRE = 1e-12
 """Radius, of the clearance, within which the direction of the contact fades."""
@@ -49,6 +50,7 @@ class Rub(Part):
     friction: Value = 0.0
 
     def __post_init__(self) -> None:
+        apart("y", self.x, self.y)
         not_negative("stiffness of the stator", self.stiffness)
         not_negative("friction of the stator", self.friction)
         above_zero("clearance of the stator", self.clearance)
@@ -56,9 +58,9 @@ class Rub(Part):
     def contribute(self, assembly: Assembly) -> None:
         """Add the forces."""
         x, y = assembly.motion(self.x), assembly.motion(self.y)
-        k = assembly.parameter(self.stiffness, "k_stator", "N/m")
-        g = assembly.parameter(self.clearance, "clearance", self.x.unit)
-        mu = assembly.parameter(self.friction, "mu")
+        k = assembly.parameter(self.stiffness, "k_stator", "N/m", NOT_NEGATIVE)
+        g = assembly.parameter(self.clearance, "clearance", self.x.unit, POSITIVE)
+        mu = assembly.parameter(self.friction, "mu", "", NOT_NEGATIVE)
         a, b = x.position.symbol, y.position.symbol
         r = ca.sqrt(a**2 + b**2 + (CENTRE * g) ** 2)
         pressure = k * ca.fmax(r - g, 0) / r

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value
+from symbolic.equations.variables import Coordinate, Value, apart
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,11 @@ class Unbalance(Part):
         Omega in rad/s.
     angle : float or Parameter
         phi in rad, of the heavy side at t = 0.
+
+    Raises
+    ------
+    ValueError
+        For one coordinate in both directions.
     """
 
     x: Coordinate
@@ -35,9 +41,12 @@ class Unbalance(Part):
     speed: Value = 1.0
     angle: Value = 0.0
 
+    def __post_init__(self) -> None:
+        apart("y", self.x, self.y)
+
     def contribute(self, assembly: Assembly) -> None:
         """Add the forces and set the frequency of the excitation."""
-        m = assembly.parameter(self.m, "m", "kg")
+        m = assembly.parameter(self.m, "m", "kg", NOT_NEGATIVE)
         e = assembly.parameter(self.eccentricity, "e", self.x.unit)
         omega = assembly.parameter(self.speed, "speed", "rad/s")
         phi = assembly.parameter(self.angle, "unbalance_angle", "rad")

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from symbolic.equations.model import Model
 from symbolic.equations.variables import Coordinate, Parameter, Variable, coordinates
 from symbolic.kernels.choice import Kernels
-from symbolic.scenes.errors import InputError, shown
+from symbolic.scenes.errors import InputError, refused, shown
 from symbolic.scenes.model.bench import unknown
 from symbolic.scenes.model.composing import composed
 from symbolic.scenes.model.structures import StructureTable
@@ -77,7 +79,7 @@ class ModelScene(Table):
 
     title: Title
     kind: Literal["model", "structure"]
-    parameters: dict[str, float | SharedTable] = Field({}, description="a table of numbers")
+    parameters: dict[str, SharedTable] = Field({}, description="a table of numbers")
     coordinate: list[CoordinateTable] = Field([], description="tables [[coordinate]]")
     structure: list[StructureTable] = Field([], description="tables [[structure]]")
     part: list[dict[str, Any]] = Field(min_length=1, description="tables [[part]]")
@@ -99,13 +101,11 @@ class ModelScene(Table):
 
     def model(self) -> Model:
         """Return the model of the tables. Raises InputError."""
-        try:
+        with told():
             places = [q for table in self.coordinate for q in table.coordinates]
-            shared = [_parameter(*item) for item in self.parameters.items()]
+            shared = [Parameter(name, each.value, each.unit) for name, each in self.parameters.items()]
             structures = [table.structure(self._folder) for table in self.structure]
             return composed(places, shared, self.part, structures)
-        except ValueError as error:
-            raise InputError.said(str(error)) from None
 
     def system(self, kernels: Kernels, *, condense: bool = True) -> CompiledSystem:
         """Return the compiled model, `values` put in, structures at their places alone or not.
@@ -113,10 +113,8 @@ class ModelScene(Table):
         Raises InputError.
         """
         model = self.model()
-        try:
+        with told():
             system = compile(model, kernels, condense=condense)
-        except ValueError as error:
-            raise InputError.said(str(error)) from None
         names = [p.name for p in system.parameters]
         for name in self.parameters:
             if name not in names:
@@ -125,7 +123,22 @@ class ModelScene(Table):
         for name in self.values:
             if name not in names:
                 raise unknown("[values]", name, names, "the name of a parameter of the model")
-        return with_nominal(system, self.values) if self.values else system
+        with told():
+            return with_nominal(system, self.values) if self.values else system
+
+    @field_validator("parameters", mode="before")
+    @classmethod
+    def _shared(cls, given: Any) -> Any:
+        """A bare number is the value of a parameter."""
+        if not isinstance(given, dict):
+            return given
+        for name, each in given.items():
+            if isinstance(each, bool) or not isinstance(each, int | float | dict):
+                allowed = 'a number, or a table as {value = 1.0, unit = "rad/s"}'
+                raise refused(f"parameters.{name}", each, allowed)
+        return {
+            name: each if isinstance(each, dict) else {"value": float(each)} for name, each in given.items()
+        }
 
     @model_validator(mode="after")
     def _sound(self, info: ValidationInfo) -> ModelScene:
@@ -149,7 +162,10 @@ class ModelScene(Table):
         return self
 
 
-def _parameter(name: str, given: float | SharedTable) -> Parameter:
-    return (
-        Parameter(name, given) if isinstance(given, float | int) else Parameter(name, given.value, given.unit)
-    )
+@contextmanager
+def told() -> Iterator[None]:
+    """Let what Python functions refuse be refused as bad input. Raises InputError."""
+    try:
+        yield
+    except ValueError as error:
+        raise InputError.said(str(error)) from None
