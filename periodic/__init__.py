@@ -46,7 +46,12 @@ from periodic.results.branch import Branch
 from periodic.results.interactive.page import page
 from periodic.results.journal import JournalError, recovered
 from periodic.results.netcdf import BranchFileError
-from periodic.results.plots import plot
+from periodic.results.plots.branch import plot
+from periodic.results.plots.campbell import plot_campbell
+from periodic.results.plots.motion import plot_orbit, plot_phase, plot_spectrum
+from periodic.results.plots.multipliers import plot_multipliers
+from periodic.results.plots.regions import plot_regions
+from periodic.results.plots.waterfall import plot_waterfall
 from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
 from periodic.shooting.method import Shooting
@@ -140,6 +145,13 @@ __all__ = [
     "outputs",
     "page",
     "plot",
+    "plot_campbell",
+    "plot_multipliers",
+    "plot_orbit",
+    "plot_phase",
+    "plot_regions",
+    "plot_spectrum",
+    "plot_waterfall",
     "recovered",
     "recovery",
     "sampled",

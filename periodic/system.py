@@ -442,7 +442,9 @@ class Timed(System, Protocol):
     def frequency(self) -> Sequence[str]:
         """Names of the parameters whose product is the angular frequency Omega (rad/s).
 
-        A system may have `frequency_factor` too, by which that product is then multiplied.
+        A system may have `frequency_factor` too, by which that product is then multiplied, and
+        `frequency_held`, values by name of other parameters on which that factor depends: it is right at
+        these alone.
         """
 
 
@@ -514,6 +516,11 @@ def frequency_of(system: System) -> tuple[str, ...]:
 def frequency_factor_of(system: System) -> float:
     """Return what the product of the parameters `frequency_of` is multiplied by to be Omega."""
     return float(getattr(system, "frequency_factor", 1.0))
+
+
+def frequency_held_of(system: System) -> dict[str, float]:
+    """Return the values of parameters (SI) at which alone `frequency_factor_of` is right, by name."""
+    return dict(getattr(system, "frequency_held", {}))
 
 
 def compiling(system: System) -> Compiling | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from periodic.orbit.scheme import Array
-from periodic.system import System, VariableLike, frequency_factor_of, frequency_of
+from periodic.system import System, VariableLike, frequency_factor_of, frequency_held_of, frequency_of
 
 KINDS = {"states": "states", "algebraics": "unknowns", "parameters": "parameters"}
 """The groups that make an orbit's numbers, and what a sentence calls them."""
@@ -81,6 +81,8 @@ class Layout:
         does not tell.
     factor : float
         What that product is multiplied by to be Omega.
+    held : tuple of (str, float)
+        Values of parameters (SI) at which alone that factor is right.
     """
 
     states: tuple[Quantity, ...]
@@ -89,6 +91,7 @@ class Layout:
     parameters: tuple[Quantity, ...]
     frequency: tuple[str, ...] = ()
     factor: float = 1.0
+    held: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         known = [q.name for q in self.parameters]
@@ -124,6 +127,12 @@ class Layout:
                 "times in s are not known; the system must name the parameters that make its frequency"
             )
         values = {q.name: q.scale * float(v) for q, v in zip(self.parameters, parameter, strict=True)}
+        for name, value in self.held:
+            if not math.isclose(values[name], value, rel_tol=1e-12):
+                raise ValueError(
+                    f"times in s are not known for {name} = {values[name]:.9g}, only for {value:.9g}, its "
+                    f"nominal value; compile the model with {name} = {values[name]:.9g}"
+                )
         found = self.factor * math.prod(values[name] for name in self.frequency)
         if not 0 < found < math.inf:
             raise ValueError(f"frequency {' * '.join(self.frequency)} is {found}; it must be positive")
@@ -252,4 +261,5 @@ def layout_of(system: System) -> Layout:
         quantities(system.parameters),
         frequency_of(system),
         frequency_factor_of(system),
+        tuple(frequency_held_of(system).items()),
     )

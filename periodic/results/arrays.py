@@ -103,7 +103,12 @@ def attributes(record: Record) -> dict[str, Any]:
     points = record.points
     quantities = {g: [[q.name, q.unit, q.scale] for q in getattr(record.layout, g)] for g in GROUPS}
     said = {
-        "layout": {**quantities, "frequency": record.layout.frequency, "factor": record.layout.factor},
+        "layout": {
+            **quantities,
+            "frequency": record.layout.frequency,
+            "factor": record.layout.factor,
+            "held": record.layout.held,
+        },
         "labels": {p.label.value: p.label.critical for p in points},
         "stop": _said(record.stop),
         "stop_backwards": record.stop_backwards and _said(record.stop_backwards),
@@ -184,7 +189,9 @@ def record_of(arrays: Arrays, attributes: Mapping[str, Any]) -> Record:
 
 def _layout(said: dict[str, Any]) -> Layout:
     groups = {name: tuple(Quantity(*q) for q in said[name]) for name in GROUPS}
-    return Layout(**groups, frequency=tuple(said["frequency"]), factor=float(said.get("factor", 1.0)))
+    held = tuple((str(name), float(value)) for name, value in said.get("held", ()))
+    factor = float(said.get("factor", 1.0))
+    return Layout(**groups, frequency=tuple(said["frequency"]), factor=factor, held=held)
 
 
 def _label(text: str, critical: bool) -> Label:

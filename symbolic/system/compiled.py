@@ -99,16 +99,26 @@ class CompiledSystem:
         """What the product of the parameters `frequency` is multiplied by to be omega."""
         return self._product[1]
 
+    @property
+    def frequency_held(self) -> dict[str, float]:
+        """Values of other parameters that this factor depends on, by name."""
+        return self._product[2]
+
     @cached_property
-    def _product(self) -> tuple[tuple[str, ...], float]:
+    def _product(self) -> tuple[tuple[str, ...], float, dict[str, float]]:
+        """Parameters that omega is proportional to, the factor, and the nominal values of all others."""
         e = self.expressions
         used = ca.jacobian(e.frequency, e.parameter).sparsity().get_col()
-        product = math.prod((e.parameter[k] for k in used), start=ca.SX(1))
-        ratio = ca.Function("ratio", [e.parameter], [e.frequency / product])
-        there = [np.full(len(self.parameters), 1.0), np.linspace(0.7, 2.3, len(self.parameters))]
-        factor, other = (float(ratio(values)) for values in there)
-        names = tuple(self.parameters[k].name for k in used)
-        return (names, factor) if abs(other - factor) <= 1e-13 * abs(factor) else ((), 1.0)
+        there = np.linspace(0.7, 2.3, len(self.parameters))
+        names = []
+        for k in used:
+            twice = np.where(np.arange(len(there)) == k, 2.0, 1.0) * there
+            if math.isclose(self.omega(twice), 2 * self.omega(there), rel_tol=1e-13):
+                names.append(k)
+        unit = np.array([1.0 if k in names else value for k, value in enumerate(self.nominal)])
+        held = {self.parameters[k].name: float(self.nominal[k]) for k in used if k not in names}
+        factor = self.omega(unit) if names else 1.0
+        return tuple(self.parameters[k].name for k in names), factor, held
 
     @cached_property
     def _omega(self) -> ca.Function:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from reports.app.curve import draw_curve
+from periodic.results.plots.curve import draw_curve
 from reports.app.drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
 from reports.app.view import View, view_of
 from symbolic.scenes.schema import Scene

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from periodic import Branch
-from reports.app.curve import draw_curve
+from periodic.results.plots.curve import draw_curve
 from reports.studies.pages.figures import SECOND, TRUSTED, panels
 
 MARKERS = {"LP": "o", "PD": "D", "NS": "s", "BP": "x", "GR": "^"}

@@ -10,7 +10,7 @@ import numpy as np
 
 import symbolic as sym
 from periodic import Branch, Label, trace
-from reports.app.curve import draw_curve
+from periodic.results.plots.curve import draw_curve
 from reports.studies.machines.machine import rpm
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.pages.figures import SECOND, TRUSTED, panels

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from periodic import Label
-from reports.app.curve import draw_curve
+from periodic.results.plots.curve import draw_curve
 from reports.studies.pages.content import Found, Section, Tell
 from reports.studies.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.studies.paper.branches import preload, resonance

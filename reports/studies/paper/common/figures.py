@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from periodic import Branch, Label
-from reports.app.curve import draw_curve
+from periodic.results.plots.curve import draw_curve
 from reports.studies.paper.common.discs import MICRO
 from reports.studies.paper.common.tracing import xy
 from symbolic.scenes.axes import RPM

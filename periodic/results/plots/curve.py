@@ -19,22 +19,45 @@ def draw_curve(
     up: np.ndarray,
     stable: np.ndarray,
     *,
-    color: str,
+    color: str | None = None,
     labels: tuple[str, str] = ("stable", "unstable"),
     linewidth: float = 1.8,
-) -> None:
-    """Draw a curve through points as two lines, each broken where the other goes on.
+) -> str | None:
+    """Draw a curve through points, one line for each stretch of one stability, and return its colour.
 
-    `stable` tells each segment's kind; an empty label leaves its line out of the legend.
+    `stable` tells each segment's kind; an empty label leaves its lines out of the legend. Without a colour it
+    is the next one of the axes.
     """
     if len(across) < 2:
-        return
-    chosen = np.repeat(stable, PER_SEGMENT)
+        return color
+    from matplotlib.colors import to_hex
+
     across, up = smooth(across, up)
-    for part, style, label in ((chosen, "-", labels[0]), (~chosen, "--", labels[1])):
-        if part.any():
-            x, y = _pieces(across, part), _pieces(up, part)
-            axes.plot(x, y, style, color=color, linewidth=linewidth, label=label or None)
+    named: set[bool] = set()
+    for piece, kind in runs(stable):
+        part = slice(PER_SEGMENT * piece.start, PER_SEGMENT * (piece.stop - 1) + 1)
+        label = labels[not kind] if kind not in named else ""
+        (line,) = axes.plot(
+            across[part],
+            up[part],
+            "-" if kind else "--",
+            color=color,
+            linewidth=linewidth,
+            label=label or None,
+        )
+        named.add(kind)
+        color = color or to_hex(line.get_color())
+    return color
+
+
+def runs(stable: np.ndarray) -> list[tuple[slice, bool]]:
+    """Cut a branch into stretches of one stability, as slices of points; neighbours share their end."""
+    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
+    return [
+        (slice(begin, end + 1), bool(stable[begin]))
+        for begin, end in zip(cuts[:-1], cuts[1:], strict=True)
+        if end > begin
+    ]
 
 
 def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -51,12 +74,3 @@ def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     where = np.interp(np.append(parts, len(x) - 1), np.arange(len(x)), length)
     curve = PchipInterpolator(length, np.column_stack([x, y]))(where)
     return curve[:, 0], curve[:, 1]
-
-
-def _pieces(values: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return the ends of the chosen segments, a gap before each that does not go on from the last."""
-    line: list[float] = []
-    for k in np.flatnonzero(chosen):
-        begins = not (k and chosen[k - 1])
-        line += [np.nan, values[k], values[k + 1]] if begins else [values[k + 1]]
-    return np.array(line)
