@@ -434,6 +434,14 @@ class Compiling(System, Protocol):
     def library(self, source: str) -> ctypes.CDLL | None:
         """The loaded library of a C source, the same one each time; None where NumPy is to do."""
 
+    def addresses(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
+        """Addresses of `linearise`, `move`, `switch`, `switch_gradient` in C; 0 for what is empty.
+
+        Each is a function of the number of points, then of arguments and results in order, as contiguous
+        arrays; of the results structural nonzeros alone are written. None where NumPy is to do. A system
+        that has `library` may be without it.
+        """
+
 
 class Timed(System, Protocol):
     """A system that tells how its phase runs in time, d/dt = Omega d/dtau."""
@@ -526,6 +534,11 @@ def frequency_held_of(system: System) -> dict[str, float]:
 def compiling(system: System) -> Compiling | None:
     """Return the system as one with a compiler, if it has one."""
     return cast(Compiling, system) if hasattr(system, "library") else None
+
+
+def addresses_of(system: System, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
+    """Return the addresses of a system's compiled kernels, see `Compiling`; None where it has none."""
+    return cast(Compiling, system).addresses(free) if hasattr(system, "addresses") else None
 
 
 def check_system(system: object) -> None:

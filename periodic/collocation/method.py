@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,14 +14,16 @@ from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
+from periodic.collocation.native import iteration
 from periodic.collocation.residual import evaluated
 from periodic.collocation.touch import change, pattern
 from periodic.collocation.unresolved import lost
 from periodic.correction.change import Change
+from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement, wanted_ntst
-from periodic.correction.newton import Correction, in_order
+from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
 from periodic.linear.bordering import GROWTH
@@ -124,6 +126,37 @@ class Collocation(Discretisation):
         line, own = evaluated(system, orbit, free), event_rows(system, orbit, free)
         return self.solver(system, orbit, line, own, impacts.jumps(system, orbit, free))
 
+    def corrected(
+        self,
+        system: System,
+        guess: Orbit,
+        free: tuple[int, ...],
+        conditions: Sequence[SideCondition],
+        settings: NewtonSettings,
+    ) -> Correction:
+        """Return what Newton's iteration finds, in one call of C where that is to be had."""
+        given = (system, guess, free, conditions, settings)
+        found = iteration.corrected(*given) if self._plain else None
+        return super().corrected(*given) if found is None else found
+
+    def _linearised(
+        self,
+        system: System,
+        orbit: Orbit,
+        free: tuple[int, ...],
+        conditions: Sequence[SideCondition],
+        settings: NewtonSettings,
+    ) -> Linearised:
+        """Return the equations at an orbit linearised and solved, likewise. Raises FAILURES."""
+        given = (system, orbit, free, conditions, settings)
+        found = iteration.linearised(*given) if self._plain else None
+        return linearised(self.linearise, *given) if found is None else found
+
+    @property
+    def _plain(self) -> bool:
+        """Whether its equations are those of the compiled iteration."""
+        return self.solver is condensation and type(self) is Collocation
+
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
         if not impacts.arrived(system, correction.orbit):
@@ -149,7 +182,9 @@ class Collocation(Discretisation):
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh."""
-        found = deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
+        found = deferred(
+            self.linearise, problem, correction.orbit, tangent, spectrum, solved=self._linearised
+        )
         if found is UNKNOWN:
             return found
         missing = stick.shortfall(problem.system, correction.orbit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,6 +28,11 @@ class ArclengthConstraint:
     scale: float
     index: int
     size: float = 1.0
+
+    @cached_property
+    def weighted(self) -> Array:
+        """Gradient in the states at the mesh points, shape (N+1, n)."""
+        return (mean_weights(self.origin) / self.size**2)[:, None] * self.direction.profile
 
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
@@ -59,8 +65,7 @@ class ArclengthConstraint:
         return origin.state(at), origin.rate(at)
 
     def _gradient(self, orbit: Orbit, free: tuple[int, ...], slope: Array) -> tuple[Array, Array]:
-        weights = mean_weights(self.origin) / self.size**2
-        weighted = weights[:, None] * self.direction.profile
+        weighted = self.weighted
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
         outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))

@@ -8,13 +8,14 @@ scheme.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Protocol, Self, runtime_checkable
 
 from periodic.correction.change import Change
+from periodic.correction.condition import SideCondition
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.meshes import Refinement
-from periodic.correction.newton import Correction
+from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -134,6 +135,36 @@ class Discretisation(Protocol):
         Refinement
             What to change of its mesh.
         """
+
+    def corrected(
+        self,
+        system: System,
+        guess: Orbit,
+        free: tuple[int, ...],
+        conditions: Sequence[SideCondition],
+        settings: NewtonSettings,
+    ) -> Correction:
+        """Return what Newton's iteration finds from a guess; a method may have a faster one of its own.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        guess : Orbit
+            Where it starts.
+        free : tuple of int
+            Indices of the free parameters.
+        conditions : sequence of SideCondition
+            As many side conditions.
+        settings : NewtonSettings
+            When it is converged.
+
+        Returns
+        -------
+        Correction
+            The orbit, or how the iteration failed.
+        """
+        return correct(self.linearise, system, guess, free, conditions, settings)
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return the first change of the pattern of events on the way from one orbit to another, if any.

@@ -6,13 +6,15 @@ mesh points, so its increment is the error of the orbit to first order.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.newton import Linearise, NewtonSettings, moved, newton_step
+from periodic.correction.condition import SideCondition
+from periodic.correction.newton import Linearise, Linearised, NewtonSettings, linearised, moved
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
@@ -20,6 +22,10 @@ from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
+from periodic.system import System
+
+Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]
+"""What linearises the equations at an orbit and solves them; raises FAILURES."""
 
 LEAST_SPAN = 1e-6
 """Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
@@ -76,29 +82,32 @@ def deferred(
     tangent: Increment,
     spectrum: Spectrum,
     only_at_points: tuple[int, ...] = (),
+    solved: Solved | None = None,
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
     `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
     multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit. The
-    states `only_at_points` count at the orbit's mesh points alone, not between them.
+    states `only_at_points` count at the orbit's mesh points alone, not between them. `solved` linearises and
+    solves in one; by default `periodic.correction.newton.linearised`, with `linearise`.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
     across = ArclengthConstraint(fine, onto, 0.0, problem.scale, problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
+    solve = solved or partial(linearised, linearise)
     try:
-        step = newton_step(linearise, problem.system, fine, problem.free, closing, NewtonSettings())
-        monodromy = step.operator.fundamental[-1]
+        found = solve(problem.system, fine, problem.free, closing, NewtonSettings())
+        monodromy = found.fundamental[-1]
         if len(orbit.mesh.exact_ends):
-            better = moved(problem.system, problem.free, step.operator.orbit, step.increment)
-            monodromy = linearise(problem.system, better, problem.free).fundamental[-1]
+            better = moved(problem.system, problem.free, found.orbit, found.increment)
+            monodromy = solve(problem.system, better, problem.free, closing, NewtonSettings()).fundamental[-1]
         multiplier = spectrum.apart(monodromy)
     except FAILURES:
         return UNKNOWN
-    change = step.increment
-    nodes = step.operator.orbit.nodes - fine.nodes + change.nodes
-    stages = step.operator.orbit.stages - fine.stages + change.stages
+    change = found.increment
+    nodes = found.orbit.nodes - fine.nodes + change.nodes
+    stages = found.orbit.stages - fine.stages + change.stages
     at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
     at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0

@@ -208,6 +208,28 @@ def newton_step(
     return Step(operator, found[0], found[1] if rows else None, size, length)
 
 
+@dataclass(frozen=True)
+class Linearised:
+    """The equations at an orbit: the Newton increment from there, and fundamental matrices (N+1, n, n)."""
+
+    orbit: Orbit
+    increment: Increment
+    fundamental: Array
+
+
+def linearised(
+    linearise: Linearise,
+    system: System,
+    orbit: Orbit,
+    free: tuple[int, ...],
+    conditions: Sequence[SideCondition],
+    settings: NewtonSettings,
+) -> Linearised:
+    """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
+    step = newton_step(linearise, system, orbit, free, conditions, settings)
+    return Linearised(step.operator.orbit, step.increment, step.operator.fundamental)
+
+
 def in_order(orbit: Orbit) -> bool:
     """Whether the event nodes of an orbit's mesh follow each other."""
     return bool((orbit.mesh.segment_lengths(orbit.phases) > 0).all())

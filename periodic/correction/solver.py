@@ -10,7 +10,7 @@ import numpy as np
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.change import Held
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.newton import Correction, NewtonSettings, correct
+from periodic.correction.newton import Correction, NewtonSettings
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.tolerance import Tolerance
@@ -62,7 +62,7 @@ class Solver:
         problem, method = self.problem, self.discretisation
         closing = [*problem.side_conditions(constraint.origin), constraint]
         settings = newton or self.tolerance.newton
-        found = correct(method.linearise, problem.system, guess, problem.free, closing, settings)
+        found = method.corrected(problem.system, guess, problem.free, closing, settings)
         self.work.add(found.iterations)
         if found.ok:
             found = method.accepted(problem.system, found)

@@ -92,15 +92,17 @@ class Mesh:
         return np.array([j for j, a in zip(ends, following, strict=True) if a.level == 0.0], dtype=int)
 
     @cached_property
-    def _layout(self) -> tuple[Array, Array, Array]:
-        segment = np.concatenate([np.full(len(b) - 1, s) for s, b in enumerate(self.breaks)])
+    def segments(self) -> tuple[NDArray[np.int_], Array, Array]:
+        """Of each interval its segment, and its left end and width in sigma, shapes (N,)."""
+        segment = np.repeat(np.arange(len(self.breaks)), [len(b) - 1 for b in self.breaks])
         left = np.concatenate([b[:-1] for b in self.breaks])
         width = np.concatenate([np.diff(b) for b in self.breaks])
         return segment, left, width
 
     @cached_property
-    def _gradients(self) -> tuple[Array, Array]:
-        segment, left, width = self._layout
+    def gradients(self) -> tuple[Array, Array]:
+        """Derivatives of the intervals' left ends and widths in the event nodes' phases, shapes (N, k)."""
+        segment, left, width = self.segments
         k = len(self.events)
         starts = segment[:, None] == np.arange(k)
         ends = (segment[:, None] + 1) % max(k, 1) == np.arange(k)
@@ -139,10 +141,10 @@ class Mesh:
         Grid
             Left ends and widths, with derivatives.
         """
-        segment, left, width = self._layout
+        segment, left, width = self.segments
         lengths = self.segment_lengths(phases)
         begin = phases if self.events else np.zeros(1)
-        return Grid(begin[segment] + lengths[segment] * left, lengths[segment] * width, *self._gradients)
+        return Grid(begin[segment] + lengths[segment] * left, lengths[segment] * width, *self.gradients)
 
     def nodes(self, phases: Array) -> Array:
         """Return the phases of the mesh points, both ends included.

@@ -31,10 +31,8 @@ GROWTHS = tuple(1.1**k for k in range(8))
 
 def density(orbit: Orbit) -> Array:
     """Return the mesh density wanted in each interval, shape (N,), in intervals per unit of tau."""
-    knots, width = orbit.mesh.scheme.knots, orbit.grid.width
-    ncol = orbit.mesh.scheme.ncol
-    gaps = knots[:, None] - knots[None, :] + np.eye(ncol + 1)
-    top = np.einsum("l,jln->jn", 1 / gaps.prod(axis=1), orbit.knots) / width[:, None] ** ncol
+    width, ncol = orbit.grid.width, orbit.mesh.scheme.ncol
+    top = np.einsum("l,jln->jn", orbit.mesh.scheme.barycentric, orbit.knots) / width[:, None] ** ncol
     order = 1 / (ncol + 1)
     wanted = np.empty(len(width))
     first = 0

@@ -63,10 +63,14 @@ class Scheme:
         return np.append(0.0, self.points)
 
     @cached_property
+    def barycentric(self) -> Array:
+        """Weights of the knots, 1 / prod_{i != j} (c_j - c_i), shape (ncol+1,)."""
+        return 1 / (self.knots[:, None] - self.knots + np.eye(len(self.knots))).prod(axis=1)
+
+    @cached_property
     def differentiation(self) -> Array:
         """D with p'(knot_i) = sum_l D[i, l] p(knot_l), shape (ncol+1, ncol+1)."""
-        gaps = self.knots[:, None] - self.knots[None, :] + np.eye(len(self.knots))
-        weights = 1 / gaps.prod(axis=1)
+        gaps, weights = self.knots[:, None] - self.knots + np.eye(len(self.knots)), self.barycentric
         matrix = weights[None, :] / weights[:, None] / gaps
         np.fill_diagonal(matrix, 0.0)
         np.fill_diagonal(matrix, -matrix.sum(axis=1))

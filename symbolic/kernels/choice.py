@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -120,6 +121,13 @@ class ChosenKernel:
     def compiled(self) -> bool:
         """Whether C runs."""
         return self._compiled is not None
+
+    def address(self, wanted: bool = False) -> int | None:
+        """Where C's function is, compiled now if it is `wanted`; None where NumPy runs."""
+        if self._compiled is None and wanted:
+            self._compiled = self._function(native.attempted(self.source))
+        function: Any = self._compiled
+        return None if function is None else ctypes.cast(function, ctypes.c_void_p).value
 
     @cached_property
     def _numpy(self) -> Run:

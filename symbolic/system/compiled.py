@@ -18,7 +18,7 @@ from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
-from symbolic.kernels.choice import Kernels, shared
+from symbolic.kernels.choice import ChosenKernel, Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart
@@ -80,6 +80,9 @@ class CompiledSystem:
         default_factory=dict, init=False, repr=False
     )
     _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
+    _addresses: dict[tuple[int, ...], tuple[int, int, int, int]] = field(
+        default_factory=dict, init=False, repr=False
+    )
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
 
     def __reduce__(self) -> tuple[Callable[[], CompiledSystem], tuple[()]]:
@@ -344,6 +347,27 @@ class CompiledSystem:
             self._libraries[source] = shared(source, self.kernels)
         return self._libraries[source]
 
+    def addresses(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
+        """Return where the compiled kernels are: see `periodic.system.Compiling`."""
+        if free not in self._addresses:
+            found = self._found(free)
+            if found is None:
+                return None
+            self._addresses[free] = found
+        return self._addresses[free]
+
+    def _found(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
+        """The addresses, where those of `linearise` are compiled: then what goes with it is too."""
+        rows = _address(self._derivatives(self._jacobians, self.expressions.residual, free))
+        if rows is None:
+            return None
+        moved = _address(self._move_kernel, wanted=True) if self.algebraics else 0
+        switches = (self._switch_kernel, self._switch_gradient_kernel) if self.switches else ()
+        value, slope = [_address(kernel, wanted=True) for kernel in switches] or (0, 0)
+        if moved is None or value is None or slope is None:
+            return None
+        return rows, moved, value, slope
+
     def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
         return build(arguments, results, self.kernels)
 
@@ -409,6 +433,10 @@ class CompiledSystem:
         with np.errstate(all="ignore"):
             kernel(*at, *_columns(*arrays))
         return Linearisation(*arrays)
+
+
+def _address(kernel: Callable[..., None], wanted: bool = False) -> int | None:
+    return kernel.address(wanted) if isinstance(kernel, ChosenKernel) else None
 
 
 def _columns(*arrays: Array) -> list[Array]:

@@ -15,10 +15,10 @@ from support.numpy_systems import LinearOscillator, Lines
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.compiled import LARGE as FULL
-from periodic.collocation.compiled import routines
 from periodic.collocation.condensation import Condensed
 from periodic.collocation.condensation import condensed as condense
+from periodic.collocation.native.elimination import LARGE as FULL
+from periodic.collocation.native.elimination import routines
 from periodic.correction.newton import correct
 from periodic.correction.outcome import Outcome
 from periodic.linear.bordering import chain

@@ -113,7 +113,7 @@ def _full(line: LinearisationLike) -> bool:
 
 @cache
 def _source() -> str:
-    return resources.files("periodic.collocation").joinpath("elimination.c").read_text()
+    return resources.files(__package__).joinpath("elimination.c").read_text()
 
 
 @cache

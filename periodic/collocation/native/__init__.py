@@ -1,0 +1,1 @@
+"""What small systems have C do, where they can compile it; NumPy does the same elsewhere."""

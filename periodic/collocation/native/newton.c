@@ -1,0 +1,416 @@
+/* What `periodic.correction.newton` does with the equations of collocation and one arclength constraint: the
+   whole iteration in one call. It follows `elimination.c` in one source.
+
+   Whatever is not plain sailing (a singular matrix, a step that makes things worse, event nodes that cross) ends
+   it with a code other than DONE: NumPy begins anew and says what is wrong. */
+
+#include <stdlib.h>
+
+enum { CROSSED = SINGULAR + 1, WORSE, GROWS, TOO_MANY, NO_ROOM };
+
+#define BEFORE 1e-9 /* as in residual.py */
+
+typedef void rows_at(whole points, const double *rate, const double *state, const double *algebraic,
+                     const double *phase, const double *parameter, double *residual, double *d_rate,
+                     double *d_state, double *d_algebraic, double *d_phase, double *d_parameter);
+typedef void move_to(whole points, const double *algebraic, const double *increment, double *moved);
+typedef void switch_at(whole points, const double *state, const double *phase, const double *parameter,
+                       double *value);
+typedef void slope_at(whole points, const double *state, const double *phase, const double *parameter,
+                      double *d_state, double *d_phase, double *d_parameter);
+
+/* A change of an orbit; outer (k + 1) holds the event nodes' phases and the free parameter. */
+struct change {
+    double *nodes, *stages, *algebraic, *outer;
+};
+
+/* As `periodic.collocation.iteration.Call` fills it. */
+struct call {
+    whole count, ncol, n, m, k, parameters, switches, exact;        /* sizes; exact: intervals before kinks */
+    whole free, most;                                               /* the free parameter, iterations allowed */
+    const whole *segment, *starts, *switch_of, *ends;               /* of the mesh */
+    const double *left, *width, *left_gradient, *width_gradient, *levels;
+    const double *points, *differentiation, *end, *weights;         /* of the scheme */
+    rows_at *rows;                                                  /* of the system */
+    move_to *move;
+    switch_at *switch_values;
+    slope_at *switch_slopes;
+    const double *weighted, *origin_nodes, *origin_node_rates;      /* of the arclength constraint */
+    const double *origin_knots, *origin_knot_rates, *origin_phases, *origin_left, *origin_width;
+    double *nodes, *stages, *algebraic, *phases, *parameter;        /* the orbit: the guess, then what is found */
+    double *maps;                                                   /* of the last linearisation */
+    struct change increment, kernel;
+    double period, nominal, tolerance, close, max_change, narrow, negligible, growth;
+    double origin_parameter, slope, distance;
+    double residual, size, length;
+    whole iterations;
+};
+
+/* Room for one linearisation; the kernels write structural nonzeros only, so that derivatives begin as 0. */
+struct room {
+    double *residual, *d_rate, *d_state, *d_algebraic, *d_phase, *d_parameter;
+    double *value, *by_state, *by_phase, *by_parameter; /* of switches at one mesh point */
+    double *left, *width, *knots, *rates, *tau, *rate, *state, *moved, *shift;
+    double *origin, *origin_rate, *step, *stage_map, *algebraic_map, *bordered, *work, *few;
+    whole *marks;
+};
+
+static double *taken(double **from, whole size)
+{
+    double *found = *from;
+    *from += size;
+    return found;
+}
+
+/* Lay out the room in one piece of memory, which is returned; NULL where there is none. */
+static double *lay_out(const struct call *c, struct room *r)
+{
+    const whole n = c->n, m = c->m, k = c->k, rows = n + m, points = c->count * c->ncol;
+    const whole w = 2 + n + k, w1 = w + n, ends = (c->count + 1) * n, last = n + k + 1;
+    const whole zeroed = points * rows * (2 * n + m + 3) + c->switches * (2 + n + c->parameters);
+    const whole room = (c->ncol * n + m) * w1 + m * (m + w1) + c->ncol * n * (c->ncol * n + w + 1)
+                       + 3 * c->ncol * c->ncol;
+    const whole other = 2 * c->count + 2 * c->count * (c->ncol + 1) * n + points * (1 + 2 * n + 2 * m) + 2 * ends
+                        + c->count * n * w + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + w + 4 * n;
+    double *all = malloc((zeroed + other) * sizeof(double)), *next = all;
+    if (!all)
+        return NULL;
+    memset(all, 0, zeroed * sizeof(double));
+    r->residual = taken(&next, points * rows);
+    r->d_rate = taken(&next, points * rows * n);
+    r->d_state = taken(&next, points * rows * n);
+    r->d_algebraic = taken(&next, points * rows * m);
+    r->d_phase = taken(&next, points * rows);
+    r->d_parameter = taken(&next, points * rows);
+    r->value = taken(&next, c->switches);
+    r->by_state = taken(&next, c->switches * n);
+    r->by_phase = taken(&next, c->switches);
+    r->by_parameter = taken(&next, c->switches * c->parameters);
+    r->left = taken(&next, c->count);
+    r->width = taken(&next, c->count);
+    r->knots = taken(&next, c->count * (c->ncol + 1) * n);
+    r->rates = taken(&next, c->count * (c->ncol + 1) * n);
+    r->tau = taken(&next, points);
+    r->rate = taken(&next, points * n);
+    r->state = taken(&next, points * n);
+    r->moved = taken(&next, points * m);
+    r->shift = taken(&next, points * m);
+    r->origin = taken(&next, ends);
+    r->origin_rate = taken(&next, ends);
+    r->step = taken(&next, c->count * n * w);
+    r->stage_map = taken(&next, points * n * w);
+    r->algebraic_map = taken(&next, points * m * w1);
+    r->bordered = taken(&next, last * (last + 2));
+    r->work = taken(&next, room);
+    r->few = taken(&next, n + c->ncol + 1 + w);
+    r->marks = (whole *)taken(&next, 4 * n);
+    return all;
+}
+
+/* Intervals, knots and rates of the orbit. */
+static int unfold(const struct call *c, struct room *r)
+{
+    const whole knots = c->ncol + 1, n = c->n;
+    for (whole s = 0; s < c->k; s++) {
+        const double next = s + 1 < c->k ? c->phases[s + 1] : c->phases[0] + c->period;
+        if (!(next - c->phases[s] > 0))
+            return CROSSED;
+    }
+    for (whole j = 0; j < c->count; j++) {
+        const whole s = c->segment[j];
+        double begin = 0, length = c->period;
+        if (c->k) {
+            begin = c->phases[s];
+            length = (s + 1 < c->k ? c->phases[s + 1] : c->phases[0] + c->period) - begin;
+        }
+        r->left[j] = begin + length * c->left[j];
+        r->width[j] = length * c->width[j];
+        double *own = r->knots + j * knots * n, *rates = r->rates + j * knots * n;
+        memcpy(own, c->nodes + j * n, n * sizeof(double));
+        memcpy(own + n, c->stages + j * c->ncol * n, c->ncol * n * sizeof(double));
+        for (whole l = 0; l < knots; l++)
+            for (whole s = 0; s < n; s++) {
+                double sum = 0;
+                for (whole i = 0; i < knots; i++)
+                    sum += c->differentiation[l * knots + i] * own[i * n + s];
+                rates[l * n + s] = sum / r->width[j];
+            }
+    }
+    return DONE;
+}
+
+/* The equations at the collocation points, before kinks that they fall on. */
+static void evaluate(const struct call *c, struct room *r)
+{
+    const whole n = c->n, ncol = c->ncol, points = c->count * ncol, rows = n + c->m;
+    for (whole j = 0; j < c->count; j++) {
+        memcpy(r->rate + j * ncol * n, r->rates + (j * (ncol + 1) + 1) * n, ncol * n * sizeof(double));
+        for (whole l = 0; l < ncol; l++)
+            r->tau[j * ncol + l] = r->left[j] + r->width[j] * c->points[l];
+    }
+    memcpy(r->state, c->stages, points * n * sizeof(double));
+    const int beside = c->points[ncol - 1] == 1.0;
+    for (whole e = 0; beside && e < c->exact; e++) {
+        const whole at = c->ends[e] * ncol + ncol - 1;
+        r->tau[at] -= BEFORE;
+        for (whole s = 0; s < n; s++)
+            r->state[at * n + s] -= BEFORE * r->rate[at * n + s];
+    }
+    c->rows(points, r->rate, r->state, c->algebraic, r->tau, c->parameter, r->residual, r->d_rate, r->d_state,
+            r->d_algebraic, r->d_phase, r->d_parameter);
+    for (whole e = 0; beside && e < c->exact; e++) {
+        const whole at = c->ends[e] * ncol + ncol - 1;
+        for (whole i = at * rows; i < (at + 1) * rows; i++) {
+            double late = r->d_phase[i];
+            for (whole s = 0; s < n; s++)
+                late += r->d_state[i * n + s] * r->rate[at * n + s];
+            r->residual[i] += BEFORE * late;
+        }
+    }
+}
+
+/* States and rates of the constraint's origin at the orbit's mesh points, where these have moved. */
+static void origin_at(const struct call *c, struct room *r, const double **states, const double **rates)
+{
+    const whole knots = c->ncol + 1, n = c->n;
+    int moved = 0;
+    for (whole a = 0; a < c->k; a++)
+        moved |= c->phases[a] != c->origin_phases[a];
+    *states = moved ? r->origin : c->origin_nodes;
+    *rates = moved ? r->origin_rate : c->origin_node_rates;
+    for (whole j = 0; moved && j <= c->count; j++) {
+        const double tau = j < c->count ? r->left[j] : r->left[0] + c->period, begin = c->origin_left[0];
+        double place = fmod(tau - begin, c->period);
+        place = begin + (place < 0 ? place + c->period : place);
+        whole low = 0, high = c->count; /* left[low] <= place < left[high] */
+        while (high - low > 1) {
+            const whole middle = (low + high) / 2;
+            if (c->origin_left[middle] <= place)
+                low = middle;
+            else
+                high = middle;
+        }
+        const double theta = fmin(1, fmax(0, (place - c->origin_left[low]) / c->origin_width[low]));
+        double *state = r->origin + j * n, *rate = r->origin_rate + j * n;
+        memset(state, 0, n * sizeof(double));
+        memset(rate, 0, n * sizeof(double));
+        for (whole l = 0; l < knots; l++) {
+            double basis = c->weights[l];
+            for (whole i = 0; i < knots; i++)
+                if (i != l)
+                    basis *= theta - (i ? c->points[i - 1] : 0.0);
+            for (whole s = 0; s < n; s++) {
+                state[s] += basis * c->origin_knots[(low * knots + l) * n + s];
+                rate[s] += basis * c->origin_knot_rates[(low * knots + l) * n + s];
+            }
+        }
+    }
+}
+
+/* The arclength constraint as a row (w) in (1, dx_0, dy). */
+static void constrain(const struct call *c, struct room *r, double *row)
+{
+    const whole n = c->n, k = c->k, w = 1 + n + k + 1;
+    const double *states, *rates;
+    origin_at(c, r, &states, &rates);
+    memset(row, 0, w * sizeof(double));
+    double value = 0;
+    for (whole j = 0; j <= c->count; j++) {
+        const double *gradient = c->left_gradient + (j < c->count ? j : 0) * k;
+        double along = 0;
+        for (whole s = 0; s < n; s++) {
+            const double weight = c->weighted[j * n + s], *map = c->maps + (j * n + s) * w;
+            value += weight * (c->nodes[j * n + s] - states[j * n + s]);
+            if (k)
+                along += weight * rates[j * n + s];
+            for (whole i = 0; i < w; i++)
+                row[i] += weight * map[i];
+        }
+        for (whole a = 0; a < k; a++)
+            row[1 + n + a] -= along * gradient[a];
+    }
+    row[0] += value + c->slope * (c->parameter[c->free] - c->origin_parameter) - c->distance;
+    row[1 + n + k] += c->slope;
+}
+
+/* The condition of an event node as a row (w) in (1, dx_0, dy). */
+static void tie(const struct call *c, struct room *r, whole event, double *row)
+{
+    const whole n = c->n, k = c->k, w = 1 + n + k + 1, node = c->starts[event], own = c->switch_of[event];
+    const double *state = c->nodes + node * n, *phase = c->phases + event;
+    c->switch_values(1, state, phase, c->parameter, r->value);
+    c->switch_slopes(1, state, phase, c->parameter, r->by_state, r->by_phase, r->by_parameter);
+    memset(row, 0, w * sizeof(double));
+    for (whole s = 0; s < n; s++)
+        for (whole i = 0; i < w; i++)
+            row[i] += r->by_state[own * n + s] * c->maps[(node * n + s) * w + i];
+    row[0] += r->value[own] - c->levels[event];
+    row[1 + n + event] += r->by_phase[own];
+    row[1 + n + k] += r->by_parameter[own * c->parameters + c->free];
+}
+
+/* The change of the orbit that goes with dx_0 and dy; constant is 1 for a Newton step, 0 along the branch. */
+static void spread(const struct call *c, struct room *r, double constant, const double *found, whole stride,
+                   struct change *to)
+{
+    const whole n = c->n, k = c->k, w = 1 + n + k + 1;
+    double *given = r->few;
+    given[0] = constant;
+    for (whole i = 1; i < w; i++)
+        given[i] = found[(i - 1) * stride];
+    for (whole i = 0; i < (c->count + 1) * n; i++) {
+        double sum = 0;
+        for (whole s = 0; s < w; s++)
+            sum += c->maps[i * w + s] * given[s];
+        to->nodes[i] = sum;
+    }
+    memcpy(to->outer, given + 1 + n, (k + 1) * sizeof(double));
+    recover(c->count, c->ncol, n, c->m, k + 1, constant, r->stage_map, r->algebraic_map,
+            c->differentiation + c->ncol + 1, r->width, to->nodes, to->outer, to->stages, to->algebraic,
+            given + w);
+}
+
+static double largest(whole count, const double *values, double so_far)
+{
+    for (whole i = 0; i < count; i++)
+        so_far = fmax(so_far, fabs(values[i]));
+    return so_far;
+}
+
+/* Size and length of the increment, see `periodic.correction.newton.sizes`. */
+static int measure(struct call *c, struct room *r)
+{
+    const whole n = c->n, m = c->m, k = c->k, w = 1 + n + k + 1, points = c->count * c->ncol;
+    double span = 1, effect = 0, left = 0, felt = 0;
+    for (whole s = 0; s < n; s++) {
+        double low = r->knots[s], high = low;
+        for (whole i = 1; i < c->count * (c->ncol + 1); i++) {
+            low = fmin(low, r->knots[i * n + s]);
+            high = fmax(high, r->knots[i * n + s]);
+        }
+        span = fmax(span, high - low);
+    }
+    const struct change *d = &c->increment;
+    double regular = largest(points * n, d->stages, largest((c->count + 1) * n, d->nodes, 0)) / span;
+    regular = largest(k, d->outer, regular);
+    for (whole i = 0; i < c->count * n; i++)
+        effect = fmax(effect, fabs(r->step[i * w + 1 + n + k]));
+    const double least = fmin(c->negligible / fmax(c->count * effect, 1e-300), c->nominal);
+    regular = fmax(regular, fabs(d->outer[k]) / fmax(fabs(c->parameter[c->free]), least));
+    if (m)
+        c->move(points, c->algebraic, d->algebraic, r->moved);
+    for (whole j = 0; m && j < c->count; j++) {
+        double unknowns = 0;
+        for (whole i = j * c->ncol * m; i < (j + 1) * c->ncol * m; i++)
+            unknowns = fmax(unknowns, fabs(r->moved[i] - c->algebraic[i]) / (1 + fabs(c->algebraic[i])));
+        left = fmax(left, unknowns * unknowns);
+        felt = fmax(felt, fmin(1, r->width[j] / c->narrow) * unknowns);
+    }
+    c->size = fmax(regular, left);
+    c->length = fmax(regular, felt);
+    const int finite = finite_all((c->count + 1) * n, d->nodes) && finite_all(points * n, d->stages)
+                       && finite_all(k + 1, d->outer) && (!m || finite_all(points * m, r->moved));
+    return finite ? DONE : NOT_FINITE;
+}
+
+/* Linearise at the orbit and solve for increment and kernel. */
+static int linearised(struct call *c, struct room *r)
+{
+    const whole n = c->n, k = c->k, w = 1 + n + k + 1, last = n + k + 1, wide = last + 2;
+    int code = unfold(c, r);
+    if (code != DONE)
+        return code;
+    evaluate(c, r);
+    code = condense(c->count, c->ncol, n, c->m, k, 1, r->residual, r->d_rate, r->d_state, r->d_algebraic, r->d_phase,
+                    r->d_parameter, r->width, c->left_gradient, c->width_gradient, c->points,
+                    c->differentiation + c->ncol + 1, c->end, r->knots, r->rates, c->nodes, r->step, r->stage_map,
+                    r->algebraic_map, &c->residual, r->work, r->marks);
+    if (code != DONE)
+        return code;
+    chain(c->count, n, w, r->step, c->maps);
+    for (whole i = 0; i < (c->count + 1) * n; i++)
+        if (!(largest(n, c->maps + i * w + 1, 0) <= c->growth))
+            return GROWS;
+    /* rows (dx_0, dy | increment, kernel): periodicity, event nodes, the constraint */
+    for (whole i = 0; i < last; i++) {
+        double *row = r->bordered + i * wide, *whole_row = r->few;
+        if (i < n) {
+            memcpy(whole_row, c->maps + (c->count * n + i) * w, w * sizeof(double));
+            whole_row[1 + i] -= 1;
+            whole_row[0] += c->nodes[c->count * n + i] - c->nodes[i];
+        } else if (i < n + k)
+            tie(c, r, i - n, whole_row);
+        else
+            constrain(c, r, whole_row);
+        memcpy(row, whole_row + 1, last * sizeof(double));
+        row[last] = -whole_row[0];
+        row[last + 1] = i == last - 1;
+    }
+    code = solve(last, 2, r->bordered);
+    if (code != DONE)
+        return code;
+    spread(c, r, 1, r->bordered + last, wide, &c->increment);
+    return measure(c, r);
+}
+
+/* Move the orbit by a part of the increment. */
+static void move(struct call *c, struct room *r, double part)
+{
+    const struct change *d = &c->increment;
+    const whole points = c->count * c->ncol;
+    for (whole i = 0; i < (c->count + 1) * c->n; i++)
+        c->nodes[i] += part * d->nodes[i];
+    for (whole i = 0; i < points * c->n; i++)
+        c->stages[i] += part * d->stages[i];
+    for (whole i = 0; i < c->k; i++)
+        c->phases[i] += part * d->outer[i];
+    c->parameter[c->free] += part * d->outer[c->k];
+    if (c->m && part != 1) {
+        for (whole i = 0; i < points * c->m; i++)
+            r->shift[i] = part * d->algebraic[i];
+        c->move(points, c->algebraic, r->shift, r->moved);
+    }
+    memcpy(c->algebraic, r->moved, points * c->m * sizeof(double));
+}
+
+static int iterate(struct call *c, struct room *r)
+{
+    double before = INFINITY;
+    int found = c->most == 0;
+    for (c->iterations = 0; !found && c->iterations < c->most;) {
+        const int code = linearised(c, r);
+        if (code != DONE)
+            return code;
+        if (c->length > 2 * before)
+            return WORSE;
+        before = c->length;
+        c->iterations++;
+        move(c, r, c->max_change / fmax(c->length, c->max_change));
+        found = c->size < c->tolerance;
+    }
+    if (!found)
+        return TOO_MANY;
+    const double size = c->size;
+    if (c->most == 0 || c->length > c->close * c->tolerance) {
+        const int code = linearised(c, r);
+        if (code != DONE)
+            return code;
+    }
+    if (c->most)
+        c->size = size;
+    const whole last = c->n + c->k + 1;
+    spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
+    return unfold(c, r) == DONE ? DONE : CROSSED;
+}
+
+/* Iterate to convergence, at most `most` times; 0 times is one linearisation at the orbit as it is. */
+int newton(struct call *c)
+{
+    struct room room;
+    double *all = lay_out(c, &room);
+    if (!all)
+        return NO_ROOM;
+    const int code = iterate(c, &room);
+    free(all);
+    return code;
+}

@@ -1,0 +1,156 @@
+"""Newton's iteration in one call of C against the same in NumPy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from support import traces
+from support.numpy_systems import LinearOscillator
+
+import periodic as per
+import symbolic as sym
+from periodic.collocation.native import iteration
+from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.error import deferred
+from periodic.correction.newton import NewtonSettings, correct, linearised
+from periodic.linear.unknowns import parameter_only, size_of
+from periodic.orbit.orbit import Orbit
+from periodic.results.point import Point
+from symbolic.kernels import native
+from symbolic.scenes.building import build
+from symbolic.scenes.files import load
+
+Array = NDArray[np.float64]
+NEWTON = NewtonSettings()
+METHOD = per.Collocation()
+
+if native.compiler() is None:
+    pytest.skip("there is no C compiler", allow_module_level=True)
+
+
+@cache
+def compiled(name: str, kernels: str = "c") -> sym.CompiledSystem:
+    """A scene of the package with its kernels in C."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ORBITRACE_KERNELS", kernels)
+        return build(load(name))
+
+
+@cache
+def duffing() -> per.Branch:
+    """The resonance of Duffing's oscillator."""
+    return per.trace(compiled("duffing"), "Omega", (0.3, 3.0))
+
+
+def beside(system: sym.CompiledSystem, orbit: Orbit, name: str) -> tuple[ArclengthConstraint, Orbit]:
+    """A constraint across the parameter and the motion, about an orbit, and a guess a little away."""
+    index = [p.name for p in system.parameters].index(name)
+    rng = np.random.default_rng(3)
+    direction = replace(parameter_only(orbit, 0.1), profile=rng.normal(size=orbit.nodes.shape))
+    constraint = ArclengthConstraint(orbit, direction, 1e-4, 1.0, index, size_of(orbit))
+    guess = replace(
+        orbit, nodes=orbit.nodes * (1 + 1e-4), phases=orbit.phases + 1e-4, stages=orbit.stages * (1 + 1e-4)
+    )
+    return constraint, guess
+
+
+def close(found: Array, expected: Array, tolerance: float) -> None:
+    """Assert equality to a tolerance relative to the largest entry."""
+    assert found.shape == expected.shape
+    assert np.abs(found - expected).max(initial=0.0) <= tolerance * np.abs(expected).max(initial=1.0)
+
+
+def lost_contact() -> Orbit:
+    """An orbit of the disc with event nodes."""
+    return max((p.orbit for p in traces.disc().points), key=lambda orbit: len(orbit.phases))
+
+
+CASES = {"duffing": ("Omega", lambda: duffing().points[20].orbit), "vitrea79-810N": ("speed", lost_contact)}
+
+
+@pytest.mark.parametrize("close_to", [0.0, 1.0])
+@pytest.mark.parametrize("name", CASES)
+def test_corrections_are_the_same(name: str, close_to: float) -> None:
+    """Assert orbit, kernel, multipliers, sizes and iterations of both, with and without event nodes."""
+    system, (parameter, orbit_of) = compiled(name), CASES[name]
+    constraint, guess = beside(system, orbit_of(), parameter)
+    given = (system, guess, (constraint.index,), [constraint], replace(NEWTON, close=close_to))
+    found, expected = iteration.corrected(*given), correct(METHOD.linearise, *given)
+    assert found is not None and found.ok and expected.ok and expected.kernel is not None
+    assert found.iterations == expected.iterations > 2
+    for part in ("nodes", "stages", "phases", "parameter"):
+        close(getattr(found.orbit, part), getattr(expected.orbit, part), 1e-9)
+    close(found.orbit.algebraic, expected.orbit.algebraic, 1e-8)
+    for part in ("nodes", "stages", "algebraic", "phases", "parameters", "profile"):
+        close(getattr(found.kernel, part), getattr(expected.kernel, part), 1e-6)
+    close(found.fundamental, expected.fundamental, 1e-7)
+    assert found.residual < 10 * expected.residual + 1e-9 and found.increment < NEWTON.tolerance
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_error_estimates_are_the_same(name: str) -> None:
+    """Assert the increment on a halved mesh, and what the error estimate makes of it."""
+    system, (parameter, orbit_of) = compiled(name), CASES[name]
+    constraint, guess = beside(system, orbit_of(), parameter)
+    given = (system, guess, (constraint.index,), [constraint], NEWTON)
+    found, expected = iteration.linearised(*given), linearised(METHOD.linearise, *given)
+    assert found is not None
+    close(found.increment.nodes, expected.increment.nodes, 1e-7)
+    close(found.increment.parameters, expected.increment.parameters, 1e-7)
+    close(found.fundamental, expected.fundamental, 1e-7)
+
+    problem = per.Problem(system, parameter, (0.3, 100.0))
+    solution = correct(METHOD.linearise, *given)
+    spectrum = METHOD.spectrum(solution, 0)
+    both = (iteration.linearised, None)
+    one, two = (
+        deferred(METHOD.linearise, problem, solution.orbit, constraint.direction, spectrum, solved=solved)
+        for solved in both
+    )
+    assert [one.orbit, one.parameter] == pytest.approx([two.orbit, two.parameter], rel=1e-2, abs=1e-9)
+    assert one.multiplier == pytest.approx(two.multiplier, rel=1e-2, abs=1e-9)
+
+
+def test_who_is_left_to_numpy() -> None:
+    """Assert that C leaves alone other conditions, large systems, and those without its kernels."""
+    orbit = duffing().points[20].orbit
+    constraint, guess = beside(compiled("duffing"), orbit, "Omega")
+
+    def chosen(system: per.System, free: tuple[int, ...] = (constraint.index,), count: int = 1) -> bool:
+        return iteration.corrected(system, guess, free, [constraint] * count, NEWTON) is not None
+
+    assert chosen(compiled("duffing"))
+    assert not chosen(compiled("duffing", "numpy"))
+    assert not chosen(compiled("duffing"), free=()) and not chosen(compiled("duffing"), count=2)
+    assert not chosen(LinearOscillator())
+    many = replace(guess, nodes=np.zeros((len(guess.nodes), iteration.MOST + 1)))
+    assert iteration.corrected(compiled("duffing"), many, (constraint.index,), [constraint], NEWTON) is None
+
+
+def test_what_fails_is_told_by_numpy() -> None:
+    """Assert that an iteration that does not converge is left to NumPy, whose outcome stands."""
+    orbit = duffing().points[20].orbit
+    constraint, guess = beside(compiled("duffing"), orbit, "Omega")
+    far = replace(constraint, distance=50.0)
+    given = (compiled("duffing"), guess, (constraint.index,), [far], replace(NEWTON, max_iterations=2))
+    assert iteration.corrected(*given) is None
+    assert METHOD.corrected(*given).outcome is correct(METHOD.linearise, *given).outcome
+    broken = replace(guess, stages=guess.stages * np.nan)
+    assert iteration.corrected(given[0], broken, *given[2:]) is None
+
+
+def summary(point: Point) -> list[float]:
+    """Some numbers of a point."""
+    return [point.parameter, *point.maximum.values(), *np.abs(point.multipliers)]
+
+
+def test_branches_are_the_same() -> None:
+    """Assert the branch of Duffing's resonance point by point, in C and in NumPy, to 1e-8."""
+    other = per.trace(compiled("duffing", "numpy"), "Omega", (0.3, 3.0))
+    assert [p.label for p in other] == [p.label for p in duffing()]
+    for a, b in zip(other, duffing(), strict=True):
+        assert summary(a) == pytest.approx(summary(b), rel=1e-8)
