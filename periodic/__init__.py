@@ -43,6 +43,7 @@ from periodic.orbit.row import Row
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Family, Scheme
 from periodic.results.branch import Branch
+from periodic.results.export.export import export
 from periodic.results.interactive.page import page
 from periodic.results.journal import JournalError, recovered
 from periodic.results.netcdf import BranchFileError
@@ -135,6 +136,7 @@ __all__ = [
     "doubled",
     "eigenvalues",
     "equilibria",
+    "export",
     "extrema",
     "first_lyapunov",
     "hopf",

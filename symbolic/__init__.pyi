@@ -59,10 +59,11 @@ from .parts.rotors.internal import InternalDamping
 from .parts.rotors.rub import Rub
 from .parts.rotors.unbalance import Unbalance
 from .parts.structure import Structure
-from .scenes.door import scene, scene_names
+from .scenes.door import scene
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
 from .scenes.model.catalogue import register_part
+from .scenes.names import scene_names
 from .structures.beam import beam
 from .structures.campbell import Campbell, campbell
 from .structures.energy import modal_energy

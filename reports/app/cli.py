@@ -1,4 +1,4 @@
-"""The command line: `orbitrace trace SCENE`, `linear SCENE`, `scenes`, `parts` and `new`.
+"""The command line: `orbitrace trace SCENE` and the other commands, each in a folder of its own.
 
 What is imported here is small; each command imports what it needs, so that --help is quick.
 """
@@ -14,6 +14,8 @@ from typing import Annotated
 import typer
 from typer._click.exceptions import ClickException
 
+from reports.app.doctor.command import doctor
+from reports.app.export.command import export
 from reports.app.linear.command import linear
 from reports.app.map.command import map_
 from reports.app.options import BAD_INPUT, DONE, say
@@ -24,11 +26,10 @@ from reports.app.trace.command import trace
 app = typer.Typer(
     help="Traces the periodic orbits of nonlinear vibrating systems through resonance.",
     epilog="To begin with: orbitrace trace vitrea79-810N",
-    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-for command in (scenes, trace, linear, parts, new):
+for command in (scenes, trace, linear, export, parts, new, doctor):
     app.command()(command)
 app.command("map")(map_)
 

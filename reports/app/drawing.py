@@ -26,9 +26,12 @@ def figure(height: float) -> Figure:
 
 
 def legend(axes: Axes) -> None:
-    """Name what is drawn, if any of it has a name."""
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, loc="upper right")
+    """Name what is drawn, if any of it has a name: below the axes, where no curve is."""
+    handles, names = axes.get_legend_handles_labels()
+    if names:
+        drawn = axes.get_figure(root=True)
+        assert drawn is not None
+        drawn.legend(handles, names, frameon=False, loc="outside lower center", ncols=min(len(names), 3))
 
 
 def write(path: Path, drawn: Figure, axes: Axes, title: str) -> None:

@@ -13,23 +13,38 @@ from typing import Annotated
 
 import typer
 
+from reports.app.completion import axis_names, keys, scene_files
+
 DONE, BAD_INPUT, STOPPED_EARLY, INTERRUPTED = 0, 2, 3, 130
 """Exit codes; the last is a shell's own for a program that Ctrl-C ended."""
 
-Source = Annotated[str, typer.Argument(metavar="SCENE", help="A built-in scene or a TOML file.")]
+Source = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A built-in scene or a TOML file.", autocompletion=scene_files)
+]
 Changes = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change the scene, as in --set film.beta=20."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Change the scene, as in --set film.beta=20.", autocompletion=keys
+    ),
 ]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Where files go. [default: orbitrace-out/SCENE]"),
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        help="Where files go. [default: orbitrace-out/SCENE; SCENE-2, ... for other settings]",
+    ),
 ]
 
 
 Axis = Annotated[
     str | None,
-    typer.Option("--axis", metavar="UNIT", help="Read the frequency in rev/min, Hz or rad/s."),
+    typer.Option(
+        "--axis",
+        metavar="UNIT",
+        help="Read the frequency in rev/min, Hz or rad/s.",
+        autocompletion=axis_names,
+    ),
 ]
 Own = Annotated[
     list[str] | None,
@@ -80,10 +95,3 @@ def count(option: str, text: str | None) -> int | None:
     if number < 1:
         raise refused(option, text, "a whole number of at least 1")
     return number
-
-
-def folder_for(out: Path | None, name: str) -> Path:
-    """Return the directory for the files of a scene, which can be written to. Raises InputError."""
-    from reports.app.files import writable
-
-    return writable(out or Path("orbitrace-out", name))

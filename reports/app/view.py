@@ -41,7 +41,7 @@ class View:
 
     `unit` is the SI value of one shown unit of the continuation parameter, its column the first. `columns`
     go to the CSV file; those with a heading are told of special points too. `height` is what the picture
-    plots, `settled` the same of a motion settled in time.
+    plots, `settled` the same of a motion settled in time. Outputs in `micro` are read in micrometres.
     """
 
     parameter: str
@@ -51,11 +51,17 @@ class View:
     settled: Callable[[Settled], float]
     axes: tuple[str, str]
     unit_name: str
+    micro: tuple[str, ...] = ()
 
     @property
     def abscissa(self) -> Column:
         """The column of the continuation parameter."""
         return self.columns[0]
+
+    @property
+    def stem(self) -> str:
+        """What the continuation parameter is called, without its unit."""
+        return self.abscissa.heading.partition(" (")[0]
 
     @property
     def told(self) -> tuple[Column, ...]:
@@ -80,10 +86,9 @@ def view_of(scene: Scene) -> View:
 
 def _on_axis(view: View, axis: str) -> View:
     """The same with the parameter in another unit."""
-    stem = view.abscissa.heading.partition(" (")[0]
     column = Column(
         name=f"{view.abscissa.name.removesuffix('_rpm')}_{SHORT[axis]}",
-        heading=f"{stem} ({axis})",
+        heading=f"{view.stem} ({axis})",
         value=_parameter(AXES[axis]),
     )
     return replace(
@@ -183,6 +188,7 @@ DISC = View(
     settled=lambda motion: (motion.maximum - motion.minimum) / MICRO,
     axes=("speed (rev/min)", "x peak to peak (µm)"),
     unit_name="rev/min",
+    micro=("x", "film", "deflection"),
 )
 
 OSCILLATOR = View(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from symbolic.scenes.errors import InputError, refused
+from symbolic.scenes.names import scene_names
 from symbolic.system.compiled import CompiledSystem
 
 
@@ -43,16 +44,3 @@ def scene(source: str | Path, changes: Mapping[str, str | float | None] | None =
         return build(load(str(source), tuple(given.items())))
     except InputError as error:
         raise error.renamed({"--set key": "key"}) from None
-
-
-def scene_names() -> list[str]:
-    """Return the names of the built-in scenes, smaller numbers first.
-
-    Returns
-    -------
-    list of str
-        Names that `scene` takes.
-    """
-    from symbolic.scenes import files
-
-    return files.scene_names()

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +14,7 @@ from symbolic.scenes.errors import LONGEST, InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
+from symbolic.scenes.names import built_in, scene_names
 from symbolic.scenes.schema import Scene, schema_of
 
 Override = tuple[str, Value]
@@ -24,23 +23,6 @@ Override = tuple[str, Value]
 
 LARGEST = 32768
 """Bytes of a scene file; what is larger is none, and may take Python's reader of TOML for ever."""
-
-
-def scene_names() -> list[str]:
-    """Return the names of the built-in scenes, smaller numbers first."""
-    folder = resources.files("symbolic.scenes").joinpath("data")
-    names = [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
-    return sorted(names, key=lambda name: re.sub(r"\d+", lambda digits: digits[0].zfill(8), name))
-
-
-def built_in(name: str) -> str:
-    """Return the text of a built-in scene."""
-    return resources.files("symbolic.scenes").joinpath("data", f"{name}.toml").read_text("utf-8")
-
-
-def short_name(source: str) -> str:
-    """Return what to call a scene: its name, or that of its file without folder and ending."""
-    return source if source in scene_names() else Path(source).stem
 
 
 def ends(scene: Scene) -> list[str]:
@@ -59,6 +41,13 @@ def load(source: str, overrides: Sequence[Override] = ()) -> Scene:
         set_value(tables, _address(schema, key, tables, folder), value)
         schema = schema_of(tables)
     return _validated(schema, tables, folder)
+
+
+def keys_of_scene(source: str) -> list[str]:
+    """Return the keys that the overrides of a scene may name. Raises InputError."""
+    tables = _parsed(source, _text(source))
+    schema = schema_of(tables)
+    return list(model_keys(tables)) if issubclass(schema, ModelScene) else list(keys_of(schema))
 
 
 def _address(schema: type[Scene], key: str, tables: dict[str, Any], folder: Path) -> Steps:

@@ -16,7 +16,6 @@ from reports.app.options import (
     Out,
     Own,
     Source,
-    folder_for,
     pairs,
     say,
     take_parts,
@@ -24,6 +23,7 @@ from reports.app.options import (
 
 if TYPE_CHECKING:
     from reports.app.linear.study import Study
+    from reports.app.request import Task
 
 Values = Annotated[
     str | None,
@@ -50,15 +50,23 @@ def linear(
     Writes linear.csv (the response over the scene's range), linear.json and linear.png. Exit code 0: done;
     2: bad input; 3: no equilibrium was found.
     """
-    from reports.app.linear import study, text
     from reports.app.request import Request, validated
-    from reports.app.rest import check_rest
-    from symbolic.motion.linear import NoRestError
-    from symbolic.scenes.files import short_name
+    from reports.app.settings import folder_for, settings
+    from symbolic.scenes.names import short_name
 
     take_parts(parts)
     task = validated(Request(source=scene, at=at, overrides=pairs(changes), axis=axis))
-    folder = folder_for(out, name := short_name(scene))
+    name = short_name(scene)
+    with folder_for(out, settings(name, task.scene, "linear", at=list(task.at), axis=axis)) as folder:
+        return _run(name, task, folder, as_json)
+
+
+def _run(name: str, task: Task, folder: Path, as_json: bool) -> int:
+    """Linearise, save and tell; return the exit code."""
+    from reports.app.linear import study, text
+    from reports.app.rest import check_rest
+    from symbolic.motion.linear import NoRestError
+
     try:
         found = study.study(task)
     except NoRestError as error:

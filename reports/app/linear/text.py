@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from reports.app.linear.study import Array, Study
+from reports.app.settings import parameters
 from reports.app.view import MICRO, View, view_of
 from symbolic import CompiledSystem
 from symbolic.scenes.axes import SHORT
@@ -71,7 +72,7 @@ def summary(name: str, found: Study) -> dict[str, Any]:
         top = {at: view.shown(found.peak[0]), f"{output}_pp_{unit}": found.peak[1] / scale}
     return {
         "scene": name,
-        "parameters": found.scene.model_dump(exclude={"title", "kind"}, exclude_none=True, by_alias=True),
+        "parameters": parameters(found.scene),
         "resonance": None if found.resonance is None else {at: view.shown(found.resonance)},
         "peak": top,
         "states": [{"name": state.name, "unit": state.unit} for state in found.system.states],

@@ -19,7 +19,6 @@ from reports.app.options import (
     Out,
     Source,
     count,
-    folder_for,
     pairs,
     say,
 )
@@ -64,18 +63,19 @@ def map_(
     """
     from reports.app.map.axes import axes
     from reports.app.request import Request, validated
-    from symbolic.scenes.files import short_name
+    from reports.app.settings import folder_for, settings
+    from symbolic.scenes.names import short_name
 
     overrides = pairs(changes)
     task = validated(Request(source=scene, begin=begin, end=end, overrides=overrides))
     values, keys = axes(scene, overrides, over)
     cells, processes = count("--adaptive", adaptive), count("--jobs", jobs)
-    folder = folder_for(out, name := short_name(scene))
-
+    name, asked = short_name(scene), {"over": values, "cells": cells, "accuracy": accuracy.value}
     from reports.app.map.run import How
 
     how = How(accuracy=accuracy.name, jobs=processes, adaptive=cells, resume=resume)
-    return _run(name, task, values, keys, how, folder)
+    with folder_for(out, settings(name, task.scene, "map", **asked), resume) as folder:
+        return _run(name, task, values, keys, how, folder)
 
 
 def _run(

@@ -7,13 +7,22 @@ from typing import Annotated
 
 import typer
 
+from reports.app.completion import part_names, starts
 from reports.app.options import DONE, Own, take_parts
 
 Name = Annotated[
-    str | None, typer.Argument(metavar="[NAME]", help="A part; all of them where none is named.")
+    str | None,
+    typer.Argument(
+        metavar="[NAME]", help="A part; all of them where none is named.", autocompletion=part_names
+    ),
 ]
 Start = Annotated[
-    str, typer.Argument(metavar="KIND", help='"model", or a word of the name of a built-in scene, as "gear".')
+    str,
+    typer.Argument(
+        metavar="KIND",
+        help='"model", or a word of the name of a built-in scene, as "gear".',
+        autocompletion=starts,
+    ),
 ]
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The TOML file to write; it must not exist yet.")]
 

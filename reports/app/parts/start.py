@@ -9,8 +9,8 @@ from pathlib import Path
 
 from reports.app.parts.text import said, toml
 from symbolic.scenes.errors import InputError, refused
-from symbolic.scenes.files import built_in, scene_names
 from symbolic.scenes.model.catalogue import KIND, Entry, catalogue
+from symbolic.scenes.names import built_in, scene_names
 
 MODEL = "model"
 """The start of any model."""

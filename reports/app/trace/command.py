@@ -6,6 +6,7 @@ What is imported here is small, so that --help is quick.
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -22,7 +23,6 @@ from reports.app.options import (
     Own,
     Source,
     count,
-    folder_for,
     pairs,
     say,
     take_parts,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from periodic import Branch
     from reports.app.request import Task
     from reports.app.trace.picture import Settlements
-    from reports.app.trace.run import Effort
+    from reports.app.trace.run import Effort, Result
 
 
 class Accuracy(Enum):
@@ -75,6 +75,9 @@ Sweep = Annotated[
         "--sweep", help="Also integrate in time, up and down; the picture shows where that settles."
     ),
 ]
+Html = Annotated[
+    bool, typer.Option("--html", help="Also write branch.html, a page that shows the orbit pointed at.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print what branch.json holds, and nothing else.")]
 
 
@@ -93,48 +96,66 @@ def trace(
     max_points: MaxPoints = None,
     max_newton: MaxNewton = None,
     sweep: Sweep = False,
+    html: Html = False,
     as_json: Json = False,
 ) -> int:
     """Trace the branch of periodic orbits of a scene and find its folds.
 
-    Writes branch.nc, branch.csv, branch.json and branch.png. Exit code 0: done; 2: bad input; 3: stopped
-    early for a numerical reason, with what was traced saved. Ctrl-C saves what is there.
+    Writes branch.nc, branch.csv, branch.json, branch.png, and settings.json: what they are made with. Exit
+    code 0: done; 2: bad input; 3: stopped early for a numerical reason, with what was traced saved. Ctrl-C
+    saves what is there.
     """
     from reports.app.request import Request, validated
-    from symbolic.scenes.files import short_name
+    from reports.app.settings import folder_for, settings
+    from reports.app.trace.html import check_html
+    from symbolic.scenes.names import short_name
 
     take_parts(parts)
     wanted = Request(source=scene, begin=begin, end=end, at=at, overrides=pairs(changes), axis=axis)
     task = validated(wanted)
+    if html:
+        check_html()
     points, newton = count("--max-points", max_points), count("--max-newton", max_newton)
-    folder = folder_for(out, name := short_name(scene))
+    name, at_ = short_name(scene), list(task.at)
+    asked = {"at": at_, "axis": axis, "accuracy": accuracy.value, "method": method.value}
 
     from reports.app.trace.run import Effort
 
     effort = Effort(accuracy=accuracy.name, method=method.value, max_points=points, max_newton=newton)
-    return _run(name, task, effort, folder, resume=resume, sweep=sweep, as_json=as_json)
+    wishes = Wishes(resume=resume, sweep=sweep, html=html, as_json=as_json)
+    with folder_for(out, settings(name, task.scene, "trace", **asked), resume) as folder:
+        return _run(name, task, effort, folder, wishes)
 
 
-def _run(
-    name: str, task: Task, effort: Effort, folder: Path, *, resume: bool, sweep: bool, as_json: bool
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Wishes:
+    """What goes with a trace: taking one up, integrating in time, a page, JSON on standard output."""
+
+    resume: bool
+    sweep: bool
+    html: bool
+    as_json: bool
+
+
+def _run(name: str, task: Task, effort: Effort, folder: Path, wishes: Wishes) -> int:
     """Trace, integrate in time, save and tell; return the exit code."""
     from reports.app.interrupts import heard_once
     from reports.app.trace import run, shown, summary
 
-    before, journal = run.interrupted(task, folder) if resume else None, folder / run.JOURNAL
+    before, journal = run.interrupted(task, folder) if wishes.resume else None, folder / run.JOURNAL
     with heard_once():
         try:
             branch = _traced(name, task, effort, folder, before)
-            integrated = _swept(name, task) if sweep and not _interrupted(branch) else None
+            integrated = _swept(name, task) if wishes.sweep and not _interrupted(branch) else None
         except KeyboardInterrupt:
             journal.unlink(missing_ok=True)
             say("interrupted before the first point; nothing was saved")
             return INTERRUPTED
         folder = run.place(branch, folder)
-        files = _saved(name, task, branch, integrated, folder, journal)
+        result = run.Result(name=name, scene=task.scene, branch=branch, integrated=integrated)
+        files = _saved(result, folder, journal, html=wishes.html)
         journal.unlink(missing_ok=True)
-        if as_json:
+        if wishes.as_json:
             typer.echo(summary.json_text(name, task.scene, branch), nl=False)
         else:
             shown.show(task.scene, branch, files)
@@ -183,15 +204,13 @@ def _swept(name: str, task: Task) -> Settlements | None:
     return found
 
 
-def _saved(
-    name: str, task: Task, branch: Branch, integrated: Settlements | None, folder: Path, journal: Path
-) -> list[Path]:
+def _saved(result: Result, folder: Path, journal: Path, *, html: bool) -> list[Path]:
     """Write the files. Raises InputError that tells what is left of results that could not be written."""
     from reports.app.trace import run
     from symbolic.scenes.errors import InputError
 
     try:
-        return run.save(folder, name, task.scene, branch, integrated)
+        return run.save(folder, result, html=html)
     except InputError as error:
         if not (journal.is_file() and journal.stat().st_size):
             raise

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +27,8 @@ def draw(path: Path, scene: Scene, branch: Branch, integrated: Settlements | Non
     axes, view = drawn.add_subplot(), view_of(scene)
     draw_curve(axes, *_values(view, branch), branch.stable_between, color=BLUE)
     if integrated is not None:
-        _integrated(axes, integrated)
+        _integrated(axes, integrated, view.stem)
+    _asked_for(axes, view, branch)
     _marks(axes, view, branch)
     axes.set(xlabel=view.axes[0], ylabel=view.axes[1])
     axes.grid(alpha=0.25)
@@ -44,14 +45,23 @@ def _values(view: View, branch: Branch) -> tuple[np.ndarray, np.ndarray]:
     return np.array(across, dtype=float), np.array(up, dtype=float)
 
 
-def _integrated(axes: Axes, settled: Settlements) -> None:
-    """Draw what time integration settles to."""
+def _integrated(axes: Axes, settled: Settlements, parameter: str) -> None:
+    """Draw what time integration settles to, with the parameter rising and falling."""
     looks = (("^", GREEN, "rising"), ("v", ORANGE, "falling"))
     for points, (marker, color, way) in zip(settled, looks, strict=True):
         if points:
             x, y = np.array(points, dtype=float).T
-            name = f"time integration, speed {way}"
+            name = f"time integration, {parameter} {way}"
             axes.plot(x, y, marker, color=color, markersize=5, markerfacecolor="none", label=name)
+
+
+def _asked_for(axes: Axes, view: View, branch: Branch) -> None:
+    """Mark the points at values asked for."""
+    chosen = [point.label.value == "UZ" for point in branch]
+    if any(chosen):
+        across, up = (values[chosen] for values in _values(view, branch))
+        look: dict[str, Any] = {"color": ORANGE, "markersize": 7, "markerfacecolor": "none", "zorder": 4}
+        axes.plot(across, up, "s", label="values asked for", **look)
 
 
 def _marks(axes: Axes, view: View, branch: Branch) -> None:

@@ -13,6 +13,7 @@ import periodic as per
 from reports.app.files import INCOMPLETE, unwritable, writable, write
 from reports.app.request import Task
 from reports.app.sweep import Settled, sweep
+from reports.app.trace.html import write_page
 from reports.app.trace.picture import Settlements, draw
 from reports.app.trace.summary import csv_text, json_text
 from reports.app.view import view_of
@@ -156,14 +157,25 @@ def _length(path: Path) -> int:
         return 0
 
 
-def save(
-    folder: Path, name: str, scene: Scene, branch: per.Branch, integrated: Settlements | None = None
-) -> list[Path]:
-    """Write the four files of a branch and return them. Raises InputError if one cannot be written."""
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """A branch of a scene, and what time integration settles to where that was asked for."""
+
+    name: str
+    scene: Scene
+    branch: per.Branch
+    integrated: Settlements | None = None
+
+
+def save(folder: Path, result: Result, *, html: bool = False) -> list[Path]:
+    """Write the files of a branch and return them. Raises InputError if one cannot be written."""
+    name, scene, branch = result.name, result.scene, result.branch
     writers: dict[str, Callable[[Path], object]] = {
         BRANCH: branch.save,
         "branch.csv": lambda path: path.write_text(csv_text(scene, branch), "utf-8"),
         "branch.json": lambda path: path.write_text(json_text(name, scene, branch), "utf-8"),
-        "branch.png": lambda path: draw(path, scene, branch, integrated),
+        "branch.png": lambda path: draw(path, scene, branch, result.integrated),
     }
+    if html and len(branch):
+        writers["branch.html"] = lambda path: write_page(path, scene, branch)
     return write(folder, writers)

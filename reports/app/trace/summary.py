@@ -10,6 +10,7 @@ from importlib.metadata import version
 from platform import python_version
 from typing import TYPE_CHECKING, Any
 
+from reports.app.settings import parameters
 from reports.app.view import Cell, Column, View, view_of
 from symbolic.scenes.schema import Scene
 
@@ -31,7 +32,7 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
     view = view_of(scene)
     return {
         "scene": name,
-        "parameters": scene.model_dump(exclude={"title", "kind"}, exclude_none=True, by_alias=True),
+        "parameters": parameters(scene),
         "special_points": [_told(view, point) for point in branch.special_points],
         "points": len(branch),
         "newton_iterations": branch.newton_iterations,

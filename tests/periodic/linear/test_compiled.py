@@ -28,7 +28,8 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Family, Scheme
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load, scene_names
+from symbolic.scenes.files import load
+from symbolic.scenes.names import scene_names
 
 Array = NDArray[np.float64]
 FREE = (0,)

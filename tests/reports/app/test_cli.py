@@ -16,9 +16,12 @@ import pytest
 import periodic as per
 from reports.app.cli import main
 from reports.app.trace.picture import draw
-from symbolic.scenes.files import load, scene_names
+from symbolic.scenes.files import load
+from symbolic.scenes.names import scene_names
 
 FILES = {"branch.nc", "branch.csv", "branch.json", "branch.png"}
+HELD = FILES | {"settings.json"}
+"""What a directory holds then."""
 DISC_COLUMNS = (
     "speed_rpm,x_pp_um,film_pp_um,film_min_um,deflection_pp_um,load_min_N,load_max_N,"
     "multiplier_max,stable,label,error_estimate"
@@ -86,8 +89,8 @@ def test_scenes(capsys: Capture) -> None:
 
 
 def test_files(duffing: Outcome) -> None:
-    """Assert that the four files are written and nothing else is left."""
-    assert {file.name for file in duffing.folder.iterdir()} == FILES
+    """Assert that the files are written and nothing else is left."""
+    assert {file.name for file in duffing.folder.iterdir()} == HELD
     assert (duffing.folder / "branch.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -194,7 +197,7 @@ def test_default_folder(tmp_path: Path, monkeypatch: Patch) -> None:
     """Assert that the files go to orbitrace-out/SCENE unless told otherwise."""
     monkeypatch.chdir(tmp_path)
     assert main(["trace", "duffing", "--to", "0.31", "--accuracy", "draft"]) == 0
-    assert {file.name for file in Path("orbitrace-out", "duffing").iterdir()} == FILES
+    assert {file.name for file in Path("orbitrace-out", "duffing").iterdir()} == HELD
 
 
 def test_own_scene(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def test_numerical_stop(tmp_path: Path, capsys: Capture, monkeypatch: Patch) -> 
     stop = per.Stop(per.Reason.SMALL_STEP, "for a test")
     changed(monkeypatch, lambda trace, *args, **kwargs: replace(trace(*args, **kwargs), stop=stop))
     assert main(["trace", "duffing", "--to", "0.4", "--out", str(tmp_path)]) == 3
-    assert len(list(tmp_path.iterdir())) == 4
+    assert len(list(tmp_path.iterdir())) == 5
     assert json.loads((tmp_path / "branch.json").read_text("utf-8"))["stop"] == per.Reason.SMALL_STEP.value
     assert capsys.readouterr().err.startswith(f"orbitrace: stopped early ({stop}); the ")
 
@@ -122,7 +122,7 @@ def test_cut_short_never_replaces(tmp_path: Path, capsys: Capture, monkeypatch: 
     before = (tmp_path / "branch.nc").read_bytes()
     stop = per.Stop(per.Reason.SMALL_STEP, "for a test")
     changed(monkeypatch, lambda trace, *args, **kwargs: replace(trace(*args, **kwargs), stop=stop))
-    assert main(["trace", "duffing", "--to", "0.5", "--out", str(tmp_path)]) == 3
+    assert main(["trace", "duffing", "--to", "0.4", "--out", str(tmp_path)]) == 3
     assert (tmp_path / "branch.nc").read_bytes() == before
     assert len(list((tmp_path / "incomplete").iterdir())) == 4
     assert str(tmp_path / "incomplete") in capsys.readouterr().err
@@ -176,7 +176,7 @@ def test_full_standard_output(tmp_path: Path) -> None:
         said = process.communicate()[1]
     assert process.returncode == 2
     assert said == "orbitrace: standard output cannot be written to (No space left on device)\n"
-    assert len(list(tmp_path.iterdir())) == 4
+    assert len(list(tmp_path.iterdir())) == 5
 
 
 def test_request_to_end(tmp_path: Path) -> None:

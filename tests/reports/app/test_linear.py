@@ -52,9 +52,10 @@ def summary_of(folder: Path) -> dict[str, Any]:
 
 
 def test_files(tmp_path: Path, capsys: Capture) -> None:
-    """Assert that three files are written, nothing else is left, and all are named."""
+    """Assert that three files are written beside their settings, nothing else is left, and all are named."""
     told = ran(capsys, tmp_path, "vitrea79-810N")
-    assert {file.name for file in tmp_path.iterdir()} == {"linear.csv", "linear.json", "linear.png"}
+    files = {"linear.csv", "linear.json", "linear.png"}
+    assert {file.name for file in tmp_path.iterdir()} == files | {"settings.json"}
     assert (tmp_path / "linear.png").read_bytes().startswith(b"\x89PNG")
     assert all(str(tmp_path / name) in told for name in ("linear.csv", "linear.json", "linear.png"))
 

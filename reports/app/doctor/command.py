@@ -1,0 +1,33 @@
+"""The command `orbitrace doctor`. What is imported here is small, so that --help is quick."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from reports.app.options import DONE, STOPPED_EARLY
+
+Json = Annotated[bool, typer.Option("--json", help="Print the same as JSON, and nothing else.")]
+
+
+def doctor(as_json: Json = False) -> int:
+    """Tell versions, compiler, threads and BLAS, and check some numbers, for two seconds.
+
+    Exit code 0: all is well; 3: a number is wrong.
+    """
+    import json
+
+    from reports.app.doctor.machine import facts
+    from reports.app.doctor.numbers import checks
+    from reports.app.doctor.text import table, told
+
+    found = facts()
+    if not as_json:
+        typer.echo(table(found))
+    checked = checks()
+    if as_json:
+        typer.echo(json.dumps({**found, "checks": [told(check) for check in checked]}, indent=2))
+    else:
+        typer.echo(table({"numbers": {check.name: str(check) for check in checked}}))
+    return DONE if all(check.right for check in checked) else STOPPED_EARLY

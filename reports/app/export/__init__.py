@@ -1,0 +1,1 @@
+"""The command `orbitrace export`: a branch for another program."""

@@ -1,0 +1,34 @@
+"""The page of a branch: one HTML file that shows the orbit pointed at, in the units of its scene."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from symbolic.scenes.errors import InputError
+from symbolic.scenes.schema import Scene
+
+if TYPE_CHECKING:
+    from periodic import Branch
+
+
+def check_html() -> None:
+    """Raise InputError where the package is missing that draws the page."""
+    if find_spec("plotly") is None:
+        raise InputError("--html", "needs the package plotly", "pip install 'orbitrace[html]' installs it")
+
+
+def write_page(path: Path, scene: Scene, branch: Branch) -> None:
+    """Write the page of a branch."""
+    import periodic as per
+    from reports.app.view import MICRO, view_of
+
+    view = view_of(scene)
+    known = {quantity.name for quantity in branch.layout.outputs}
+    units = {name: ("µm", MICRO) for name in view.micro if name in known}
+    if view.unit_name:
+        units[view.parameter] = (view.unit_name, view.unit)
+    # A page is written under a name that ends in .html.
+    page = per.page(branch, path.with_suffix(".html"), title=scene.title, units=units)
+    page.replace(path)
