@@ -8,7 +8,13 @@ from pathlib import Path
 
 
 def scene_names() -> list[str]:
-    """Return the names of the built-in scenes, smaller numbers first."""
+    """Return the names of the built-in scenes, smaller numbers first.
+
+    Returns
+    -------
+    list of str
+        Names that `symbolic.scene` takes.
+    """
     folder = resources.files("symbolic.scenes").joinpath("data")
     names = [file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml")]
     return sorted(names, key=lambda name: re.sub(r"\d+", lambda digits: digits[0].zfill(8), name))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-
-import h5py
+from typing import TYPE_CHECKING
 
 from periodic.results.export.content import Content, Quantities
 from periodic.results.files import replacing
+
+if TYPE_CHECKING:
+    import h5py
 
 
 def write_hdf5(path: Path, content: Content) -> list[Path]:
@@ -16,6 +18,8 @@ def write_hdf5(path: Path, content: Content) -> list[Path]:
     Multipliers stand in /points/multipliers_real and /points/multipliers_imag (points, n); times in
     /orbits/t. A name that holds a slash, which HDF5 takes for a path, has a division sign in its place.
     """
+    import h5py
+
     with replacing(path) as part, h5py.File(part, "w") as file:
         file.attrs.update(parameter=content.parameter, stop=content.stop, program=content.program)
         points, orbits = file.create_group("points"), file.create_group("orbits")
