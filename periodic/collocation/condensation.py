@@ -31,7 +31,7 @@ class Condensed:
     """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
 
     algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one;
-    perturbed (N, n, n) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
+    perturbed (N, n, n+q) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
     `periodic.linear.bordering.Condensed`.
     """
 

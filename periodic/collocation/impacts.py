@@ -1,30 +1,23 @@
 """Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
 
-The mesh point of the event is x+, the polynomial of the interval before it ends at x-. Perturbations at fixed
-tau pass by the saltation matrix
-
-    S = r_x + (f+ - r_x f- - r_tau) s_x / (s_x f- + s_tau),
-
-f- and f+ being x' before and after: the linearisation of the flow through an event whose time follows the
-state (di Bernardo et al., Piecewise-smooth Dynamical Systems, 2.5).
+The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
+it is told by `periodic.collocation.saltation`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.rates import rate_at
-from periodic.collocation.sides import sides
+from periodic.collocation.saltation import before, mapped, rate_before, saltation
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, jumps_of, resets_of, slides_of
+from periodic.system import System, jumps_of, resets_of, slides_of
 
 SAMPLES = 17
 """Places in each interval at which an orbit is looked at between its impacts."""
@@ -50,61 +43,30 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
 def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
     switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
     interval, x, phase = before(orbit, index)
-    after, by_state, by_phase, by_parameter = _mapped(system, switch, x, phase, orbit.parameter)
+    after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, orbit.parameter)
     by_outer = np.zeros((x.shape[1], k + len(free)))
     by_outer[:, index] = by_phase[0]
     by_outer[:, k:] = by_parameter[0][:, list(free)]
-
-    start = orbit.mesh.starts[index]
-    side = sides(system, orbit.mesh)
-    unknown, known = orbit.algebraic, (rate_before(orbit, index), orbit.node_rates[start])
-    arriving = rate_at(system, orbit, x, known[0], unknown[interval, -1], phase, side[interval])
-    leaving = rate_at(system, orbit, after, known[1], unknown[start, 0], phase, side[start])
-    s_state, s_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
-    along = s_state[0, switch] @ arriving + s_phase[0, switch]
-    jump = leaving - by_state[0] @ arriving - by_phase[0]
-    saltation = by_state[0] + np.outer(jump, s_state[0, switch]) / along
-    return Jump(interval, x[0], after[0], by_state[0], by_outer, saltation)
-
-
-def _mapped(
-    system: System, switch: int, x: Array, phase: Array, parameter: Array
-) -> tuple[Array, Array, Array, Array]:
-    """x+ with its derivatives in state, phase and parameters; x- itself where only the equations jump."""
-    if switch not in resets_of(system):
-        n = x.shape[1]
-        return x, np.eye(n)[None], np.zeros((1, n)), np.zeros((1, n, len(parameter)))
-    resetting = cast(Resetting, system)
-    after = resetting.reset(switch, x, phase, parameter)
-    return after, *resetting.reset_gradient(switch, x, phase, parameter)
-
-
-def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
-    """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
-    interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst
-    return interval, orbit.mesh.scheme.end[None] @ orbit.knots[interval], orbit.phases[index : index + 1]
-
-
-def rate_before(orbit: Orbit, index: int) -> Array:
-    """x' at the end of the interval before an event node, shape (n,)."""
-    interval = before(orbit, index)[0]
-    return orbit.mesh.scheme.end @ orbit.knot_rates[interval]
+    carried = saltation(system, orbit, index, free)(x, phase, orbit.parameter)
+    return Jump(index, interval, x[0], after[0], by_state[0], by_outer, carried)
 
 
 def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> tuple[Array, Array | None]:
     """Return the steps (N, n, w) with impacts at their ends, and the steps of perturbations at fixed tau.
 
-    The latter have shape (N, n, n), None where there are no impacts.
+    The latter have shape (N, n, n+q), None where there are no impacts: their columns are the states, then the
+    free parameters.
     """
     if not found:
         return step, None
-    n = step.shape[1]
-    perturbed = step[:, :, 1 : 1 + n].copy()
+    n, k = step.shape[1], len(orbit.phases)
+    perturbed = np.concatenate([step[:, :, 1 : 1 + n], step[:, :, 1 + n + k :]], axis=2)
     for jump in found:
         j, start = jump.interval, orbit.nodes[jump.interval + 1]
         own = step[j].copy()
         own[:, 0] += start - jump.before
-        perturbed[j] = jump.saltation @ own[:, 1 : 1 + n]
+        perturbed[j] = jump.saltation[:, :n] @ perturbed[j]
+        perturbed[j, :, n:] += jump.saltation[:, n:]
         step[j] = jump.by_state @ own
         step[j, :, 0] += jump.after - start
         step[j, :, 1 + n :] += jump.by_outer

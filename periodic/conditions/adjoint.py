@@ -6,25 +6,32 @@ and stages; s . v is a functional of it. At fixed v_0 and v_y its gradient in th
     d(s . v) = lambda . dA v,   A^T lambda = -s,
 
 with the contraction of the second derivatives from the system (Govaerts, Numerical Methods for Bifurcations
-of Dynamical Equilibria, 2000, ch. 5).
+of Dynamical Equilibria, 2000, ch. 5); see `periodic.conditions.curvature`. Tangents are perturbations at
+fixed tau: impacts and jumps they pass by saltation.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import scipy
 
-from periodic.collocation.condensation import Condensed, condensed
+from periodic.collocation.condensation import Condensed, condense
+from periodic.collocation.impacts import jumps
+from periodic.collocation.residual import evaluated
+from periodic.collocation.saltation import at_fixed_phase, saltation_gradient
+from periodic.conditions.curvature import beside, curvature
 from periodic.linear.bordering import Chain, chain, onto_start
 from periodic.linear.variation import Complex, Tangent
-from periodic.orbit.gradients import Points, Slopes, collocation_points, gathered, solved
+from periodic.orbit.gradients import Points, collocation_points, gathered, solved
+from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.system import LinearisationLike, System, differentiable, jumps_of, resets_of
+from periodic.system import LinearisationLike, System
 
 
 @dataclass(frozen=True)
@@ -39,12 +46,19 @@ class Linear:
     free: tuple[int, ...]
     condensed: Condensed
     maps: Array
+    jumps: Sequence[Jump] = ()
 
     @staticmethod
     def about(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linear:
         """Linearise; `free` are the parameters that tangents may change."""
-        local = condensed(system, orbit, free)
-        return Linear(system, orbit, free, local, chain(local))
+        found = jumps(system, orbit, free)
+        local = condense(system, orbit, evaluated(system, orbit, free), found)
+        if local.perturbed is not None:
+            n, k = orbit.nodes.shape[1], len(orbit.phases)
+            step = np.zeros_like(local.step)
+            step[:, :, 1 : 1 + n], step[:, :, 1 + n + k :] = np.split(local.perturbed, [n], axis=2)
+            local = replace(local, step=step)
+        return Linear(system, orbit, free, local, chain(local), found)
 
     @cached_property
     def fundamental(self) -> Array:
@@ -89,8 +103,9 @@ class Linear:
         """Return det B - 1, B the monodromy matrix on the pair's subspace, and a basis of that."""
         right, left = _subspaces(self.monodromy, near)
         block = left.T @ self.monodromy @ right
-        size = float(np.linalg.det(block))
-        weights = left @ (size * np.linalg.inv(block).T)
+        (a, b), (c, d) = block
+        size = float(a * d - b * c)
+        weights = left @ np.array([[d, -c], [-b, a]])
         total = Row(size - 1, np.zeros_like(self.orbit.nodes), np.zeros(len(self.orbit.phases) + len(free)))
         for column, weight in zip(right.T, weights.T, strict=True):
             total += gradient(self, self.tangent(column), self.source(weight), free)
@@ -113,7 +128,11 @@ class Linear:
 
     def functional(self, row: Row) -> Array:
         """Return a row as a functional of (v_0, v_y)."""
-        return self.columns(onto_start(self.condensed.reduced(row), self.maps))
+        return self.columns(onto_start(self.condensed.reduced(self.at_fixed_phase(row)), self.maps))
+
+    def at_fixed_phase(self, row: Row) -> Row:
+        """Return a row for tangents at fixed tau, by which event nodes at jumps are told."""
+        return at_fixed_phase(self.system, self.orbit, self.jumps, row, self.free)
 
     def source(self, end: Array) -> Row:
         """Return the functional end . v_N."""
@@ -147,8 +166,9 @@ class Closed:
 
     def gradient(self, unknown: Array, left: Array, source: Row | None, free: tuple[int, ...]) -> Row:
         """Return the gradient of left . (M - mu I) v_0 + source . v."""
-        end = self.linear.source(left)
-        return gradient(self.linear, self.tangent(unknown), end if source is None else end + source, free)
+        end, linear = self.linear.source(left), self.linear
+        whole = end if source is None else end + linear.at_fixed_phase(source)
+        return gradient(linear, self.tangent(unknown), whole, free)
 
 
 def polynomial(orbit: Orbit) -> None:
@@ -158,32 +178,30 @@ def polynomial(orbit: Orbit) -> None:
 
 
 def gradient(linear: Linear, tangent: Tangent, source: Row, free: tuple[int, ...]) -> Row:
-    """Return the gradient of source . v in the orbit and the parameters `free`.
+    """Return the gradient of source . v in the orbit and the parameters `free`, both at fixed tau.
 
     The row's value is what the algebraic rows, not yet met, will add.
     """
-    system, orbit = differentiable(linear.system), linear.orbit
-    if resets_of(system) or jumps_of(system):
-        raise ValueError("system has impacts or jumps; exact second derivatives need one without")
+    system, orbit = linear.system, linear.orbit
     points = collocation_points(orbit)
-    line = system.linearise(*points.arguments(orbit), ())
-    weights = _adjoint(linear, line, source)
+    line = beside(system, orbit, points, ())
+    weights, at_end = _adjoint(linear, line, source)
     n, m = orbit.nodes.shape[1], orbit.algebraic.shape[2]
     knots = np.concatenate([tangent.nodes[:-1, None], tangent.stages], axis=1)
     rates = (orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]).reshape(-1, n)
-    found = system.curvature(
-        *points.arguments(orbit),
-        weights,
-        rates,
-        tangent.stages.reshape(-1, n),
-        tangent.algebraic.reshape(-1, m) if m else np.zeros((len(rates), 0)),
-        tangent.parameter,
-    )
-    row = gathered(system, orbit, points, Slopes.of(found, free), free)
+    states, unknowns = tangent.stages.reshape(-1, n), tangent.algebraic.reshape(len(rates), m)
+    along = replace(points, rate=rates, state=states, algebraic=unknowns)
+    slopes = curvature(system, orbit, points, weights, along, tangent.parameter, free)
+    row = gathered(system, orbit, points, slopes, free)
     slope = np.einsum("pr,prn,pn->p", weights, line.d_rate, rates)
     outer = row.outer
     outer[: len(orbit.phases)] -= _stretched(orbit, points, slope)
-    return Row(row.value, row.nodes, outer, row.stages)
+    row = Row(row.value, row.nodes, outer, row.stages)
+    for jump in linear.jumps:
+        arriving = orbit.mesh.scheme.end @ knots[jump.interval]
+        passed = np.append(arriving, tangent.parameter[list(linear.free)])
+        row += saltation_gradient(system, orbit, jump.index, at_end[jump.interval], passed, linear.free, free)
+    return row
 
 
 def _stretched(orbit: Orbit, points: Points, slope: Array) -> Array:
@@ -192,8 +210,11 @@ def _stretched(orbit: Orbit, points: Points, slope: Array) -> Array:
     return slope @ relative[points.index]
 
 
-def _adjoint(linear: Linear, line: LinearisationLike, source: Row) -> Array:
-    """Solve A^T lambda = -source backwards; shape (points, n+m)."""
+def _adjoint(linear: Linear, line: LinearisationLike, source: Row) -> tuple[Array, Array]:
+    """Solve A^T lambda = -source backwards; shape (points, n+m); and what the mesh points' states count.
+
+    The latter, shape (N, n), for the states in which intervals end, behind their jump.
+    """
     orbit, condensed = linear.orbit, linear.condensed
     count, ncol, n = orbit.stages.shape
     stages = np.zeros((count, ncol, n)) if source.stages is None else source.stages
@@ -204,11 +225,14 @@ def _adjoint(linear: Linear, line: LinearisationLike, source: Row) -> Array:
     for j in range(count - 1, -1, -1):
         at_end[j] = later
         later = later @ step[j] + direct[j] + source.nodes[j]
+    behind = at_end.copy()
+    for jump in linear.jumps:
+        at_end[jump.interval] = at_end[jump.interval] @ jump.saltation[:, :n]
     right = orbit.mesh.scheme.end[1:, None] * at_end[:, None] + stages
     matrix, eliminated = _stage_matrix(orbit, line)
     size = ncol * n
     found = -np.linalg.solve(np.swapaxes(matrix, 1, 2), right.reshape(count, size, 1)).reshape(-1, n)
-    return np.concatenate([found, -np.einsum("pn,pnm->pm", found, eliminated)], axis=1)
+    return np.concatenate([found, -np.einsum("pn,pnm->pm", found, eliminated)], axis=1), behind
 
 
 def _stage_matrix(orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array]:

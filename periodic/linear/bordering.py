@@ -41,7 +41,7 @@ class Condensed(Protocol):
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
     orbit is the one linearised at, residual the largest of its equations; compiled chains in C. It
-    may have `perturbed` (N, n, n), the steps of perturbations at fixed tau where the state jumps.
+    may have `perturbed` (N, n, n+q), the steps of perturbations at fixed tau where the state jumps.
     """
 
     @property
@@ -94,8 +94,8 @@ class Chain:
     def steps(self) -> Array:
         """How perturbations pass each interval, shape (N, n, n)."""
         perturbed: Array | None = getattr(self.condensed, "perturbed", None)
-        step = self.condensed.step
-        return step[:, :, 1 : 1 + step.shape[1]] if perturbed is None else perturbed
+        step, n = self.condensed.step, self.condensed.step.shape[1]
+        return step[:, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
 
     @cached_property
     def fundamental(self) -> Array:

@@ -13,6 +13,8 @@ class Jump:
 
     Parameters
     ----------
+    index : int
+        The event node.
     interval : int
         The interval whose right end is x-; the next mesh point is x+.
     before, after : ndarray, shape (n,)
@@ -21,10 +23,11 @@ class Jump:
         r_x.
     by_outer : ndarray, shape (n, q)
         r_y: in the phases of the event nodes, then the free parameters.
-    saltation : ndarray, shape (n, n)
-        dx+ = S dx- at fixed tau, the event moving with the state.
+    saltation : ndarray, shape (n, n+q)
+        dx+ = S (dx-, dp) at fixed tau, the event moving with the state and the free parameters p.
     """
 
+    index: int
     interval: int
     before: Array
     after: Array
