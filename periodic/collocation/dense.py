@@ -158,8 +158,13 @@ class Dense:
         return found
 
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
-        """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any."""
+        """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any.
+
+        Of a switch with impacts it is the side that they lead back to.
+        """
         mesh = self.orbit.mesh
+        if switch in resets_of(self.system):
+            return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
         sides = np.full(mesh.ntst, otherwise if not own else own[-1][1])
         for start, direction in own:
@@ -185,6 +190,8 @@ class Dense:
         for j in self._tied(switch):
             first = int(np.searchsorted(along.interval, j))
             at_nodes[[first, first - 1]] = True
+        if switch in resets_of(self.system):
+            wrong |= at_nodes  # there it is at its level, and goes past it from there on if the impact ends
         shift = 0 if wrong.all() else int(np.flatnonzero(~wrong)[0])
         order = np.roll(np.arange(len(wrong)), -shift)
         runs = np.split(order, np.flatnonzero(np.diff(wrong[order].astype(int))) + 1)
@@ -214,12 +221,19 @@ class Dense:
         return min((e for e in every if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
-        """Return all minima of side * s."""
+        """Return all minima of side * s, its impacts left out."""
         along = self.along(switch, everywhere=True)
         points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
         value = side * along.value[points]
         before, after = np.roll(value, 1), np.roll(value, -1)
         low = points[(value <= before) & (value <= after)]
+        if switch in resets_of(self.system):
+            impacts = [
+                j
+                for j, e in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True)
+                if e.switch == switch
+            ]
+            low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
         return [along.extremum(switch, int(i)) for i in low]
 
 

@@ -9,14 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import impacts, kinks, stick
+from periodic.collocation import graze, impacts, kinks, stick, touch
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration
 from periodic.collocation.residual import evaluated
-from periodic.collocation.touch import change, pattern
 from periodic.collocation.unresolved import lost
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
@@ -193,11 +192,12 @@ class Collocation(Discretisation):
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
-        return change(system, before, after, self.shortest)
+        found = [part.change(system, before, after, self.shortest) for part in (touch, graze)]
+        return min((c for c in found if c is not None), key=lambda c: c.part, default=None)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""
-        return pattern(system, orbit)
+        return touch.pattern(system, orbit)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""

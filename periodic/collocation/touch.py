@@ -26,7 +26,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System
+from periodic.system import System, resets_of
 
 SHORT = (1e-2, 1e-3, 1e-4)
 """Lengths (rad) of the excursions at which patterns are exchanged, tried in turn."""
@@ -241,7 +241,7 @@ def pattern(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
 
     None where the orbit passes such a level elsewhere too, or not there.
     """
-    dense, own = Dense(system, orbit), exact(system)
+    dense, own = Dense(system, orbit), [*exact(system), *resets_of(system)]
     if any(dense.unseen(k, dense.side(k)) for k in own):
         return None
     tied = [event for event in orbit.mesh.events if event.switch in own]

@@ -36,7 +36,7 @@ def variations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Variation
     Raises
     ------
     ValueError
-        For a Fourier series; for gradients without second derivatives, or where there are impacts or jumps.
+        For a Fourier series; for gradients of a system without second derivatives.
     """
     polynomial(orbit)
     if linear_of(system) is None:

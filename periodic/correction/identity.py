@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import scipy
 
@@ -11,6 +13,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import mean_weights
 from periodic.orbit.orbit import FORCED, Orbit
+from periodic.system import resets_of
 
 SHIFTS = 64
 """How many phases are tried for the least distance of two autonomous orbits."""
@@ -32,8 +35,24 @@ def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
 def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     """Distance of a and b in the metric of continuation, b taken `later` (rad); on any meshes."""
     profile = b.state(a.mesh.nodes(a.phases) + later) - a.nodes
+    for i, j in _impacts(problem, a, b, later):
+        profile[i] = b.nodes[j] - a.nodes[i]
     jump = (problem.value(b) - problem.value(a)) / problem.scale
     return float(np.sqrt(np.einsum("j,jn,jn->", mean_weights(a), profile, profile) + jump**2))
+
+
+def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[tuple[int, int]]:
+    """Yield the mesh points of a where the state jumps, each with that of the same impact of b.
+
+    The least difference of their phases would compare states before and after the impact.
+    """
+    starts = {i: [i] if i else [0, len(a.nodes) - 1] for i in map(int, a.mesh.starts)}
+    for start, event, phase in zip(starts, a.mesh.events, a.phases, strict=True):
+        near = a.grid.width[[start - 1, start]].min()
+        for other, place, node in zip(b.mesh.events, b.phases, b.mesh.starts, strict=True):
+            apart = np.remainder(phase + later - place + b.mesh.period / 2, b.mesh.period) - b.mesh.period / 2
+            if event == other and event.switch in resets_of(problem.system) and abs(apart) < near:
+                yield from ((i, int(node)) for i in starts[start])
 
 
 def closes(solver: Solver, start: Solution, new: Solution) -> bool:

@@ -26,6 +26,10 @@ SETTLED = 1e-11
 """What is left below the blocks when the columns span the motions in their order."""
 
 
+TINY = float(np.finfo(float).tiny)
+"""What grows by less in an interval is gone, as where a motion begins to stick."""
+
+
 def multipliers(steps: Array) -> NDArray[np.complex128]:
     """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first."""
     n = steps.shape[1]
@@ -34,7 +38,8 @@ def multipliers(steps: Array) -> NDArray[np.complex128]:
         begun, triangles = basis, np.empty_like(steps)
         for j, step in enumerate(steps):
             basis, triangles[j] = np.linalg.qr(step @ basis)
-        growth = np.log(np.abs(np.diagonal(triangles, axis1=1, axis2=2))).sum(axis=0)
+        sizes = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
+        growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
         turn = begun.T @ basis
         cuts = np.flatnonzero(growth[:-1] - growth[1:] > APART) + 1
         blocks = np.split(np.arange(n), cuts)
@@ -48,7 +53,7 @@ def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
     product, logarithm = np.eye(len(turn)), 0.0
     for factor in factors:
         product = factor @ product
-        size = np.abs(product).max()
+        size = max(float(np.abs(product).max()), TINY)
         product, logarithm = product / size, logarithm + float(np.log(size))
     with np.errstate(over="ignore"):
         values = np.linalg.eigvals(turn @ product) * np.exp(logarithm)

@@ -374,7 +374,7 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
-        elif at.change.touches:
+        elif at.change.touches or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
 
     def _completed(self, step: Step) -> None:

@@ -23,6 +23,9 @@ COLLAPSED = 0.1
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
+ASIDE = 1e-6
+"""How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
+
 LOOSE = 1e-2
 """Tolerance of the way to a first orbit that is beyond the method's reach."""
 
@@ -141,7 +144,9 @@ class Start:
         except FAILURES:
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        return found if found.ok else failed
+        low, high = problem.bounds
+        within = low - ASIDE * problem.scale <= found.value <= high + ASIDE * problem.scale
+        return found if found.ok and within else failed
 
     def _approached(self, guess: Orbit, factor: float) -> Orbit | None:
         """Trace from `factor` times the wanted parameter to it; None where the branch does not get there."""

@@ -15,63 +15,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from reference.hybrid import Hybrid, Surface, periodic_orbit
-from reference.shooting import Motion, in_order
+from reference.shooting import in_order
 from scipy.linalg import expm
+from support.bouncing import DAMPING, GAP, RESTITUTION, VALUES, bouncing, equations, settled_at, shot
 
 import periodic as per
 import symbolic as sym
 
-C, D, E = 0.1, 1.0, 0.8
-VALUES = {"A": 1.0, "w": 1.0, "c": C, "k": 1.0, "d": D, "e": E}
-
-
-def equations(x: Any, p: Any, wave: Any) -> dict[str, Any]:
-    """The oscillator."""
-    return {"x": x.v, "v": p.A * wave.cos - p.c * x.v - p.k * x.x}
-
-
-def wall(x: Any, p: Any, wave: Any) -> dict[str, Any]:
-    """The rigid wall."""
-    return {"wall": (p.d - x.x, {"v": -p.e * x.v})}
-
-
-def hspo() -> sym.CompiledSystem:
-    """The compiled problem."""
-    return sym.compile(sym.Equations(equations, {"x": 0.0, "v": 0.0}, VALUES, frequency="w", resets=wall))
-
-
-def started(system: sym.CompiledSystem) -> per.Orbit:
-    """The motion to which it settles at A = w = 1, with one impact in a period."""
-    motion = sym.simulate(system, settle=40, tolerance=1e-9)
-    assert np.count_nonzero(np.diff(motion.phase) == 0) == 1
-    return per.sampled(motion.phase, motion.state, motion.algebraic, motion.parameter, system=system)
+C, D, E = DAMPING, GAP, RESTITUTION
 
 
 @cache
 def branch() -> per.Branch:
     """Orbits with one impact over A, from 1 down to grazing."""
-    system = hspo()
-    return per.trace(system, "A", (0.01, 1.0), start=1.0, guess=started(system), tol=1e-9)
-
-
-def exact(point: per.Point) -> Motion:
-    """The orbit by event-exact shooting, its perturbations by saltation."""
-    force, w = (point.orbit.parameters[name] for name in ("A", "w"))
-    return shot(force, point.orbit.state(np.zeros(1))[0], w)
-
-
-def shot(force: float, begin: NDArray[np.float64], w: float = 1.0) -> Motion:
-    """The orbit that begins near a state, by event-exact shooting."""
-    reset = lambda t, y: (np.array([y[0], -E * y[1]]), np.zeros(2), np.diag([1.0, -E]))  # noqa: E731
-    surface = Surface(lambda t, y: D - y[0], lambda t, y: (0.0, np.array([-1.0, 0.0])), reset)
-    system = Hybrid(
-        lambda t, y, signs: [y[1] / w, (force * np.cos(t) - C * y[1] - y[0]) / w],
-        lambda t, y, signs: [[0, 1 / w], [-1 / w, -C / w]],
-        [surface],
-    )
-    return periodic_orbit(system, begin)
+    system = bouncing()
+    return per.trace(system, "A", (0.01, 1.0), start=1.0, guess=settled_at(system), tol=1e-9)
 
 
 def closed_form() -> tuple[float, float]:
@@ -90,7 +48,7 @@ def test_orbits_and_multipliers_through_impacts() -> None:
     points = [p for p in branch() if p.parameter > 0.102]
     assert len(points) > 10
     for point in points:
-        found = exact(point)
+        found = shot(point)
         phase = np.linspace(0.0, 6.2, 40)
         phase = phase[np.abs(phase - found.kinks[0]) > 1e-6]
         np.testing.assert_allclose(point.orbit.state(phase), found.state(phase), atol=1e-9)
@@ -99,44 +57,44 @@ def test_orbits_and_multipliers_through_impacts() -> None:
 
 
 def test_fold_and_grazing() -> None:
-    """Assert the fold to 1e-10, and that the branch ends at grazing, where the impact has no speed left."""
+    """Assert the fold and the grazing to 1e-10, where the branch goes on without impacts to its bound."""
     fold, given = closed_form()
-    (found,) = branch().labelled(per.Label.FOLD)
-    np.testing.assert_allclose(found.parameter, fold, rtol=1e-10)
-    end = branch()[-1]
-    np.testing.assert_allclose(end.parameter, C * D, rtol=1e-8)
-    assert "an impact has no speed left, the orbit grazes" in str(branch().stop)
-    assert np.abs(end.multipliers).max() > 1e4
+    first, _ = branch().labelled(per.Label.FOLD)
+    np.testing.assert_allclose(first.parameter, fold, rtol=1e-10)
+    (graze,) = branch().labelled(per.Label.GRAZING)
+    np.testing.assert_allclose(graze.parameter, C * D, rtol=1e-10)
+    before = branch()[branch().points.index(graze) - 1]
+    assert np.abs(before.multipliers).max() > 10
+    np.testing.assert_allclose(np.abs(graze.multipliers), np.exp(-np.pi * C), rtol=1e-9)
+    assert branch()[-1].parameter == 0.01
     assert given > fold
 
 
-def test_branch_without_impact_ends_at_the_wall() -> None:
-    """Assert that linear orbits are followed to A = c d, not through the wall; beyond, one settles on it."""
-    system = hspo()
-    linear = per.trace(system, "A", (0.01, 1.0))
-    np.testing.assert_allclose(linear[-1].parameter, C * D, rtol=1e-5)
-    assert "passes where an impact would be" in str(linear.stop)
-    assert linear[-1].maximum["x"] <= D * (1 + 1e-5)
-    beyond = per.trace(system, "A", (0.5, 1.0))[0]
-    assert (beyond.parameter, len(beyond.orbit.phases)) == (0.5, 1)
-    np.testing.assert_allclose(in_order(beyond.multipliers), exact(beyond).multipliers, rtol=1e-4)
+@pytest.mark.parametrize("tol", [1e-6, 1e-9])
+def test_branch_without_impact_gains_one(tol: float) -> None:
+    """Assert that linear orbits are followed to the touch, and from there those with an impact."""
+    found = per.trace(bouncing(), "A", (0.01, 1.0), tol=tol)
+    (graze,) = found.labelled(per.Label.GRAZING)
+    np.testing.assert_allclose(graze.parameter, C * D, rtol=1e-8)
+    assert found[-1].parameter == 1.0 and "bound reached" in str(found.stop)
+    np.testing.assert_allclose(in_order(found[-1].multipliers), in_order(branch()[0].multipliers), atol=1e-8)
 
 
-def test_scene() -> None:
-    """Assert the scene at five places against event-exact shooting, its fold and its end, without a guess."""
-    places = (0.9, 0.7, 0.5, 0.3, 0.15)
-    found = per.trace(sym.scene("impact-oscillator"), "A", (0.01, 1.0), start=1.0, at=places)
-    points = found.labelled(per.Label.USER)
-    assert [point.parameter for point in points] == list(places)
-    for point in points:
-        own = shot(point.parameter, point.orbit.state(np.zeros(1))[0])
-        np.testing.assert_allclose(point.orbit.state(np.zeros(1)), own.state(np.zeros(1)), atol=3e-7)
-        np.testing.assert_allclose(in_order(point.multipliers), own.multipliers, atol=2e-5)
-    (fold,) = found.labelled(per.Label.FOLD)
-    np.testing.assert_allclose(fold.parameter, closed_form()[0], rtol=1e-8)
-    np.testing.assert_allclose(
-        min(p.parameter for p in found if len(p.orbit.phases)), closed_form()[0], rtol=1e-8
-    )
+def test_start_with_impacts_from_rest() -> None:
+    """Assert that an orbit with impacts is found by itself, and bouncing at low frequencies followed."""
+    system = bouncing()
+    found = per.trace(system, "w", (0.3, 0.72), start=0.3)
+    assert found[0].maximum["x"] == pytest.approx(D, abs=1e-9)
+    assert "bound reached" in str(found.stop) or "PD" in found.table()
+    for point in found[:: max(len(found) // 8, 1)]:
+        if not point.label:
+            motion = shot(point)
+            phase = np.linspace(0.0, 6.2, 40)
+            phase = phase[[np.abs(np.asarray(motion.kinks) - p).min() > 1e-5 for p in phase]]
+            np.testing.assert_allclose(point.orbit.state(phase), motion.state(phase), atol=1e-5)
+            np.testing.assert_allclose(
+                in_order(point.multipliers), in_order(motion.multipliers), atol=1e-4, rtol=1e-4
+            )
 
 
 def test_rigid_stop_is_the_wall() -> None:
@@ -145,7 +103,7 @@ def test_rigid_stop_is_the_wall() -> None:
     for below in (False, True):
         parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, C), sym.HarmonicForce(x, 1.0, 1.0)]
         system = sym.compile(sym.combine([*parts, sym.RigidStop(x, D, E, below=below)]))
-        first = per.trace(system, "Omega", (0.99, 1.0), start=1.0, guess=started(system))[0]
+        first = per.trace(system, "Omega", (0.99, 1.0), start=1.0, guess=settled_at(system))[0]
         assert first.parameter == 1.0
         np.testing.assert_allclose(in_order(first.multipliers), in_order(branch()[0].multipliers), atol=1e-5)
     with pytest.raises(
@@ -158,14 +116,7 @@ def test_rigid_stop_is_the_wall() -> None:
 def test_other_methods_refuse_impacts(method: Any) -> None:
     """Assert the sentence."""
     with pytest.raises(ValueError, match="for a system with impacts it must be Collocation"):
-        per.trace(hspo(), "A", (0.01, 0.05), method=method)
-
-
-def test_conditions_on_multipliers_refuse_impacts() -> None:
-    """Assert the sentence for a curve of folds, whose derivatives would not see the impact."""
-    (fold,) = branch().labelled(per.Label.FOLD)
-    with pytest.raises(ValueError, match="system has impacts"):
-        per.trace(hspo(), "w", (1.0, 1.1), guess=fold.orbit, determined={"A": per.FoldCondition()})
+        per.trace(bouncing(), "A", (0.01, 0.05), method=method)
 
 
 RESETS: list[tuple[Any, str]] = [
