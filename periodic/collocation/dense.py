@@ -30,7 +30,7 @@ SHARED = 1e-9
 def exact(system: System) -> list[int]:
     """Return the switches at whose level 0 the equations have a kink: those without further levels.
 
-    Not those at which the state or the equations jump, see `periodic.collocation.impacts` and `stick`.
+    Not those at which the state or the equations jump: see `periodic.collocation.jumping` and `stick`.
     """
     slides = slides_of(system)
     releases = (k for pair in slides.values() for k in pair)

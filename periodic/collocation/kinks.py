@@ -14,8 +14,9 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
-from periodic.collocation import impacts, stick
+from periodic.collocation import stick
 from periodic.collocation.dense import Dense, exact
+from periodic.collocation.jumping import impacts
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array

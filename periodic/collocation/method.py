@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import graze, impacts, kinks, stick, touch
+from periodic.collocation import kinks, stick, touch
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
+from periodic.collocation.jumping import graze, impacts
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration

@@ -20,9 +20,9 @@ import numpy as np
 import scipy
 
 from periodic.collocation.condensation import Condensed, condense
-from periodic.collocation.impacts import jumps
+from periodic.collocation.jumping.impacts import jumps
+from periodic.collocation.jumping.saltation import at_fixed_phase, saltation_gradient
 from periodic.collocation.residual import evaluated
-from periodic.collocation.saltation import at_fixed_phase, saltation_gradient
 from periodic.conditions.curvature import beside, curvature
 from periodic.linear.bordering import Chain, chain, onto_start
 from periodic.linear.variation import Complex, Tangent

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from reference.bouncing import DAMPING, RESTITUTION, bouncing, settled_at, shot
 from scipy.linalg import expm
-from support.bouncing import DAMPING, RESTITUTION, bouncing, settled_at, shot
 
 import periodic as per
 import symbolic as sym

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from reference.bouncing import DAMPING, GAP, RESTITUTION, VALUES, bouncing, equations, settled_at, shot
 from reference.shooting import in_order
 from scipy.linalg import expm
-from support.bouncing import DAMPING, GAP, RESTITUTION, VALUES, bouncing, equations, settled_at, shot
 
 import periodic as per
 import symbolic as sym

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from reference.hybrid import Hybrid, Surface, periodic_orbit
-from reference.shooting import Motion
 
 import periodic as per
 import symbolic as sym
+from reference.hybrid import Hybrid, Surface, periodic_orbit
+from reference.shooting import Motion
 
 DAMPING, GAP, RESTITUTION = 0.1, 1.0, 0.8
 VALUES = {"A": 1.0, "w": 1.0, "c": DAMPING, "k": 1.0, "d": GAP, "e": RESTITUTION}

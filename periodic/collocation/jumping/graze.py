@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.collocation.dense import Dense, Extremum
-from periodic.collocation.impacts import slope_before, tied
-from periodic.collocation.saltation import before, rate_before
+from periodic.collocation.jumping.impacts import slope_before, tied
+from periodic.collocation.jumping.saltation import before, rate_before
 from periodic.collocation.touch import Clearance, index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.orbit.gradients import Points, Slopes, gathered
