@@ -193,10 +193,14 @@ def test_sliding_that_is_not_followed() -> None:
     assert "would slide" in str(branch.stop)
 
 
-def test_conditions_with_second_derivatives_refuse_jumps() -> None:
-    """Assert the sentence."""
-    system = compiled(friction)
-    first = per.trace(system, "F", (0.49, 0.5))[0]
-    peak = {"w": per.Peak(per.PeakToPeak("x"))}
-    with pytest.raises(ValueError, match="system has impacts or jumps"):
-        per.trace(system, "F", (0.4, 0.5), guess=first.orbit, determined=peak)
+def test_curve_of_peaks() -> None:
+    """Assert that along a curve of peaks over the force the amplitude does not change with the frequency."""
+    system, aim = compiled(friction), per.PeakToPeak("x")
+    branch = per.trace(system, "w", (0.7, 1.3))
+    guess = max(branch, key=lambda point: point.peak_to_peak("x")).orbit
+    curve = per.trace(system, "F", (0.4, 0.5), guess=guess, determined={"w": per.Peak(aim)}, tol=1e-8)
+    assert {curve[0].parameter, curve[-1].parameter} == {0.4, 0.5}
+    for point in (curve[0], curve[-1]):
+        assert len(point.orbit.phases) > 1
+        slopes = per.sensitivities(system, point.orbit, {"x": aim})["x"]
+        assert abs(slopes["w"]) < 1e-6 * abs(slopes["F"])
