@@ -24,6 +24,7 @@ from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, Place, State, Unknown
 from symbolic.equations.units import ANGULAR
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
+from symbolic.sketch import Sketch
 
 
 class Contributor(Protocol):
@@ -103,12 +104,15 @@ class Assembly:
         Its angle, harmonics and frequency.
     numbers : Numbers
         What becomes the parameters of the model.
+    sketch : Sketch
+        How it looks.
     omega : casadi.SX
         Placeholder of the angular frequency of the phase, so that dq/dt = omega dq/dtau.
     """
 
     excitation: Excitation = field(default_factory=Excitation)
     numbers: Numbers = field(default_factory=Numbers)
+    sketch: Sketch = field(default_factory=Sketch)
     omega: ca.SX = field(default_factory=lambda: ca.SX.sym("omega"))
     owner: str = field(default="", init=False)
     motions: dict[Coordinate, Motion] = field(default_factory=dict, init=False)

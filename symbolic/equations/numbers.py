@@ -64,6 +64,11 @@ class Numbers:
                 found = found.within(allowed)
         return found
 
+    def name_of(self, symbol: ca.SX) -> str:
+        """Return the name of the parameter that a symbol stands for."""
+        found = self.named().items()
+        return next(name for name, (_, symbols) in found if any(own is symbol for own in symbols))
+
     def named(self) -> dict[str, tuple[Parameter, list[ca.SX]]]:
         """Return the parameters by name, in the order of the parts, with the symbols that stand for each.
 

@@ -104,6 +104,9 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
         kernels=recipe.kernels,
         recipe=recipe,
         held=_held(assembly),
+        sketch=assembly.sketch.plain(
+            list(assembly.motions), assembly.numbers.name_of, 1 / float(assembly.excitation.fundamental)
+        ),
     )
 
 

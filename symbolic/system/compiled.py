@@ -61,6 +61,8 @@ class CompiledSystem:
         The linear part of a model that was split.
     recipe : callable, optional
         What compiles it again: how it is pickled. CasADi's expressions and loaded libraries stay behind.
+    sketch : tuple of dict
+        How it looks: see `symbolic.sketch`.
     """
 
     states: tuple[Variable, ...]
@@ -73,6 +75,7 @@ class CompiledSystem:
     held: tuple[Held, ...] = ()
     part: RowsPart | None = field(default=None, repr=False)
     recipe: Callable[[], CompiledSystem] | None = field(default=None, repr=False)
+    sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
         default_factory=dict, init=False, repr=False
     )

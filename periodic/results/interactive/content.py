@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from periodic.checks import named
-from periodic.orbit.layout import Quantity
+from periodic.orbit.extrema import outputs
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
+from periodic.results.interactive.drawing import drawing, sketch_of
+from periodic.results.plots.regions import second_of
+from periodic.results.plots.units import Shown, Unit, Units, quantities
 from periodic.results.point import Point
+from periodic.system import System
 
 SAMPLES = 128
 """Values of each signal over a period."""
@@ -20,22 +22,29 @@ SAMPLES = 128
 MOST = 600
 """Points that a page holds; special points are kept in any case."""
 
-Units = Mapping[str, tuple[str, float]]
 
-
-def content(branch: Branch, units: Units) -> dict[str, Any]:
+def content(branch: Branch, units: Units, system: System | None = None) -> dict[str, Any]:
     """Return all that the page is made of."""
-    shown = Shown(branch, units)
     points = [branch.points[k] for k in kept(branch)]
+    signals = Signals(branch, system)
+    values = np.array([signals.values(p) for p in points])
+    shown = Shown(quantities(branch.layout), units)
+    scales = [shown.unit(name, values[:, k]) for k, name in enumerate(signals.names)]
+    orbits = values / np.array([unit.size for unit in scales])[:, None]
+    heights = Heights(branch, shown)
+    across = shown.unit(branch.parameter, branch.values)
+    places = {name: (k, unit.size) for k, (name, unit) in enumerate(zip(signals.names, scales, strict=True))}
     return {
-        "parameter": shown.described(branch.parameter),
-        "signals": [shown.described(name) for name in shown.signals],
-        "pairs": shown.pairs,
-        "outputs": [shown.described(name) for name in shown.outputs],
+        "parameter": {"name": branch.parameter, "unit": across.text},
+        "signals": [{"name": n, "unit": u.text} for n, u in zip(signals.names, scales, strict=True)],
+        "pairs": signals.pairs,
+        "heights": heights.described,
         "samples": SAMPLES,
         "stop": str(branch.stop),
-        "points": [shown.point(p) for p in points],
-        "orbits": packed(np.array([shown.orbit(p) for p in points])),
+        "border": second_of(branch) is not None,
+        "points": [_said(p, across, heights) for p in points],
+        "orbits": packed(orbits),
+        "drawing": drawing(sketch_of(system), points, places, orbits, quantities(branch.layout)),
     }
 
 
@@ -51,62 +60,85 @@ def packed(values: Array) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
 
 
-class Shown:
-    """The quantities of a branch in the units that they are shown in."""
+class Signals:
+    """What is shown over time: states, unknowns and, where the system is at hand, its other outputs."""
 
-    def __init__(self, branch: Branch, units: Units) -> None:
-        self.branch, layout = branch, branch.layout
-        self.outputs = [q.name for q in layout.outputs]
-        self.signals = list(branch.points[0].orbit.names)
-        self.velocities = {f"{name}'" for name in self.signals} & set(self.signals)
-        known = {q.name: q for q in (*layout.outputs, *layout.parameters, *layout.states, *layout.algebraics)}
-        self._known: dict[str, Quantity] = known
-        for name in named("units", units, "units"):
-            if name not in known:
-                raise ValueError(f"units has {name!r}; its names must be among {', '.join(known)}")
-        self._units = units
+    def __init__(self, branch: Branch, system: System | None) -> None:
+        self._system, self._states = system, list(branch.points[0].orbit.names)
+        found = [] if system is None else [q.name for q in system.outputs]
+        self._columns = [k for k, name in enumerate(found) if name not in self._states]
+        self.names = [*self._states, *(found[k] for k in self._columns)]
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
-        """Which signals make the phase planes: a state and its velocity, else neighbours."""
-        found = [
-            (k, self.signals.index(f"{name}'"))
-            for k, name in enumerate(self.signals)
-            if f"{name}'" in self.velocities
-        ]
-        return found or [(k, k + 1) for k in range(len(self.signals) - 1)]
+        """Which signals make the phase planes: states and velocities, then the others over the first."""
+        index = {name: k for k, name in enumerate(self.names)}
+        moving = [(k, index[f"{name}'"]) for name, k in index.items() if f"{name}'" in index]
+        used = {k for pair in moving for k in pair}
+        return moving + [(0, k) for k in range(1, len(self.names)) if k not in used]
 
-    def described(self, name: str) -> dict[str, str]:
-        """Return a quantity's name and the unit it is shown in."""
-        base = name.removesuffix("'") if name in self.velocities else name
-        unit = self._units[base][0] if base in self._units else self._known[base].unit
-        return {"name": name, "unit": f"{unit}/s" if name in self.velocities and unit else unit}
-
-    def factor(self, name: str) -> float:
-        """Return the SI value of the unit a quantity is shown in."""
-        base = name.removesuffix("'") if name in self.velocities else name
-        return self._units[base][1] if base in self._units else 1.0
-
-    def point(self, point: Point) -> dict[str, Any]:
-        """Return what is said of a point."""
-        sizes = [_rounded(point.peak_to_peak(name) / self.factor(name)) for name in self.outputs]
-        multipliers = point.multipliers[:40]
-        return {
-            "at": point.parameter / self.factor(self.branch.parameter),
-            "label": point.label.value or point.event,
-            "stable": point.stable,
-            "sizes": sizes,
-            "most": [_rounded(point.maximum[name] / self.factor(name)) for name in self.outputs],
-            "period": _rounded(point.orbit.period),
-            "multipliers": [[_rounded(m.real), _rounded(m.imag)] for m in multipliers],
-            "equilibrium": point.equilibrium,
-        }
-
-    def orbit(self, point: Point) -> Array:
-        """Return the signals over a period, shape (signals, samples)."""
+    def values(self, point: Point) -> Array:
+        """Return the signals over a period (SI), shape (signals, samples)."""
         orbit = point.orbit
-        times = np.linspace(0, orbit.period, SAMPLES, endpoint=False)
-        return np.array([orbit[name](times) / self.factor(name) for name in self.signals])
+        if orbit.equilibrium:
+            times = np.zeros(SAMPLES)
+        else:
+            times = np.linspace(0, orbit.period, SAMPLES, endpoint=False)
+        found = [orbit[name](times) for name in self._states]
+        if self._system is not None and self._columns:
+            tau = np.zeros(SAMPLES) if orbit.equilibrium else orbit.omega * times
+            found += list(outputs(self._system, orbit, tau)[:, self._columns].T)
+        return np.array(found)
+
+
+class Heights:
+    """What may be plotted over the parameter: outputs and, of curves in two parameters, the second one."""
+
+    def __init__(self, branch: Branch, shown: Shown) -> None:
+        still = all(point.equilibrium for point in branch)
+        self._second = second_of(branch)
+        self._outputs = [q.name for q in branch.layout.outputs]
+        columns = {} if self._second is None else {self._second: branch.column(self._second)}
+        for name in self._outputs:
+            columns[name] = np.array([p.maximum[name] if still else p.peak_to_peak(name) for p in branch])
+        self._still = still
+        self._units = {name: shown.unit(name, values) for name, values in columns.items()}
+
+    @property
+    def described(self) -> list[dict[str, str]]:
+        """Name, unit and what is measured of each."""
+        plain = {self._second} if not self._still else set(self._units)
+        return [
+            {"name": name, "unit": unit.text, "said": name if name in plain else f"{name} peak to peak"}
+            for name, unit in self._units.items()
+        ]
+
+    def of(self, point: Point) -> list[float | None]:
+        """Return the heights of a point."""
+        found = []
+        for name, unit in self._units.items():
+            if name == self._second:
+                value = point.orbit.parameters[name]
+            else:
+                value = point.maximum[name] if self._still else point.peak_to_peak(name)
+            found.append(_rounded(value / unit.size))
+        return found
+
+
+def _said(point: Point, across: Unit, heights: Heights) -> dict[str, Any]:
+    """Return what is said of a point."""
+    multipliers = point.multipliers[:40]
+    still = point.equilibrium
+    return {
+        "at": point.parameter / across.size,
+        "label": point.label.value or point.event,
+        "stable": point.stable,
+        "heights": heights.of(point),
+        "period": None if still else _rounded(point.orbit.period),
+        "periods": 1 if still else max(point.orbit.periods, 1),
+        "multipliers": [[_rounded(m.real), _rounded(m.imag)] for m in multipliers],
+        "equilibrium": still,
+    }
 
 
 def _rounded(value: float) -> float | None:

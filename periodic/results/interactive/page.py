@@ -2,37 +2,47 @@
 
 from __future__ import annotations
 
-import html
-import json
-from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from periodic.results.branch import Branch
 from periodic.results.interactive.content import content
+from periodic.results.interactive.library import write
+from periodic.results.interactive.mapped import map_content
+from periodic.results.plots.units import Units
+from periodic.system import System, check_system
 
-EXTRA = "pip install 'orbitrace[html]'"
-"""What installs the library that draws."""
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def page(
-    branch: Branch, path: str | Path, *, title: str = "", units: dict[str, tuple[str, float]] | None = None
+    branch: Branch | xr.Dataset,
+    path: str | Path,
+    *,
+    system: System | None = None,
+    title: str = "",
+    units: Units | None = None,
 ) -> Path:
     """Write a branch to one HTML file in which its orbits can be looked at.
 
     Pointing at the branch (or the keys left and right, or a finger) shows the orbit there: its motion over a
-    period, the phase plane, the spectrum and the Floquet multipliers beside the unit circle.
+    period, the phase plane, the spectrum and the Floquet multipliers beside the unit circle; with its system
+    also loads and other outputs, and a drawing of the parts that moves.
 
     Parameters
     ----------
-    branch : Branch
-        The branch; one with more than 600 points is thinned out, special points kept.
+    branch : Branch or xarray.Dataset
+        The branch, or a curve in two parameters; one with more than 600 points is thinned out, special points
+        kept. Or a map over one or two parameters, as `map` returns it, whose cells can be pointed at.
     path : str or Path
         The file, which ends in .html; one that is there is replaced.
+    system : System, optional
+        The system that was traced: it has the outputs that are no states, and the drawing.
     title : str
         What stands above it.
-    units : dict of str to (str, float), optional
-        Units to show quantities in, by name: ``{"speed": ("rev/min", 2 * pi / 60), "x": ("µm", 1e-6)}``, each
-        with its SI value.
+    units : dict, optional
+        Units by names, as for `plot`: ``{"speed": "rev/min", "x": "um"}``.
 
     Returns
     -------
@@ -42,37 +52,22 @@ def page(
     Raises
     ------
     ValueError
-        For a branch without points, a name that does not end in .html, and units of what the branch has not.
+        For a branch without points, a map of more parameters, a name that does not end in .html, and units of
+        what the branch has not.
     ModuleNotFoundError
         Without plotly: ``pip install 'orbitrace[html]'``.
     OSError
         Where the file cannot be written.
     """
-    if not isinstance(branch, Branch):
-        raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
     file = Path(path)
-    if file.suffix.lower() not in (".html", ".htm"):
-        raise ValueError(f"path is {str(path)!r}; it must be a file that ends in .html")
+    if not isinstance(branch, Branch):
+        if not hasattr(branch, "data_vars"):
+            raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
+        return write("map.html", file, title or "Map", map_content(branch))
+    if system is not None:
+        check_system(system)
     if not len(branch):
         raise ValueError(f"the branch has no points to show; it ended with: {branch.stop}")
-    data = json.dumps(content(branch, units or {}), allow_nan=False, separators=(",", ":"))
-    name = title or f"Branch over {branch.parameter}"
-    filled = {
-        "TITLE": html.escape(name),
-        "DATA": data.replace("</", "<\\/"),
-        "LIBRARY": _library(),
-    }
-    text = resources.files("periodic.results.interactive").joinpath("page.html").read_text("utf-8")
-    for key, value in filled.items():
-        text = text.replace(f"@@{key}@@", value)
-    file.write_text(text, "utf-8")
-    return file
-
-
-def _library() -> str:
-    """Plotly's JavaScript."""
-    try:
-        from plotly.offline import get_plotlyjs
-    except ModuleNotFoundError:
-        raise ModuleNotFoundError(f"a page needs the package plotly: {EXTRA}", name="plotly") from None
-    return str(get_plotlyjs())
+    return write(
+        "page.html", file, title or f"Branch over {branch.parameter}", content(branch, units or {}, system)
+    )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.checks import named
-from periodic.results.branch import Branch
+from periodic.results.branch import INTRINSIC, Branch
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.frame import dressed, fresh
 from periodic.results.plots.marks import mark
@@ -79,14 +79,24 @@ def other_of(curve: Branch) -> str:
     """Return the parameter that a curve's condition determines."""
     if not isinstance(curve, Branch):
         raise ValueError(f"curves has {curve!r}; it must be made of branches, as periodic.trace returns them")
-    known = {q.name for q in curve.layout.parameters}
-    found = [name for name in _determined(curve) if name in known]
-    if not found:
+    found = second_of(curve)
+    if found is None:
         raise ValueError(
             f"a curve over {curve.parameter} has no second parameter; it must be traced with determined=, "
             f"such as determined={{'F': FoldCondition()}}"
         )
-    return found[-1]
+    return found
+
+
+def second_of(branch: Branch) -> str | None:
+    """Return the parameter that a curve's condition determines; None of a branch in one parameter."""
+    known = {q.name for q in branch.layout.parameters}
+    found = [
+        name
+        for name, condition in _determined(branch).items()
+        if name in known and condition.get("is") not in INTRINSIC
+    ]
+    return found[-1] if found else None
 
 
 def kind_of(curve: Branch) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,7 @@ from symbolic.parts.bearings.ranked import ranked
 from symbolic.parts.bearings.waves import RaceWave, Turns
 from symbolic.parts.contact.law import ContactLaw, lawful
 from symbolic.parts.films.series import SeriesFilm
+from symbolic.sketch import at
 
 NEAR = 0.02
 """Relative difference between `passages` and what the race diameters say, up to which it is a rounding."""
@@ -111,11 +113,23 @@ class RollingBearing(Part):
             load = self._load(assembly, approach)
             x.force -= load * ca.cos(turns.place)
             y.force -= load * ca.sin(turns.place)
+        self._draw(assembly, g)
         rest = Carried(self, g)
         assembly.joints[rest] = rest
         if self.film is None:
             for count, approach in enumerate(ranked(approaches), 1):
                 assembly.switch(f"{count} loaded", approach / x.position.scale - 1, 0, WEAK)
+
+    def _draw(self, assembly: Assembly, clearance: ca.SX) -> None:
+        """Draw the outer race, the elements in it, and the inner race."""
+        of, draw, count = (self.x, self.y), assembly.sketch.draw, self.elements
+        passage = 1.0 if self.passages is None else float(order_of(self.passages))
+        draw("ring", of, size=at(1, clearance), look="fixed")
+        draw("disc", of, x=at(0, self.x), y=at(0, self.y), size=at(0.64))
+        for i in range(count):
+            start, turn = 2 * math.pi * i / count, passage / count
+            ball = {"size": at(0.16), "arm": 0.82, "start": start, "turn": turn, "look": "mark"}
+            draw("disc", of, x=at(0, self.x, factor=0.5), y=at(0, self.y, factor=0.5), **ball)
 
     def _load(self, assembly: Assembly, approach: ca.SX) -> ca.SX:
         if self.film is None:

@@ -38,7 +38,9 @@ class Waviness(Part):
         amplitude = assembly.parameter(self.amplitude, "amplitude", "m")
         waves = assembly.parameter(self.waves, "waves")
         assembly.excite(waves * assembly.parameter(self.speed, "speed", "rad/s"))
-        junction_of(assembly, self.pair).profile += amplitude * assembly.sine
+        junction = junction_of(assembly, self.pair)
+        junction.profile += amplitude * assembly.sine
+        junction.wave = (amplitude, round(assembly.nominal(waves)))
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,10 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.variables import Coordinate
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.contact.preloaded import Preloaded
+from symbolic.sketch import at
+
+DISC = 4.0
+"""Radius of the discs in the drawing, which shows the place where they touch."""
 
 DEFAULT = "contact"
 """Name of a contact pair where none is given."""
@@ -95,7 +99,8 @@ class Film(Protocol):
 class Junction:
     """What the parts have said of one contact pair (SI symbols); None where they have said nothing yet.
 
-    `ripple` is the part of the profile that a film keeps under the preload, so that it compresses nothing.
+    `ripple` is the part of the profile that a film keeps under the preload, so that it compresses nothing;
+    `wave` is the amplitude and the number of the corrugations that are drawn.
     """
 
     pair: ContactPair
@@ -105,6 +110,7 @@ class Junction:
     damping_ratio: ca.SX | None = None
     profile: ca.SX = field(default_factory=lambda: ca.SX(0))
     ripple: Callable[[ca.SX], ca.SX] | None = None
+    wave: tuple[ca.SX, int] | None = None
 
     def close(self, assembly: Assembly) -> None:
         """Join the parts: load on every coordinate, outputs and switches."""
@@ -114,6 +120,19 @@ class Junction:
         for q in self.pair.coordinates:
             assembly.motion(q).force += load - contact.preload - damping
         assembly.output(contact.label("load"), "N", load)
+
+        self._draw(assembly)
+
+    def _draw(self, assembly: Assembly) -> None:
+        """Draw two discs, the wavy one below, and the film where they part."""
+        of, draw = self.pair.coordinates, assembly.sketch.draw
+        if self.film is not None:
+            draw("block", of, size=at(0.6), look="film")
+        depth, waves = self.wave or (ca.SX(0), 0)
+        lower = {"depth": at(0, depth), "waves": waves, "turn": 1 / waves} if waves else {}
+        below = at(-DISC, *of[1:2], factor=-1.0)
+        draw("disc", of, y=below, size=at(DISC), **lower)
+        draw("disc", of, y=at(DISC, of[0]), size=at(DISC))
 
     def _loaded(self, assembly: Assembly) -> Loaded:
         if self.preload is None or self.law is None:

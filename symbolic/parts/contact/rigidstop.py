@@ -55,6 +55,7 @@ class RigidStop(Part):
         assembly.reset(
             f"impact at {self.q.name} = {which}", free, {motion.velocity: -e * motion.velocity.symbol}
         )
+        assembly.sketch.wall(self.q, gap, side)
         before = Before(self, gap)
         assembly.joints[before] = before
 

@@ -34,6 +34,8 @@ class Stop(Part):
     def contribute(self, assembly: Assembly) -> None:
         """Subtract the load of the stop."""
         motion = assembly.motion(self.q)
-        deflection = motion.position.symbol - assembly.parameter(self.gap, "gap", self.q.unit)
+        gap = assembly.parameter(self.gap, "gap", self.q.unit)
+        deflection = motion.position.symbol - gap
+        assembly.sketch.wall(self.q, gap, 1)
         motion.force -= self.law.load(assembly, deflection)
         assembly.switch(f"{self.q.name} = gap", deflection / motion.position.scale, 0)

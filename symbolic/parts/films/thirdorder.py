@@ -48,7 +48,7 @@ class ThirdOrder(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Let the parts say what they have to say, then eliminate the coordinate."""
-        inner = Assembly(assembly.excitation, assembly.numbers, assembly.omega)
+        inner = Assembly(assembly.excitation, assembly.numbers, assembly.sketch, assembly.omega)
         inner.lay(self.model.parts)
         coordinate, junction, film = _sole(inner)
         reduced = _Reduced(film, [])

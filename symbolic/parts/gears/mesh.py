@@ -65,6 +65,8 @@ class GearMesh(Part):
             varying -= assembly.parameter(value, f"k{order}") * assembly.harmonic(order)
         q, scale = motion.position.symbol, motion.position.scale
         motion.force -= k * varying * (ca.fmax(q - b, 0) + ca.fmin(q + b, 0))
+        assembly.sketch.wall(self.q, b, 1)
+        assembly.sketch.wall(self.q, b, -1)
         assembly.switch(f"{self.q.name} = backlash", (q - b) / scale, 0)
         assembly.switch(f"{self.q.name} = -backlash", (q + b) / scale, 0)
         engaged = Engaged(self.q, k, b)

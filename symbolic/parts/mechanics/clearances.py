@@ -55,6 +55,8 @@ class OneSidedSpring(Part):
         k = assembly.parameter(self.k, "k_s", "N/m", NOT_NEGATIVE)
         gap = assembly.parameter(self.gap, "gap", self.q.unit)
         side = -1 if self.below else 1
+        if self.to is None:
+            assembly.sketch.wall(self.q, gap, side)
         past = side * deflection(assembly, self.q, self.to) - gap
         resist(assembly, self.q, self.to, side * k * ca.fmax(past, 0))
         kink(assembly, self.q, self.to, "-gap" if self.below else "gap", past)
@@ -152,6 +154,9 @@ class Backlash(Part):
         b = assembly.parameter(self.b, "b", self.q.unit, NOT_NEGATIVE)
         if self.variation is not None:
             k *= 1 + excited_by(assembly, self.variation, self.frequency).value
+        if self.to is None:
+            assembly.sketch.wall(self.q, b, 1)
+            assembly.sketch.wall(self.q, b, -1)
         u = deflection(assembly, self.q, self.to)
         resist(assembly, self.q, self.to, k * (ca.fmax(u - b, 0) + ca.fmin(u + b, 0)))
         kink(assembly, self.q, self.to, "b", u - b)

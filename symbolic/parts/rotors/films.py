@@ -118,4 +118,5 @@ def _film(assembly: Assembly, part: JournalBearing | SqueezeFilmDamper, turn: ca
     size = mu * radius * length**3 / (2 * c**2)
     x.force += size * force[0]
     y.force += size * force[1]
+    assembly.sketch.rotor(part.x, part.y, c)
     assembly.output("eccentricity", "", ca.sqrt(places[0] ** 2 + places[1] ** 2 + 1e-30))

@@ -66,5 +66,6 @@ class Rub(Part):
         pressure = k * ca.fmax(r - g, 0) / r
         x.force -= pressure * (a - mu * b)
         y.force -= pressure * (b + mu * a)
+        assembly.sketch.rotor(self.x, self.y, g)
         assembly.output("rub", "N", pressure * r)
         assembly.switch("r = clearance", (r - g) / g, 0)

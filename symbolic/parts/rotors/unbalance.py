@@ -9,6 +9,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, apart
+from symbolic.sketch import at
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,12 @@ class Unbalance(Part):
         omega = assembly.parameter(self.speed, "speed", "rad/s")
         phi = assembly.parameter(self.angle, "unbalance_angle", "rad")
         assembly.excite(omega)
+        assembly.sketch.rotor(self.x, self.y)
+        centre = {"x": at(0, self.x), "y": at(0, self.y)}
+        start, of = assembly.nominal(phi), (self.x, self.y)
+        assembly.sketch.draw(
+            "disc", of, **centre, size=at(0.08), arm=0.42, start=start, turn=1.0, look="mark"
+        )
         size = m * e * omega**2
         assembly.motion(self.x).force += size * assembly.harmonic(1, phi)
         assembly.motion(self.y).force += size * assembly.harmonic(1, phi - math.pi / 2)

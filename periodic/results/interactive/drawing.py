@@ -1,0 +1,75 @@
+"""The drawing of a system that a page moves: the shapes of `System.sketch`, as far as the page knows them.
+
+A shape is plain data. Its x, y, size and depth are lengths {"fixed": f, "moved": [[name, factor], ...]}: f,
+in units of the drawing, plus the outputs and parameters named times their factors, all magnified alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from periodic.orbit.scheme import Array
+from periodic.results.plots.units import prefixed
+from periodic.results.point import Point
+
+LENGTHS = ("x", "y", "size", "depth")
+
+LARGEST = 0.4
+"""Magnified size of the largest movement, in units of the drawing."""
+
+
+def sketch_of(system: object) -> list[dict[str, Any]]:
+    """Return the shapes of a system; none of most that are not made by `symbolic.compile`."""
+    return [dict(shape) for shape in getattr(system, "sketch", ())]
+
+
+def drawing(
+    shapes: Sequence[Mapping[str, Any]],
+    points: Sequence[Point],
+    signals: Mapping[str, tuple[int, float]],
+    orbits: Array,
+    units: Mapping[str, str],
+) -> dict[str, Any] | None:
+    """Return what the page needs to draw; None where nothing can be drawn.
+
+    Parameters
+    ----------
+    shapes : sequence of dict
+        The shapes.
+    points : sequence of Point
+        The points that are shown.
+    signals : dict of str to (int, float)
+        Where the page has each output, and the SI value of the unit that it has it in.
+    orbits : ndarray, shape (points, signals, samples)
+        Its signals.
+    units : dict of str to str
+        Units in SI by name, for the scale.
+    """
+    names = {name for shape in shapes for key in LENGTHS for name, _ in shape[key]["moved"]}
+    parameters = [p.orbit.parameters for p in points]
+    numbers = {name: [float(known[name]) for known in parameters] for name in names if name in parameters[0]}
+    if not shapes or not names <= set(signals) | set(numbers):
+        return None
+    swings = [
+        abs(signals[name][1]) * np.abs(orbits[:, signals[name][0]]).max() for name in names & set(signals)
+    ]
+    sizes = [*swings, *(max(map(abs, values)) for values in numbers.values())]
+    largest = max(sizes, default=0.0) or 1.0
+    return {
+        "shapes": list(shapes),
+        "signals": {name: [*signals[name]] for name in names & set(signals)},
+        "numbers": numbers,
+        "magnified": LARGEST / largest,
+        "bar": _bar(largest, units.get(next(iter(sorted(names)), ""), "")),
+    }
+
+
+def _bar(largest: float, unit: str) -> dict[str, Any]:
+    """A round length near the largest movement: how long it is drawn, and what it says."""
+    power = 10.0 ** np.floor(np.log10(largest))
+    length = max(step * power for step in (1, 2, 5) if step * power <= largest * (1 + 1e-9))
+    shown = prefixed(unit, length)
+    return {"length": LARGEST * length / largest, "text": f"{length / shown.size:g} {shown.text}".strip()}

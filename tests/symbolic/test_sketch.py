@@ -1,0 +1,67 @@
+"""Drawings of models: what parts say of their looks, as plain data."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+import symbolic as sym
+
+
+def kinds(name: str) -> list[tuple[str, str]]:
+    """Kind and look of every shape of a scene."""
+    return [(str(shape["kind"]), str(shape["look"])) for shape in sym.scene(name).sketch]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("duffing", [("block", "body")]),
+        ("gear-pair", [("wall", "fixed"), ("wall", "fixed"), ("block", "body")]),
+        ("vitrea79-810N", [("block", "film"), ("disc", "body"), ("disc", "body")]),
+        ("jeffcott-rub", [("disc", "body"), ("disc", "mark"), ("ring", "fixed")]),
+        ("ball-bearing", [("ring", "fixed"), ("disc", "body"), *[("disc", "mark")] * 8]),
+    ],
+)
+def test_shapes_of_scenes(name: str, expected: list[tuple[str, str]]) -> None:
+    """Assert the shapes of each scene, once, and that they are plain data."""
+    assert kinds(name) == expected
+    shapes = list(sym.scene(name).sketch)
+    assert json.loads(json.dumps(shapes)) == shapes
+
+
+def test_names_of_what_moves() -> None:
+    """Assert that coordinates and parameters are called as the system calls them."""
+    p, q = sym.coordinate("p"), sym.coordinate("q")
+    model = sym.Mass(p, 1.0) + sym.Mass(q, 2.0) + sym.Spring(p, 1.0) + sym.Spring(q, 1.0, to=p)
+    model = model + sym.OneSidedSpring(p, 5.0, gap=0.5) + sym.OneSidedSpring(q, 5.0, gap=0.7, below=True)
+    system = sym.compile(model)
+    names = {v.name for v in (*system.outputs, *system.parameters)}
+    right, left, first, second = system.sketch
+    assert right["x"] == {"fixed": 0.3, "moved": [["gap_p", 1.0]]}
+    assert left["x"]["moved"] == [["gap_q", -1.0]] and left["size"]["fixed"] == -1  # type: ignore[index]
+    assert first["x"]["moved"] == [["p", 1.0]] and second["x"]["moved"] == [["q", 1.0]]  # type: ignore[index]
+    assert {"gap_p", "gap_q", "p", "q"} <= names
+    assert right["x"]["fixed"] == pytest.approx(0.3) and second["x"]["fixed"] != first["x"]["fixed"]  # type: ignore[index]
+
+
+def test_angles_are_in_the_phase() -> None:
+    """Assert that a turn of a shaft is a turn, where the system's phase is that of half an order too."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    model = sym.Mass(x, 1.0) + sym.Mass(y, 1.0) + sym.Spring(x, 1.0) + sym.Spring(y, 1.0)
+    model = model + sym.Unbalance(x, y, 1.0, 0.1, speed=1.0, angle=math.pi / 2)
+    (_, heavy) = sym.compile(model).sketch
+    assert heavy["turn"] == 1.0 and heavy["start"] == pytest.approx(math.pi / 2)
+    omega = sym.parameter("speed", 1.0, "rad/s")
+    halved = sym.compile(
+        sym.Mass(x, 1.0)
+        + sym.Mass(y, 1.0)
+        + sym.Spring(x, 1.0)
+        + sym.Spring(y, 1.0)
+        + sym.Unbalance(x, y, 1.0, 0.1, speed=omega)
+        + sym.HarmonicForce(x, 0.1, omega, order="1/2")
+    )
+    turns = [shape["turn"] for shape in halved.sketch if shape["look"] == "mark"]
+    assert turns == [2.0]
