@@ -24,6 +24,7 @@ from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, Place, State, Unknown
 from symbolic.equations.units import ANGULAR
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
+from symbolic.mistakes import explained
 from symbolic.sketch import Sketch
 
 
@@ -137,7 +138,7 @@ class Assembly:
             In any order.
         """
         for part in parts:
-            with self.owned(part.owner):
+            with self.owned(part.owner), explained(type(part).__name__):
                 part.contribute(self)
 
     def close(self, condense: bool = True) -> None:

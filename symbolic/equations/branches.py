@@ -7,6 +7,7 @@ A comparison for equality holds at single points, where it mends a value; it is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Flag, auto
@@ -23,8 +24,16 @@ KEEP_POSITIVE = (ca.OP_ADD, ca.OP_MUL, ca.OP_DIV, ca.OP_FMIN, ca.OP_TWICE, ca.OP
 POSITIVE = (ca.OP_EXP, ca.OP_COSH)
 """Operations that are positive where all their arguments are, and always."""
 
+STEPPED = {ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil", ca.OP_FMOD: "fmod", ca.OP_COPYSIGN: "copysign"}
+"""Operations that jump at places which no switch tells of: rounding, remainders, signs of others."""
+
 NOTHING = 1e-200
 """A constant below this stands for 0, as in max(delta, 1e-300)^n."""
+
+
+FUNCTIONS = "they must use the functions of symbolic.functions"
+STEPS = "they must say where it jumps by if_else of symbolic.functions, or be periodic by sin and cos"
+"""What equations that cannot be traced must do."""
 
 
 class Traits(Flag):
@@ -49,6 +58,8 @@ class _Known:
 
     def of(self, node: ca.SX) -> Traits:
         if node.is_constant():
+            if math.isnan(float(node)):
+                raise ValueError(f"the equations have NaN in them; {FUNCTIONS}, not those of math")
             return Traits.POSITIVE if float(node) > 0 else Traits.NONE
         return self.given(node) if node.is_symbolic() else self.found[node.element_hash()]
 
@@ -78,10 +89,17 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
     list of casadi.SX
         s of every fmax, fmin, fabs, sign, < and <=, but for those that depend on rates or unknowns, on
         parameters alone, or are positive by their form.
+
+    Raises
+    ------
+    ValueError
+        For expressions that jump where no switch tells, and for constants that are NaN.
     """
     known, found = _Known(given, {}), []
     for node in nodes(rows):
         known.add(node)
+        if node.op() in STEPPED and Traits.MOVING in known.of(node):
+            raise ValueError(f"the equations use {STEPPED[node.op()]} of what moves, as % does; {STEPS}")
         if node.op() not in COMPARED + SIGNED:
             continue
         parts = [node.dep(i) for i in range(node.n_dep())]

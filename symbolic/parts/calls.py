@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -11,10 +10,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.checks import shown
-
-UNDECIDED = "Cannot compute the truth value"
-NUMPY = r"\s*casadi: a numpy function was called"
-"""How CasADi begins what it says of a comparison in Python, and of a function of NumPy's."""
+from symbolic.mistakes import explained
 
 Function = Callable[..., Mapping[str, Any]]
 """(x, p), or (x, p, wave) of a forced system, to expressions by name."""
@@ -22,24 +18,8 @@ Function = Callable[..., Mapping[str, Any]]
 
 def called(name: str, function: Function, arguments: Sequence[object]) -> dict[str, ca.SX]:
     """Return what a function called `name` makes of symbols. Raises ValueError for no expressions."""
-    try:
-        with warnings.catch_warnings():
-            warnings.filterwarnings("error", NUMPY, FutureWarning)
-            found: object = function(*arguments)
-    except RuntimeError as error:
-        if UNDECIDED not in str(error):
-            raise
-        raise ValueError(
-            f"{name} decides by a symbol, as if, and, or, max and min do; "
-            f"it must use if_else, fmax or fmin of symbolic.functions"
-        ) from None
-    except FutureWarning as warning:
-        if "casadi" not in str(warning):
-            raise
-        raise ValueError(
-            f"{name} takes a function of NumPy's of a symbol; "
-            f"it must use that of symbolic.functions, as symbolic.functions.sin"
-        ) from None
+    with explained(name):
+        found: object = function(*arguments)
     if not isinstance(found, Mapping):
         raise ValueError(
             f"{name} returned a {type(found).__name__}; it must return a mapping of names to expressions"
@@ -49,6 +29,8 @@ def called(name: str, function: Function, arguments: Sequence[object]) -> dict[s
 
 def _expression(name: str, key: object, value: object) -> ca.SX:
     """One value that a function returned. Raises ValueError for anything else than a number or expression."""
+    if isinstance(value, np.ndarray) and value.shape == ():
+        value = value.item()
     if isinstance(value, int | float | np.integer | np.floating):
         value = ca.SX(float(value))
     if not (isinstance(value, ca.SX) and value.is_scalar()):
