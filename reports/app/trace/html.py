@@ -23,6 +23,7 @@ def write_page(path: Path, scene: Scene, branch: Branch) -> None:
     """Write the page of a branch."""
     import periodic as per
     from reports.app.view import MICRO, view_of
+    from symbolic.scenes.building import build
 
     view = view_of(scene)
     known = {quantity.name for quantity in branch.layout.outputs}
@@ -30,5 +31,6 @@ def write_page(path: Path, scene: Scene, branch: Branch) -> None:
     if view.unit_name:
         units[view.parameter] = (view.unit_name, view.unit)
     # A page is written under a name that ends in .html.
-    page = per.page(branch, path.with_suffix(".html"), title=scene.title, units=units)
+    place = path.with_suffix(".html")
+    page = per.page(branch, place, system=build(scene), title=scene.title, units=units)
     page.replace(path)
