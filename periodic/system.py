@@ -434,8 +434,8 @@ class Compiling(System, Protocol):
     def library(self, source: str) -> ctypes.CDLL | None:
         """The loaded library of a C source, the same one each time; None where NumPy is to do."""
 
-    def addresses(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
-        """Addresses of `linearise`, `move`, `switch`, `switch_gradient` in C; 0 for what is empty.
+    def address(self, kernel: str, free: tuple[int, ...] = ()) -> int | None:
+        """The address of linearise (in the parameters `free`), move, switch, switch_gradient or output in C.
 
         Each is a function of the number of points, then of arguments and results in order, as contiguous
         arrays; of the results structural nonzeros alone are written. None where NumPy is to do. A system
@@ -536,9 +536,9 @@ def compiling(system: System) -> Compiling | None:
     return cast(Compiling, system) if hasattr(system, "library") else None
 
 
-def addresses_of(system: System, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
-    """Return the addresses of a system's compiled kernels, see `Compiling`; None where it has none."""
-    return cast(Compiling, system).addresses(free) if hasattr(system, "addresses") else None
+def address_of(system: System, kernel: str, free: tuple[int, ...] = ()) -> int | None:
+    """Return where a system's compiled kernel is, see `Compiling`; None where NumPy is to do."""
+    return cast(Compiling, system).address(kernel, free) if hasattr(system, "address") else None
 
 
 def check_system(system: object) -> None:

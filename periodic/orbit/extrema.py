@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import as_read_by
+from periodic.orbit.native import outputs as native
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
@@ -58,6 +59,9 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
         Where the orbit's names or units are not the system's.
     """
     orbit = as_read_by(system, orbit)
+    compiled = native.outputs(system, orbit, tau)
+    if compiled is not None:
+        return compiled
     algebraic = algebraic_at(system, orbit, tau)
     return system.output(orbit.rate(tau), orbit.state(tau), algebraic, tau, orbit.parameter)
 

@@ -65,7 +65,12 @@ class Scheme:
     @cached_property
     def barycentric(self) -> Array:
         """Weights of the knots, 1 / prod_{i != j} (c_j - c_i), shape (ncol+1,)."""
-        return 1 / (self.knots[:, None] - self.knots + np.eye(len(self.knots))).prod(axis=1)
+        return barycentric(self.knots)
+
+    @cached_property
+    def inner_barycentric(self) -> Array:
+        """Those of the collocation points alone, shape (ncol,)."""
+        return barycentric(self.points)
 
     @cached_property
     def differentiation(self) -> Array:
@@ -107,7 +112,7 @@ class Scheme:
         ndarray, shape (K, ncol+1)
             One column a knot.
         """
-        return lagrange(self.knots, theta)
+        return lagrange(self.knots, self.barycentric, theta)
 
     def algebraic_basis(self, theta: Array) -> Array:
         """Return the Lagrange polynomials of the collocation points alone.
@@ -122,16 +127,32 @@ class Scheme:
         ndarray, shape (K, ncol)
             One column a point.
         """
-        return lagrange(self.points, theta)
+        return lagrange(self.points, self.inner_barycentric, theta)
 
 
-def lagrange(knots: Array, theta: Array) -> Array:
-    """Return the Lagrange polynomials l_j(theta) = prod_{i != j} (theta - c_i) / (c_j - c_i).
+def barycentric(knots: Array) -> Array:
+    """Return the weights 1 / prod_{i != j} (c_j - c_i) of knots c, shape (L,).
 
     Parameters
     ----------
     knots : ndarray, shape (L,)
-        Their knots c.
+        The knots.
+
+    Returns
+    -------
+    ndarray, shape (L,)
+        One weight a knot.
+    """
+    return 1 / (knots[:, None] - knots + np.eye(len(knots))).prod(axis=1)
+
+
+def lagrange(knots: Array, weights: Array, theta: Array) -> Array:
+    """Return the Lagrange polynomials l_j(theta) = w_j prod_{i != j} (theta - c_i).
+
+    Parameters
+    ----------
+    knots, weights : ndarray, shape (L,)
+        Their knots c and barycentric weights w.
     theta : ndarray, shape (K,)
         Where to evaluate them.
 
@@ -140,9 +161,8 @@ def lagrange(knots: Array, theta: Array) -> Array:
     ndarray, shape (K, L)
         One column a polynomial.
     """
-    gaps = knots[:, None] - knots + np.eye(len(knots))
     factors = np.ones((len(knots) + 2, len(theta)))  # one on either side
-    factors[1:-1] = theta - knots[:, None]
-    before = np.cumprod(factors[:-2], axis=0)
-    after = np.cumprod(factors[:1:-1], axis=0)[::-1]
-    return (before * after / gaps.prod(axis=1)[:, None]).T
+    np.subtract(theta, knots[:, None], out=factors[1:-1])
+    before = factors[:-2].cumprod(axis=0)
+    after = factors[:1:-1].cumprod(axis=0)[::-1]
+    return (before * after * weights[:, None]).T

@@ -83,9 +83,7 @@ class CompiledSystem:
         default_factory=dict, init=False, repr=False
     )
     _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
-    _addresses: dict[tuple[int, ...], tuple[int, int, int, int]] = field(
-        default_factory=dict, init=False, repr=False
-    )
+    _addresses: dict[tuple[str, tuple[int, ...]], int] = field(default_factory=dict, init=False, repr=False)
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
 
     def __reduce__(self) -> tuple[Callable[[], CompiledSystem], tuple[()]]:
@@ -350,26 +348,30 @@ class CompiledSystem:
             self._libraries[source] = shared(source, self.kernels)
         return self._libraries[source]
 
-    def addresses(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
-        """Return where the compiled kernels are: see `periodic.system.Compiling`."""
-        if free not in self._addresses:
-            found = self._found(free)
-            if found is None:
-                return None
-            self._addresses[free] = found
-        return self._addresses[free]
+    def address(self, kernel: str, free: tuple[int, ...] = ()) -> int | None:
+        """Return where a compiled kernel is: see `periodic.system.Compiling`.
 
-    def _found(self, free: tuple[int, ...]) -> tuple[int, int, int, int] | None:
-        """The addresses, where those of `linearise` are compiled: then what goes with it is too."""
-        rows = _address(self._derivatives(self._jacobians, self.expressions.residual, free))
-        if rows is None:
-            return None
-        moved = _address(self._move_kernel, wanted=True) if self.algebraics else 0
-        switches = (self._switch_kernel, self._switch_gradient_kernel) if self.switches else ()
-        value, slope = [_address(kernel, wanted=True) for kernel in switches] or (0, 0)
-        if moved is None or value is None or slope is None:
-            return None
-        return rows, moved, value, slope
+        Where derivatives are compiled the others are too, when they are asked for.
+        """
+        if (kernel, free) not in self._addresses:
+            wanted = any(isinstance(k, ChosenKernel) and k.compiled for k in self._jacobians.values())
+            found = self._kernel(kernel, free)
+            where = found.address(wanted) if isinstance(found, ChosenKernel) else None
+            if where is None:
+                return None
+            self._addresses[kernel, free] = where
+        return self._addresses[kernel, free]
+
+    def _kernel(self, name: str, free: tuple[int, ...]) -> Callable[..., None]:
+        if name == "linearise":
+            return self._derivatives(self._jacobians, self.expressions.residual, free)
+        kernels = {
+            "move": lambda: self._move_kernel,
+            "switch": lambda: self._switch_kernel,
+            "switch_gradient": lambda: self._switch_gradient_kernel,
+            "output": lambda: self._output_kernel,
+        }
+        return kernels[name]()
 
     def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
         return build(arguments, results, self.kernels)
@@ -436,10 +438,6 @@ class CompiledSystem:
         with np.errstate(all="ignore"):
             kernel(*at, *_columns(*arrays))
         return Linearisation(*arrays)
-
-
-def _address(kernel: Callable[..., None], wanted: bool = False) -> int | None:
-    return kernel.address(wanted) if isinstance(kernel, ChosenKernel) else None
 
 
 def _columns(*arrays: Array) -> list[Array]:

@@ -9,10 +9,10 @@ from __future__ import annotations
 import ctypes
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 
 import numpy as np
 
+from periodic.orbit.native.arrays import plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, compiling
@@ -25,6 +25,8 @@ LARGE = 32
 
 FULL = 0.25
 """... full where more than this part of their elements is not 0."""
+
+ELIMINATION = "periodic.collocation.native:elimination.c"
 
 _Address = ctypes.c_char * 0
 
@@ -102,18 +104,13 @@ def routines(system: System, line: LinearisationLike) -> Routines | None:
     with_compiler = compiling(system)
     if with_compiler is None or (len(system.states) >= LARGE and _full(line)):
         return None
-    library = with_compiler.library(_source())
+    library = with_compiler.library(source(ELIMINATION))
     return None if library is None else _routines(library)
 
 
 def _full(line: LinearisationLike) -> bool:
     """Whether the derivatives in the states at the first point are mostly other than 0."""
     return bool(np.count_nonzero(line.d_state[:1]) > FULL * line.d_state[:1].size)
-
-
-@cache
-def _source() -> str:
-    return resources.files(__package__).joinpath("elimination.c").read_text()
 
 
 @cache
@@ -131,10 +128,4 @@ def _check(line: LinearisationLike, points: int, n: int, m: int) -> None:
 
 
 def _given(*arrays: Array) -> list[ctypes.Array[ctypes.c_char]]:
-    return [_Address.from_buffer(_plain(array).data) for array in arrays]
-
-
-def _plain(array: Array) -> Array:
-    """The array as C takes it."""
-    plain = np.ascontiguousarray(array, dtype=float)
-    return plain if plain.flags.writeable else plain.copy()
+    return [_Address.from_buffer(plain(array).data) for array in arrays]

@@ -10,12 +10,12 @@ import ctypes
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib import resources
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from periodic.collocation.native.elimination import ELIMINATION
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
 from periodic.correction.newton import Correction, Linearised, NewtonSettings
@@ -23,9 +23,10 @@ from periodic.correction.outcome import Outcome
 from periodic.linear.bordering import GROWTH
 from periodic.linear.unknowns import Increment
 from periodic.orbit.mesh import Mesh
+from periodic.orbit.native.arrays import address, plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import System, addresses_of, compiling, jumps_of, resets_of
+from periodic.system import System, address_of, compiling, jumps_of, resets_of
 
 MOST = 16
 """Number of states up to which it is worth its while."""
@@ -44,8 +45,6 @@ _NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "si
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in _ORIGIN))
 _ADDRESSES = (*_GIVEN, *_FOUND, *_CHANGES)
-
-_Address = ctypes.c_char * 0
 
 
 class Call(ctypes.Structure):
@@ -126,16 +125,16 @@ def _called(
         return None
     if guess.nodes.shape[1] > MOST or guess.equilibrium or resets_of(system) or jumps_of(system):
         return None
-    with_compiler, functions = compiling(system), addresses_of(system, free)
+    with_compiler, functions = compiling(system), _functions(system, free)
     if with_compiler is None or functions is None:
         return None
-    library = with_compiler.library(_source())
+    library = with_compiler.library(source(ELIMINATION, "periodic.collocation.native:newton.c"))
     if library is None:
         return None
     call, kept = _given(system, guess, constraint, settings)
     call.free, call.most = free[0], most
-    for name, address in zip(_SYSTEM, functions, strict=True):
-        setattr(call, name, address)
+    for name, where in zip(_SYSTEM, functions, strict=True):
+        setattr(call, name, where)
     orbit, parts, maps = _laid_out(call, guess)
     if _routine(library)(ctypes.addressof(call)) != 0:
         return None
@@ -143,6 +142,16 @@ def _called(
     n = guess.nodes.shape[1]
     increment, kernel = (_change(orbit, part) for part in parts)
     return _Solved(call, orbit, increment, kernel, maps[:, :, 1 : 1 + n])
+
+
+def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:
+    """Where the kernels are that are needed, 0 for others; None where some of them are not compiled."""
+    rows = address_of(system, "linearise", free)
+    needed = {"move": bool(system.algebraics), "switch": bool(system.switches)}
+    needed["switch_gradient"] = needed["switch"]
+    found = [address_of(system, name) if there else 0 for name, there in needed.items()]
+    functions = tuple(where for where in (rows, *found) if where is not None)
+    return functions if len(functions) == len(_SYSTEM) else None
 
 
 def _given(
@@ -162,10 +171,10 @@ def _given(
     mesh, scheme = _of_mesh(guess.mesh), _of_scheme(guess.mesh.scheme)
     call.exact = len(guess.mesh.exact_ends)
     for held in (mesh, scheme):
-        for name, address in held.addresses.items():
-            setattr(call, name, address)
-    arrays = [_plain(constraint.weighted), _plain(origin.nodes)]
-    call.weighted, call.origin_nodes = map(_address, arrays)
+        for name, where in held.addresses.items():
+            setattr(call, name, where)
+    arrays = [plain(constraint.weighted), plain(origin.nodes)]
+    call.weighted, call.origin_nodes = map(address, arrays)
     if len(guess.phases):
         moving = (
             origin.node_rates,
@@ -175,8 +184,8 @@ def _given(
             origin.grid.left,
             origin.grid.width,
         )
-        for name, array in zip(_ORIGIN, map(_plain, moving), strict=True):
-            setattr(call, f"origin_{name}", _address(array))
+        for name, array in zip(_ORIGIN, map(plain, moving), strict=True):
+            setattr(call, f"origin_{name}", address(array))
             arrays.append(array)
     call.period, call.growth = guess.mesh.period, GROWTH
     call.nominal = max(abs(system.nominal[constraint.index]), settings.tiny)
@@ -196,10 +205,10 @@ def _laid_out(call: Call, guess: Orbit) -> tuple[Orbit, tuple[list[Array], list[
     change = [*shapes[:3], (call.k + 1,)]
     shapes += [(call.count + 1, call.n, width), *change, *change]
     block = np.empty(sum(map(_product, shapes)))
-    address, arrays, first = _address(block), [], 0
+    begin, arrays, first = address(block), [], 0
     for name, shape in zip((*_FOUND, *_CHANGES), shapes, strict=True):
         size = _product(shape)
-        setattr(call, name, address + 8 * first)
+        setattr(call, name, begin + 8 * first)
         arrays.append(block[first : first + size].reshape(shape))
         first += size
     for array, value in zip(arrays, begun, strict=False):
@@ -227,7 +236,7 @@ def _of_mesh(mesh: Mesh) -> _Held:
         segment, left, width = mesh.segments
         marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends)
         numbers = (left, width, *mesh.gradients, np.array([event.level for event in mesh.events]))
-        arrays = (*(np.array(mark, dtype=np.intp) for mark in marks), *map(_plain, numbers))
+        arrays = (*(np.array(mark, dtype=np.intp) for mark in marks), *map(plain, numbers))
         _meshes[mesh] = _held((*_MARKS, *_MESH), arrays)
     return _meshes[mesh]
 
@@ -236,21 +245,11 @@ def _of_mesh(mesh: Mesh) -> _Held:
 def _of_scheme(scheme: Scheme) -> _Held:
     """The fields of a scheme."""
     arrays = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
-    return _held(_SCHEME, [_plain(array) for array in arrays])
+    return _held(_SCHEME, [plain(array) for array in arrays])
 
 
 def _held(names: tuple[str, ...], arrays: Sequence[Any]) -> _Held:
-    return _Held(dict(zip(names, map(_address, arrays), strict=True)), arrays)
-
-
-def _address(array: Any) -> int:
-    return ctypes.addressof(_Address.from_buffer(array))
-
-
-def _plain(array: Array) -> Array:
-    """The array as C takes it."""
-    plain = np.ascontiguousarray(array, dtype=float)
-    return plain if plain.flags.writeable else plain.copy()
+    return _Held(dict(zip(names, map(address, arrays), strict=True)), arrays)
 
 
 def _product(shape: tuple[int, ...]) -> int:
@@ -258,12 +257,6 @@ def _product(shape: tuple[int, ...]) -> int:
     for length in shape:
         size *= length
     return size
-
-
-@cache
-def _source() -> str:
-    files = resources.files(__package__)
-    return "".join(files.joinpath(name).read_text() for name in ("elimination.c", "newton.c"))
 
 
 @cache

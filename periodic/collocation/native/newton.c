@@ -1,10 +1,10 @@
+
 /* What `periodic.correction.newton` does with the equations of collocation and one arclength constraint: the
-   whole iteration in one call. It follows `elimination.c` in one source.
+   whole iteration in one call. It follows `elimination.c`
+   in one source.
 
    Whatever is not plain sailing (a singular matrix, a step that makes things worse, event nodes that cross) ends
    it with a code other than DONE: NumPy begins anew and says what is wrong. */
-
-#include <stdlib.h>
 
 enum { CROSSED = SINGULAR + 1, WORSE, GROWS, TOO_MANY, NO_ROOM };
 

@@ -1,0 +1,1 @@
+"""What compiled systems have C do with orbits; NumPy does the same elsewhere."""

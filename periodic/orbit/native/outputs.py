@@ -1,0 +1,55 @@
+"""Outputs at phases of an orbit in one call of C (`outputs.c`), where a system's kernels are compiled."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, address_of, compiling
+
+_SIZES = ("count", "ncol", "n", "m", "outputs", "points")
+_ORBIT = ("left", "width", "knots", "knot_rates", "algebraic", "parameter", "tau")
+_SCHEME = ("places", "weights", "inner_weights")
+
+
+class Call(ctypes.Structure):
+    """`struct call` of outputs.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in (*_ORBIT, *_SCHEME, "rows", "values_at", "values")),
+        ("period", ctypes.c_double),
+    )
+
+
+def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
+    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do."""
+    with_compiler, values_at = compiling(system), address_of(system, "output")
+    if with_compiler is None or values_at is None:
+        return None
+    (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
+    rows = address_of(system, "linearise") if m else 0
+    library = with_compiler.library(source("periodic.orbit.native:outputs.c"))
+    if rows is None or library is None:
+        return None
+    scheme, grid, values = orbit.mesh.scheme, orbit.grid, np.zeros((len(tau), len(system.outputs)))
+    own = grid.left, grid.width, orbit.knots, orbit.knot_rates, orbit.algebraic, orbit.parameter, tau
+    fixed = scheme.knots, scheme.barycentric, scheme.inner_barycentric
+    kept = [plain(array) for array in (*own, *fixed)]
+    call = Call(count, ncol, n, m, values.shape[1], len(tau), *map(address, kept), rows, values_at)
+    call.values, call.period = address(values), orbit.mesh.period
+    return values if _routine(library)(ctypes.addressof(call)) == 0 else None
+
+
+@cache
+def _routine(library: ctypes.CDLL) -> Callable[[int], int]:
+    function = library.outputs
+    function.argtypes, function.restype = [ctypes.c_void_p], ctypes.c_int
+    run: Callable[[int], int] = function
+    return run
