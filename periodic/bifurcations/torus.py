@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.bifurcations.doubling import known
 from periodic.bifurcations.label import Label
@@ -22,9 +25,15 @@ def torus(solution: Solution) -> float:
     return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0
 
 
+@cache
+def _both(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First and second of all pairs."""
+    return np.triu_indices(count, 1)
+
+
 def torus_of(found: Complex, noise: float) -> float:
     """The torus test of given multipliers, their products known to within `noise`."""
-    first, second = np.triu_indices(len(found), 1)
+    first, second = _both(len(found))
     products = found[first] * found[second]
     if (np.abs(products - 1) < noise).any():
         return 0.0
@@ -33,7 +42,7 @@ def torus_of(found: Complex, noise: float) -> float:
 
 def nearest_pair(found: Complex) -> list[int]:
     """Return the indices of the two multipliers whose product is nearest 1."""
-    first, second = np.triu_indices(len(found), 1)
+    first, second = _both(len(found))
     nearest = np.abs(found[first] * found[second] - 1).argmin()
     return [int(first[nearest]), int(second[nearest])]
 

@@ -132,7 +132,14 @@ class Increment:
 
     def scaled(self, factor: float) -> Self:
         """Return the increment times a factor."""
-        return type(self)(*(factor * getattr(self, f.name) for f in fields(self)))
+        return type(self)(
+            factor * self.nodes,
+            factor * self.stages,
+            factor * self.algebraic,
+            factor * self.phases,
+            factor * self.parameters,
+            factor * self.profile,
+        )
 
     def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2."""
@@ -166,8 +173,7 @@ def size_of(orbit: Orbit) -> float:
 
 def mean_weights(orbit: Orbit) -> Array:
     """Trapezoidal weights of the mesh points over one period, shape (N+1,); their sum is 1."""
-    half = orbit.grid.width / (2 * orbit.mesh.period)
-    return np.append(half, 0.0) + np.append(0.0, half)
+    return orbit.grid.mean_weights
 
 
 def node_phase_gradient(orbit: Orbit) -> Array:

@@ -149,17 +149,15 @@ def bisect(orbit: Orbit) -> Orbit:
         The orbit on 2 N intervals.
     """
     scheme = orbit.mesh.scheme
-    halves = np.concatenate([scheme.points / 2, (1 + scheme.points) / 2])
+    stages, unknowns, middle = scheme.halves
     count = 2 * orbit.mesh.ntst
     nodes = np.empty((count + 1, orbit.nodes.shape[1]))
     nodes[::2] = orbit.nodes
-    nodes[1::2] = scheme.basis(np.array([0.5]))[0] @ orbit.knots
+    nodes[1::2] = middle @ orbit.knots
     return replace(
         orbit,
         mesh=orbit.mesh.bisected(),
         nodes=nodes,
-        stages=(scheme.basis(halves) @ orbit.knots).reshape(count, scheme.ncol, -1),
-        algebraic=(scheme.algebraic_basis(halves) @ orbit.algebraic).reshape(
-            count, scheme.ncol, orbit.algebraic.shape[2]
-        ),
+        stages=(stages @ orbit.knots).reshape(count, scheme.ncol, -1),
+        algebraic=(unknowns @ orbit.algebraic).reshape(count, scheme.ncol, orbit.algebraic.shape[2]),
     )

@@ -119,7 +119,8 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
     )
     count = values.shape[1]
     both = np.concatenate([-values, values], axis=1)
-    both[np.repeat(_short(orbit), orbit.mesh.scheme.ncol)] = OUT
+    if (short := _short(orbit)).any():
+        both[np.repeat(short, orbit.mesh.scheme.ncol)] = OUT
     row, index = _candidates(both)
     signs = np.where(row < count, -1.0, 1.0)
     gaps = np.diff(tau, append=tau[0] + orbit.mesh.period)
@@ -176,7 +177,10 @@ def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_]
     """signs * output at the phases of each row's own output, shape of `grid`."""
     values = outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
     chosen = signs[:, None] * values[np.arange(len(signs)), :, column]
-    return np.where(_short(orbit)[orbit.locate(grid.ravel())[0]].reshape(grid.shape), OUT, chosen)
+    short = _short(orbit)
+    if not short.any():
+        return chosen
+    return np.where(short[orbit.locate(grid.ravel())[0]].reshape(grid.shape), OUT, chosen)
 
 
 def _short(orbit: Orbit) -> NDArray[np.bool_]:

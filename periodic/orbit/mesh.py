@@ -6,7 +6,7 @@ phi are unknowns of the orbit, so that the mesh moves with them. Without any the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -51,6 +51,14 @@ class Grid:
     left_gradient: Array
     width_gradient: Array
 
+    @cached_property
+    def mean_weights(self) -> Array:
+        """Trapezoidal weights of the mesh points over one period, shape (N+1,); their sum is 1."""
+        half, weights = self.width / (2 * self.width.sum()), np.zeros(len(self.width) + 1)
+        weights[:-1] = half
+        weights[1:] += half
+        return weights
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -72,6 +80,9 @@ class Mesh:
     breaks: tuple[Array, ...]
     events: tuple[EventNode, ...] = ()
     period: float = 2 * np.pi
+
+    def __getstate__(self) -> dict[str, object]:
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @property
     def ntst(self) -> int:
@@ -141,10 +152,17 @@ class Mesh:
         Grid
             Left ends and widths, with derivatives.
         """
+        if not self.events:
+            return self._fixed
         segment, left, width = self.segments
         lengths = self.segment_lengths(phases)
-        begin = phases if self.events else np.zeros(1)
-        return Grid(begin[segment] + lengths[segment] * left, lengths[segment] * width, *self.gradients)
+        return Grid(phases[segment] + lengths[segment] * left, lengths[segment] * width, *self.gradients)
+
+    @cached_property
+    def _fixed(self) -> Grid:
+        """The intervals of a mesh without event nodes."""
+        _, left, width = self.segments
+        return Grid(self.period * left, self.period * width, *self.gradients)
 
     def nodes(self, phases: Array) -> Array:
         """Return the phases of the mesh points, both ends included.
@@ -186,6 +204,10 @@ class Mesh:
         Mesh
             One of 2 N intervals.
         """
+        return self._bisected
+
+    @cached_property
+    def _bisected(self) -> Mesh:
         halves = tuple(np.sort(np.concatenate([b, (b[1:] + b[:-1]) / 2])) for b in self.breaks)
         return Mesh(self.scheme, halves, self.events, self.period)
 

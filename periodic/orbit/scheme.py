@@ -99,6 +99,15 @@ class Scheme:
         nodes, weights = scipy.special.roots_jacobi(self.ncol - 1, 1, 0)
         return np.append(weights / (1 - nodes) / 2, 1 / self.ncol**2)
 
+    @cached_property
+    def halves(self) -> tuple[Array, Array, Array]:
+        """What takes knots, and collocation points alone, to those of both halves, and to their common end.
+
+        Shapes (2 ncol, ncol+1), (2 ncol, ncol) and (ncol+1,).
+        """
+        both = np.concatenate([self.points / 2, (1 + self.points) / 2])
+        return self.basis(both), self.algebraic_basis(both), self.basis(np.array([0.5]))[0]
+
     def basis(self, theta: Array) -> Array:
         """Return the Lagrange polynomials of the knots.
 

@@ -12,6 +12,7 @@ followed over the whole period, so that full turns count.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -121,6 +122,7 @@ def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, 
     return found
 
 
+@lru_cache(maxsize=4)
 def _matched(before: Spectrum, after: Spectrum) -> list[tuple[Pair, Pair]]:
     """The pairs of two orbits, each of the side that has fewer with the nearest of the other.
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
@@ -233,6 +234,7 @@ def _joined(empty: Branch, runs: list[Continuation], elapsed: float, before: Bra
     )
 
 
+@cache
 def _version(name: str) -> str:
     try:
         return metadata.version(name)

@@ -1,16 +1,17 @@
 """Newton's iteration of small systems in one call of C (`newton.c`), where their kernels are compiled.
 
 It takes orbits on arclength constraints of systems without impacts and sliding. Where it does not come
-through (a singular matrix, a step to be damped, event nodes that cross) it returns None: NumPy does it all.
+through (a singular matrix, event nodes that cross) it returns None: NumPy does it all.
 """
 
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -25,7 +26,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.native.arrays import address, plain, source
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array, Scheme
+from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling, jumps_of, resets_of
 
 MOST = 16
@@ -38,13 +39,27 @@ _SCHEME = ("points", "differentiation", "end", "weights")
 _SYSTEM = ("rows", "move", "switch_values", "switch_slopes")
 _CONSTRAINT = ("weighted", "origin_nodes")
 _ORIGIN = ("node_rates", "knots", "knot_rates", "phases", "left", "width")
-_FOUND = ("nodes", "stages", "algebraic", "phases", "parameter", "maps")
-_CHANGES = tuple(f"{of}_{part}" for of in ("step", "kernel") for part in (*_FOUND[:3], "outer"))
-_SETTINGS = ("period", "nominal", "tolerance", "close", "max_change", "narrow", "negligible", "growth")
+_FOUND = ("nodes", "stages", "algebraic", "phases", "parameter")
+_SOLVED = ("maps", *(f"{of}_{part}" for of in ("step", "kernel") for part in (*_FOUND[:3], "outer")))
+_SETTINGS = (
+    "period",
+    "nominal",
+    "tolerance",
+    "close",
+    "max_change",
+    "shortest",
+    "narrow",
+    "negligible",
+    "growth",
+)
 _NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length")
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in _ORIGIN))
-_ADDRESSES = (*_GIVEN, *_FOUND, *_CHANGES)
+_ADDRESSES = (*_GIVEN, *_FOUND, *_SOLVED)
+
+
+_OUTCOMES = {0: Outcome.CONVERGED, 5: Outcome.TOO_MANY}
+"""What newton answers, where it needs no other to say what is wrong."""
 
 
 class Call(ctypes.Structure):
@@ -58,18 +73,12 @@ class Call(ctypes.Structure):
     )
 
 
-class _Held(NamedTuple):
-    """Addresses by field, and the arrays that they are those of."""
-
-    addresses: dict[str, int]
-    arrays: Sequence[Any]
-
-
 @dataclass(frozen=True)
 class _Solved:
-    """What a call has found: the orbit, the last increment, the kernel, the affine maps."""
+    """What a call has found: the orbit, the last increment, the kernel, the fundamental matrices."""
 
     call: Call
+    outcome: Outcome
     orbit: Orbit
     increment: Increment
     kernel: Increment
@@ -88,15 +97,10 @@ def corrected(
     if found is None:
         return None
     call = found.call
-    ended = (
-        Outcome.CONVERGED,
-        int(call.iterations),
-        call.size,
-        call.residual,
-        found.fundamental,
-        found.kernel,
-    )
-    return Correction(found.orbit, *ended)
+    ended = (found.outcome, int(call.iterations), call.size, call.residual)
+    if found.outcome is not Outcome.CONVERGED:
+        return Correction(found.orbit, *ended, np.full((1, call.n, call.n), np.nan), None)
+    return Correction(found.orbit, *ended, found.fundamental, found.kernel)
 
 
 def linearised(
@@ -131,17 +135,23 @@ def _called(
     library = with_compiler.library(source(ELIMINATION, "periodic.collocation.native:newton.c"))
     if library is None:
         return None
-    call, kept = _given(system, guess, constraint, settings)
-    call.free, call.most = free[0], most
+    call = Call.from_buffer_copy(_of_mesh(guess.mesh)[0])
+    call.n, call.m, call.parameters = guess.nodes.shape[1], guess.algebraic.shape[2], len(guess.parameter)
+    call.switches, call.free, call.most = len(system.switches), free[0], most
+    call.nominal = max(abs(system.nominal[constraint.index]), settings.tiny)
+    call.tolerance, call.close, call.max_change = settings.tolerance, settings.close, settings.max_change
+    call.shortest = 0.5**settings.max_halvings
+    call.narrow, call.negligible = settings.short, settings.negligible
+    kept = _constrained(call, constraint)
     for name, where in zip(_SYSTEM, functions, strict=True):
         setattr(call, name, where)
     orbit, parts, maps = _laid_out(call, guess)
-    if _routine(library)(ctypes.addressof(call)) != 0:
-        return None
+    outcome = _OUTCOMES.get(_routine(library)(ctypes.addressof(call)))
     del kept
-    n = guess.nodes.shape[1]
+    if outcome is None:
+        return None
     increment, kernel = (_change(orbit, part) for part in parts)
-    return _Solved(call, orbit, increment, kernel, maps[:, :, 1 : 1 + n])
+    return _Solved(call, outcome, orbit, increment, kernel, maps[:, :, 1 : 1 + call.n])
 
 
 def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:
@@ -154,70 +164,47 @@ def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:
     return functions if len(functions) == len(_SYSTEM) else None
 
 
-def _given(
-    system: System, guess: Orbit, constraint: ArclengthConstraint, settings: NewtonSettings
-) -> tuple[Call, list[Array]]:
-    """What goes in but the orbit itself, and the arrays that are to be kept meanwhile."""
-    (count, ncol, n), origin = guess.stages.shape, constraint.origin
-    call = Call(
-        count,
-        ncol,
-        n,
-        guess.algebraic.shape[2],
-        len(guess.phases),
-        len(guess.parameter),
-        len(system.switches),
-    )
-    mesh, scheme = _of_mesh(guess.mesh), _of_scheme(guess.mesh.scheme)
-    call.exact = len(guess.mesh.exact_ends)
-    for held in (mesh, scheme):
-        for name, where in held.addresses.items():
-            setattr(call, name, where)
-    arrays = [plain(constraint.weighted), plain(origin.nodes)]
-    call.weighted, call.origin_nodes = map(address, arrays)
-    if len(guess.phases):
-        moving = (
-            origin.node_rates,
-            origin.knots,
-            origin.knot_rates,
-            origin.phases,
-            origin.grid.left,
-            origin.grid.width,
-        )
-        for name, array in zip(_ORIGIN, map(plain, moving), strict=True):
-            setattr(call, f"origin_{name}", address(array))
-            arrays.append(array)
-    call.period, call.growth = guess.mesh.period, GROWTH
-    call.nominal = max(abs(system.nominal[constraint.index]), settings.tiny)
-    call.tolerance, call.close, call.max_change = settings.tolerance, settings.close, settings.max_change
-    call.narrow, call.negligible = settings.short, settings.negligible
+def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
+    """Give a constraint to a call; return the arrays that are to be kept meanwhile."""
+    origin = constraint.origin
+    names, arrays = list(_CONSTRAINT), [constraint.weighted, origin.nodes]
+    if call.k:
+        names += [f"origin_{name}" for name in _ORIGIN]
+        arrays += [origin.node_rates, origin.knots, origin.knot_rates, origin.phases]
+        arrays += [origin.grid.left, origin.grid.width]
+    kept = [plain(array) for array in arrays]
+    for name, array in zip(names, kept, strict=True):
+        setattr(call, name, address(array))
     call.origin_parameter = origin.parameter[constraint.index]
     call.slope = constraint.direction.parameter / constraint.scale**2
     call.distance = constraint.distance
-    return call, arrays
+    return kept
 
 
 def _laid_out(call: Call, guess: Orbit) -> tuple[Orbit, tuple[list[Array], list[Array]], Array]:
     """The orbit, which begins as the guess, parts of increment and kernel, and maps: where C writes them."""
     begun = (guess.nodes, guess.stages, guess.algebraic, guess.phases, guess.parameter)
-    width = 2 + call.n + call.k
     shapes = [array.shape for array in begun]
+    own = _blocks(call, _FOUND, shapes)
+    for array, value in zip(own, begun, strict=True):
+        array[...] = value
     change = [*shapes[:3], (call.k + 1,)]
-    shapes += [(call.count + 1, call.n, width), *change, *change]
-    block = np.empty(sum(map(_product, shapes)))
+    maps, *parts = _blocks(call, _SOLVED, [(call.count + 1, call.n, 2 + call.n + call.k), *change, *change])
+    nodes, stages, algebraic, phases, parameter = own
+    orbit = Orbit(guess.mesh, nodes, stages, algebraic, phases, parameter, layout=guess.layout)
+    return orbit, (parts[:4], parts[4:]), maps
+
+
+def _blocks(call: Call, names: Sequence[str], shapes: Sequence[tuple[int, ...]]) -> list[Array]:
+    """Arrays of some shapes, one after the other in memory, their addresses given to a call."""
+    sizes = [math.prod(shape) for shape in shapes]
+    block = np.empty(sum(sizes))
     begin, arrays, first = address(block), [], 0
-    for name, shape in zip((*_FOUND, *_CHANGES), shapes, strict=True):
-        size = _product(shape)
+    for name, shape, size in zip(names, shapes, sizes, strict=True):
         setattr(call, name, begin + 8 * first)
         arrays.append(block[first : first + size].reshape(shape))
         first += size
-    for array, value in zip(arrays, begun, strict=False):
-        array[...] = value
-    nodes, stages, algebraic, phases, parameter, maps, *parts = arrays
-    moved = replace(
-        guess, nodes=nodes, stages=stages, algebraic=algebraic, phases=phases, parameter=parameter
-    )
-    return moved, (parts[:4], parts[4:]), maps
+    return arrays
 
 
 def _change(orbit: Orbit, parts: list[Array]) -> Increment:
@@ -227,36 +214,25 @@ def _change(orbit: Orbit, parts: list[Array]) -> Increment:
     return Increment.of(orbit, nodes, stages, algebraic, outer[:k], outer[k:])
 
 
-_meshes: WeakKeyDictionary[Mesh, _Held] = WeakKeyDictionary()
+_meshes: WeakKeyDictionary[Mesh, tuple[Call, Sequence[Any]]] = WeakKeyDictionary()
 
 
-def _of_mesh(mesh: Mesh) -> _Held:
-    """The fields of a mesh."""
+def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
+    """A call with what belongs to a mesh and its scheme, and the arrays that it has addresses of."""
     if mesh not in _meshes:
         segment, left, width = mesh.segments
         marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends)
         numbers = (left, width, *mesh.gradients, np.array([event.level for event in mesh.events]))
-        arrays = (*(np.array(mark, dtype=np.intp) for mark in marks), *map(plain, numbers))
-        _meshes[mesh] = _held((*_MARKS, *_MESH), arrays)
+        scheme = mesh.scheme
+        of_scheme = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
+        kept: list[Any] = [np.array(mark, dtype=np.intp) for mark in marks]
+        kept += map(plain, (*numbers, *of_scheme))
+        call = Call(count=mesh.ntst, ncol=scheme.ncol, k=len(mesh.events), exact=len(mesh.exact_ends))
+        for name, array in zip((*_MARKS, *_MESH, *_SCHEME), kept, strict=True):
+            setattr(call, name, address(array))
+        call.period, call.growth = mesh.period, GROWTH
+        _meshes[mesh] = call, kept
     return _meshes[mesh]
-
-
-@cache
-def _of_scheme(scheme: Scheme) -> _Held:
-    """The fields of a scheme."""
-    arrays = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
-    return _held(_SCHEME, [plain(array) for array in arrays])
-
-
-def _held(names: tuple[str, ...], arrays: Sequence[Any]) -> _Held:
-    return _Held(dict(zip(names, map(address, arrays), strict=True)), arrays)
-
-
-def _product(shape: tuple[int, ...]) -> int:
-    size = 1
-    for length in shape:
-        size *= length
-    return size
 
 
 @cache

@@ -1,12 +1,11 @@
 
-/* What `periodic.correction.newton` does with the equations of collocation and one arclength constraint: the
-   whole iteration in one call. It follows `elimination.c`
-   in one source.
+/* What `periodic.correction.newton` does with the equations of collocation and one arclength constraint: the whole
+   iteration in one call. It follows `elimination.c` in one source.
 
-   Whatever is not plain sailing (a singular matrix, a step that makes things worse, event nodes that cross) ends
-   it with a code other than DONE: NumPy begins anew and says what is wrong. */
+   Whatever else happens (a singular matrix, event nodes that cross) ends it with a code of its own: NumPy then begins
+   anew and says what is wrong. */
 
-enum { CROSSED = SINGULAR + 1, WORSE, GROWS, TOO_MANY, NO_ROOM };
+enum { CROSSED = SINGULAR + 1, GROWS, TOO_MANY, NO_ROOM }; /* TOO_MANY is 5 */
 
 #define BEFORE 1e-9 /* as in residual.py */
 
@@ -40,7 +39,7 @@ struct call {
     double *nodes, *stages, *algebraic, *phases, *parameter;        /* the orbit: the guess, then what is found */
     double *maps;                                                   /* of the last linearisation */
     struct change increment, kernel;
-    double period, nominal, tolerance, close, max_change, narrow, negligible, growth;
+    double period, nominal, tolerance, close, max_change, shortest, narrow, negligible, growth;
     double origin_parameter, slope, distance;
     double residual, size, length;
     whole iterations;
@@ -51,7 +50,7 @@ struct room {
     double *residual, *d_rate, *d_state, *d_algebraic, *d_phase, *d_parameter;
     double *value, *by_state, *by_phase, *by_parameter; /* of switches at one mesh point */
     double *left, *width, *knots, *rates, *tau, *rate, *state, *moved, *shift;
-    double *origin, *origin_rate, *step, *stage_map, *algebraic_map, *bordered, *work, *few;
+    double *origin, *origin_rate, *step, *stage_map, *algebraic_map, *bordered, *work, *few, *kept;
     whole *marks;
 };
 
@@ -71,7 +70,7 @@ static double *lay_out(const struct call *c, struct room *r)
     const whole room = (c->ncol * n + m) * w1 + m * (m + w1) + c->ncol * n * (c->ncol * n + w + 1)
                        + 3 * c->ncol * c->ncol;
     const whole other = 2 * c->count + 2 * c->count * (c->ncol + 1) * n + points * (1 + 2 * n + 2 * m) + 2 * ends
-                        + c->count * n * w + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + w + 4 * n;
+                        + c->count * n * w + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + w + 2 * (ends + points * rows + k + 1) + 4 * n;
     double *all = malloc((zeroed + other) * sizeof(double)), *next = all;
     if (!all)
         return NULL;
@@ -103,6 +102,7 @@ static double *lay_out(const struct call *c, struct room *r)
     r->bordered = taken(&next, last * (last + 2));
     r->work = taken(&next, room);
     r->few = taken(&next, n + c->ncol + 1 + w);
+    r->kept = taken(&next, 2 * (ends + points * rows + k + 1));
     r->marks = (whole *)taken(&next, 4 * n);
     return all;
 }
@@ -353,54 +353,76 @@ static int linearised(struct call *c, struct room *r)
     return measure(c, r);
 }
 
-/* Move the orbit by a part of the increment. */
-static void move(struct call *c, struct room *r, double part)
+/* Remember the orbit and the increment from it. */
+static void keep(const struct call *c, struct room *r)
 {
     const struct change *d = &c->increment;
-    const whole points = c->count * c->ncol;
-    for (whole i = 0; i < (c->count + 1) * c->n; i++)
-        c->nodes[i] += part * d->nodes[i];
-    for (whole i = 0; i < points * c->n; i++)
-        c->stages[i] += part * d->stages[i];
-    for (whole i = 0; i < c->k; i++)
-        c->phases[i] += part * d->outer[i];
-    c->parameter[c->free] += part * d->outer[c->k];
-    if (c->m && part != 1) {
-        for (whole i = 0; i < points * c->m; i++)
-            r->shift[i] = part * d->algebraic[i];
-        c->move(points, c->algebraic, r->shift, r->moved);
+    const whole nodes = (c->count + 1) * c->n, stages = c->count * c->ncol * c->n, unknowns = c->count * c->ncol * c->m;
+    const double *parts[] = {c->nodes, c->stages, c->algebraic, c->phases, c->parameter + c->free,
+                             d->nodes, d->stages, d->algebraic, d->outer};
+    const whole sizes[] = {nodes, stages, unknowns, c->k, 1, nodes, stages, unknowns, c->k + 1};
+    double *next = r->kept;
+    for (whole i = 0; i < 9; i++) {
+        memcpy(next, parts[i], sizes[i] * sizeof(double));
+        next += sizes[i];
     }
-    memcpy(c->algebraic, r->moved, points * c->m * sizeof(double));
 }
 
+/* Move the orbit to where a part of the increment leads from the one that was kept. */
+static void move(struct call *c, struct room *r, double part)
+{
+    const whole nodes = (c->count + 1) * c->n, stages = c->count * c->ncol * c->n, unknowns = c->count * c->ncol * c->m;
+    const double *from = r->kept, *algebraic = from + nodes + stages, *outer = algebraic + unknowns;
+    const double *change = outer + c->k + 1, *shift = change + nodes + stages, *further = shift + unknowns;
+    for (whole i = 0; i < nodes; i++)
+        c->nodes[i] = from[i] + part * change[i];
+    for (whole i = 0; i < stages; i++)
+        c->stages[i] = from[nodes + i] + part * change[nodes + i];
+    for (whole i = 0; i < c->k; i++)
+        c->phases[i] = outer[i] + part * further[i];
+    c->parameter[c->free] = outer[c->k] + part * further[c->k];
+    for (whole i = 0; i < unknowns; i++)
+        r->shift[i] = part * shift[i];
+    if (unknowns)
+        c->move(c->count * c->ncol, algebraic, r->shift, c->algebraic);
+}
+
+/* Newton steps, those that make things worse cut to a quarter again and again. */
 static int iterate(struct call *c, struct room *r)
 {
-    double before = INFINITY;
+    double before = INFINITY, factor = 1;
     int found = c->most == 0;
-    for (c->iterations = 0; !found && c->iterations < c->most;) {
-        const int code = linearised(c, r);
+    for (c->iterations = 0; !found && c->iterations < c->most; c->iterations++) {
+        const int code = linearised(c, r), worse = code != DONE || c->length > 2 * before;
+        if (worse && before < INFINITY && factor > c->shortest) {
+            factor /= 4;
+            move(c, r, factor);
+            continue;
+        }
         if (code != DONE)
             return code;
-        if (c->length > 2 * before)
-            return WORSE;
         before = c->length;
-        c->iterations++;
-        move(c, r, c->max_change / fmax(c->length, c->max_change));
+        factor = c->max_change / fmax(c->length, c->max_change);
+        keep(c, r);
+        move(c, r, factor);
         found = c->size < c->tolerance;
     }
-    if (!found)
-        return TOO_MANY;
+    return found ? DONE : TOO_MANY;
+}
+
+static int solved(struct call *c, struct room *r)
+{
+    int code = iterate(c, r);
     const double size = c->size;
-    if (c->most == 0 || c->length > c->close * c->tolerance) {
-        const int code = linearised(c, r);
-        if (code != DONE)
-            return code;
-    }
+    if (code == DONE && (c->most == 0 || c->length > c->close * c->tolerance))
+        code = linearised(c, r);
+    if (code != DONE)
+        return code;
     if (c->most)
         c->size = size;
     const whole last = c->n + c->k + 1;
     spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
-    return unfold(c, r) == DONE ? DONE : CROSSED;
+    return unfold(c, r);
 }
 
 /* Iterate to convergence, at most `most` times; 0 times is one linearisation at the orbit as it is. */
@@ -410,7 +432,7 @@ int newton(struct call *c)
     double *all = lay_out(c, &room);
     if (!all)
         return NO_ROOM;
-    const int code = iterate(c, &room);
+    const int code = solved(c, &room);
     free(all);
     return code;
 }

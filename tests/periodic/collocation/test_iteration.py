@@ -131,16 +131,30 @@ def test_who_is_left_to_numpy() -> None:
     assert iteration.corrected(compiled("duffing"), many, (constraint.index,), [constraint], NEWTON) is None
 
 
-def test_what_fails_is_told_by_numpy() -> None:
-    """Assert that an iteration that does not converge is left to NumPy, whose outcome stands."""
+def test_iterations_that_are_damped() -> None:
+    """Assert the same iterations, cut alike, and the same orbit from guesses that are far off."""
     orbit = duffing().points[20].orbit
     constraint, guess = beside(compiled("duffing"), orbit, "Omega")
-    far = replace(constraint, distance=50.0)
-    given = (compiled("duffing"), guess, (constraint.index,), [far], replace(NEWTON, max_iterations=2))
+    for factor, most in ((1.7, 12), (3.0, 30), (3.0, 2)):
+        far = replace(guess, nodes=guess.nodes * factor, stages=guess.stages * factor)
+        given = (
+            *(compiled("duffing"), far, (constraint.index,), [constraint]),
+            replace(NEWTON, max_iterations=most, max_change=0.1 * factor),
+        )
+        found, expected = iteration.corrected(*given), correct(METHOD.linearise, *given)
+        assert found is not None
+        assert (found.outcome, found.iterations) == (expected.outcome, expected.iterations)
+        close(found.orbit.nodes, expected.orbit.nodes, 1e-8)
+
+
+def test_what_fails_is_told_by_numpy() -> None:
+    """Assert that equations that are not finite are left to NumPy, whose outcome stands."""
+    orbit = duffing().points[20].orbit
+    constraint, guess = beside(compiled("duffing"), orbit, "Omega")
+    broken = replace(guess, stages=guess.stages * np.nan)
+    given = (compiled("duffing"), broken, (constraint.index,), [constraint], NEWTON)
     assert iteration.corrected(*given) is None
     assert METHOD.corrected(*given).outcome is correct(METHOD.linearise, *given).outcome
-    broken = replace(guess, stages=guess.stages * np.nan)
-    assert iteration.corrected(given[0], broken, *given[2:]) is None
 
 
 def summary(point: Point) -> list[float]:
