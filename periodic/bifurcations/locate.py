@@ -105,7 +105,7 @@ def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction, cours
     not known.
     """
     base, value = stretch.base, test.value
-    ends = [value(solution) for solution in (base, new)]
+    ends = [base.once(value), new.once(value)]
     if ends[0] * ends[1] < 0:
         return _located(stretch, (0.0, ds), ds, test)
     if ends[0] != 0 and ends[1] == 0 and 0 < value(stretch.at(SHORTER * ds)) / ends[0] < LEFT:

@@ -92,7 +92,7 @@ class Stretch:
         """
 
         def value(distance: float) -> float:
-            return function(self.at(distance))
+            return self.at(distance).once(function)
 
         at_ends = [value(end) for end in ends]
         if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error

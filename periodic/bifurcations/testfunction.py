@@ -77,7 +77,7 @@ class TestFunction:
         float
             `local`, or the function itself.
         """
-        return (self.local or self.value)(solution)
+        return solution.once(self.local or self.value)
 
 
 def margins(solution: Solution, tests: Sequence[TestFunction]) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -73,6 +74,27 @@ class Solution:
     def value(self) -> float:
         """The continuation parameter (SI)."""
         return self.problem.value(self.orbit)
+
+    def once(self, function: Callable[[Solution], float]) -> float:
+        """Return a function of the solution, computed when it is first asked for.
+
+        Parameters
+        ----------
+        function : callable
+            The function.
+
+        Returns
+        -------
+        float
+            Its value.
+        """
+        if function not in self._values:
+            self._values[function] = function(self)
+        return self._values[function]
+
+    @cached_property
+    def _values(self) -> dict[Callable[[Solution], float], float]:
+        return {}
 
     @cached_property
     def spectrum(self) -> Spectrum:

@@ -22,6 +22,7 @@ RISE = 2.0
 
 ZOOMS = 2
 SAMPLES = 9
+PLACES = np.linspace(-1, 1, SAMPLES)
 
 SHORT = 1e-5
 """Width (rad) of intervals whose points do not count, unless all are as short.
@@ -58,7 +59,10 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array:
     ValueError
         Where the orbit's names or units are not the system's.
     """
-    orbit = as_read_by(system, orbit)
+    return _outputs(system, as_read_by(system, orbit), tau)
+
+
+def _outputs(system: System, orbit: Orbit, tau: Array) -> Array:
     compiled = native.outputs(system, orbit, tau)
     if compiled is not None:
         return compiled
@@ -159,7 +163,7 @@ def _zoomed(
     """
     each, phase = np.arange(len(signs)), centre
     for _ in range(ZOOMS):
-        grid = centre[:, None] + radius[:, None] * np.linspace(-1, 1, SAMPLES)
+        grid = centre[:, None] + radius[:, None] * PLACES
         chosen = _signed(system, orbit, signs, column, grid)
         peak = chosen.argmax(axis=1)
         best, phase = _better(best, phase, chosen[each, peak], grid[each, peak])
@@ -175,7 +179,7 @@ def _better(best: Array, phase: Array, value: Array, at: Array) -> tuple[Array, 
 
 def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_], grid: Array) -> Array:
     """signs * output at the phases of each row's own output, shape of `grid`."""
-    values = outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
+    values = _outputs(system, orbit, grid.ravel()).reshape(*grid.shape, -1)
     chosen = signs[:, None] * values[np.arange(len(signs)), :, column]
     short = _short(orbit)
     if not short.any():

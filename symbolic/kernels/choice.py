@@ -27,6 +27,9 @@ Run = Callable[..., None]
 SAVED = 0.25e-6
 """Seconds that C saves for each instruction of a call; per point both take the same time."""
 
+ITERATION = 1.5e-4
+"""... and for each call of a kernel around which a whole iteration then runs in C."""
+
 COMPILER, STATEMENT = 0.08, 0.5e-3
 """Seconds that compiling costs: at all, and for each instruction."""
 
@@ -93,6 +96,7 @@ class ChosenKernel:
     """A kernel of either back end. Arrays that C does not take as they are go to NumPy's.
 
     `numpy` makes the NumPy kernel; layouts are those of arguments and results, the last `results` of them.
+    iterated: whether where it is compiled whole iterations run in C.
     """
 
     source: str
@@ -101,6 +105,7 @@ class ChosenKernel:
     results: int
     kernels: Kernels
     numpy: Callable[[], Run]
+    iterated: bool = False
     _calls: int = field(default=0, init=False)
     _compiled: Run | None = field(default=None, init=False)
 
@@ -136,7 +141,8 @@ class ChosenKernel:
     @property
     def pays(self) -> int:
         """Number of calls after which compiling has paid."""
-        return math.ceil((COMPILER + STATEMENT * self.instructions) / (SAVED * self.instructions))
+        saved = SAVED * self.instructions + (ITERATION if self.iterated else 0.0)
+        return math.ceil((COMPILER + STATEMENT * self.instructions) / saved)
 
     def _count(self) -> None:
         """Compile when it has paid; only then, whatever comes of it."""

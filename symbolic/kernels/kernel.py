@@ -100,12 +100,15 @@ def points(symbol: ca.SX, name: str) -> Argument:
 
 
 def build(
-    arguments: Sequence[Argument], results: Sequence[ca.SX], kernels: Kernels = Kernels.NUMPY
+    arguments: Sequence[Argument],
+    results: Sequence[ca.SX],
+    kernels: Kernels = Kernels.NUMPY,
+    iterated: bool = False,
 ) -> Callable[..., None]:
     """Return kernel(*arguments, *arrays), which writes result i into arrays[i].
 
     A result of shape (r, 1) goes to an array (points, r), one of shape (r, c) to (points, r, c). Only
-    structural nonzeros are written: the arrays come zeroed.
+    structural nonzeros are written: the arrays come zeroed. iterated: see `ChosenKernel`.
     """
     function = ca.Function("kernel", [a.symbol for a in arguments], ca.cse(list(results)))
     _check_operations(function)
@@ -119,6 +122,7 @@ def build(
         results=len(results),
         kernels=kernels,
         numpy=lambda: _numpy(function, arguments),
+        iterated=iterated,
     )
 
 

@@ -24,6 +24,9 @@ from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart
 from symbolic.structures.rowspart import RowsPart
 
+SMALL = 16
+"""Number of states up to which the engine iterates in C."""
+
 
 @dataclass(frozen=True)
 class Linearisation:
@@ -426,7 +429,8 @@ class CompiledSystem:
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
             results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            known[free] = self._build(arguments or self._arguments, results)
+            iterated = known is self._jacobians and len(self.states) <= SMALL
+            known[free] = build(arguments or self._arguments, results, self.kernels, iterated)
         return known[free]
 
     def _linearised(

@@ -12,6 +12,7 @@ import numpy as np
 from periodic.orbit.scheme import Array
 
 _Address = ctypes.c_char * 0
+_FLOAT = np.dtype(float)
 
 
 def address(array: Any) -> int:
@@ -21,6 +22,9 @@ def address(array: Any) -> int:
 
 def plain(array: Array) -> Array:
     """Return an array of doubles that C takes: itself where it is one."""
+    flags = array.flags
+    if flags.carray and array.dtype == _FLOAT:
+        return array
     found = np.ascontiguousarray(array, dtype=float)
     return found if found.flags.writeable else found.copy()
 

@@ -42,8 +42,8 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
     own = grid.left, grid.width, orbit.knots, orbit.knot_rates, orbit.algebraic, orbit.parameter, tau
     fixed = scheme.knots, scheme.barycentric, scheme.inner_barycentric
     kept = [plain(array) for array in (*own, *fixed)]
-    call = Call(count, ncol, n, m, values.shape[1], len(tau), *map(address, kept), rows, values_at)
-    call.values, call.period = address(values), orbit.mesh.period
+    sizes, found = (count, ncol, n, m, values.shape[1], len(tau)), address(values)
+    call = Call(*sizes, *map(address, kept), rows, values_at, found, orbit.mesh.period)
     return values if _routine(library)(ctypes.addressof(call)) == 0 else None
 
 
