@@ -511,6 +511,31 @@ class Split(System, Protocol):
         """The linear part; None of a system that is not split."""
 
 
+class Within(Split, Protocol):
+    """A split system that was found in the equations of another: its states are some of that one's."""
+
+    @property
+    def whole(self) -> System:
+        """The other system, with all states."""
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Which of the whole system's states it has. Of the unknowns it has these first, then its forces."""
+
+    def everything(self, parameter: Array) -> ModesLike:
+        """The modes with all states of the whole system as outputs."""
+
+
+class Condensable(System, Protocol):
+    """A system whose linear part may be found in its equations."""
+
+    def condensed(self, *, always: bool = False) -> Within | None:
+        """Return the system of its nonlinear places alone, None where that does not pay.
+
+        With `always` also where it does not pay. Raises ValueError then, in one sentence, where it cannot be.
+        """
+
+
 def linear_of(system: System) -> LinearPart | None:
     """Return the linear part of a system that is split, None of any other."""
     return cast(Split, system).linear if hasattr(system, "linear") else None

@@ -62,6 +62,10 @@ class Collocation(Discretisation):
         When the mesh is tied to a passage of a switch; default what the tolerance asks for.
     solver : callable
         The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+    condense : bool, optional
+        Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
+        alone; by default where that pays. Results are those of all states all the same, but of many
+        multipliers the leading ones.
     tolerance : float
         What meshes are made for; set by the trace.
 
@@ -77,9 +81,12 @@ class Collocation(Discretisation):
     ntst_max: int = 1000
     kinks: KinkSettings | None = None
     solver: LinearSolver = condensation
+    condense: bool | None = None
     tolerance: float = 1e-7
 
     def __post_init__(self) -> None:
+        if not (self.condense is None or isinstance(self.condense, bool)):
+            raise ValueError(f"condense is {self.condense!r}; it must be True, False or None")
         check_intervals(self.ntst, self.ntst_min, self.ntst_max)
         check_scheme(self.scheme)
         if self.kinks is not None and not isinstance(self.kinks, KinkSettings):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy
@@ -37,6 +38,15 @@ LASTING = 0.6
 SMALL = 48
 """Up to so many states all of them are computed and kept."""
 
+BLOCK, MOST = 4, 40
+"""Vectors that a Krylov space grows by at a time, and its largest size."""
+
+DENSE = 64
+"""Up to so many states all multipliers are computed, if not kept."""
+
+CLOSE = 1e-12
+"""Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
+
 
 @dataclass(frozen=True)
 class Floquet:
@@ -58,10 +68,19 @@ class Floquet:
         return np.flatnonzero(np.concatenate([np.ones(len(oscillates), dtype=bool), oscillates, own]))
 
     @cached_property
-    def answers(self) -> Array:
-        """Forces and own states at the points, (P ka + P o, coordinates)."""
-        given = self.given
-        system = Coupled(given, given.flexibility[1], wraps=0.0)
+    def _system(self) -> Coupled:
+        return Coupled(self.given, self.given.from_rest, wraps=0.0)
+
+    @cached_property
+    def _factors(self) -> Any:
+        if not np.isfinite(self._system.matrix).all():
+            raise FloatingPointError("the equations of free motion are not finite")
+        return scipy.linalg.lu_factor(self._system.matrix, check_finite=False)
+
+    @cached_property
+    def _excited(self) -> Array:
+        """How free motion drives forces and own states at the points, (P ka + P o, coordinates)."""
+        given, system = self.given, self._system
         n, modes = system.n, 2 * len(given.response.modes.exponents)
         shown = given.response.free().reshape(system.points, len(system.places), modes)
         places = [1 + n + k for k in system.places]
@@ -72,7 +91,38 @@ class Floquet:
             own = given.local.own
             right[system.count :, :modes] = -(own[:, :, places] @ shown).reshape(-1, modes)
             right[system.count :, modes:] = -self._begun(own[:, :, 1 + system.others])
-        return np.asarray(np.linalg.solve(system.matrix, right[:, self.kept]))
+        return right[:, self.kept]
+
+    @cached_property
+    def _left(self) -> Array:
+        """What forces and own states leave at the end of the period, (coordinates, P ka + P o)."""
+        system, final = self._system, self.given.response.final()
+        modes, own = len(final), len(system.others)
+        found = np.zeros((modes + own, system.size))
+        found[:modes, : system.count] = final[..., system.active].reshape(modes, -1)
+        found[np.arange(own) + modes, np.arange(own) + system.size - own] = 1.0
+        return found[self.kept]
+
+    @cached_property
+    def _grown(self) -> tuple[Array, Array, NDArray[np.int_]]:
+        """Modes left alone over the period: factors of a coordinate and of its partner, and which that is."""
+        growth, own = self.given.response.growth[-1], np.zeros(len(self.given.others))
+        count = len(growth)
+        factor = np.concatenate([growth.real, growth.real, own])[self.kept]
+        across = np.concatenate([-growth.imag, growth.imag, own])[self.kept]
+        place = np.zeros(2 * count + len(own), dtype=int)
+        place[self.kept] = np.arange(len(self.kept))
+        swapped = np.concatenate([np.arange(count) + count, np.arange(count), np.zeros(len(own), dtype=int)])
+        return factor[:, None], across[:, None], place[swapped[self.kept]]
+
+    def answers(self, basis: Array) -> Array:
+        """Return forces and own states at the points in free motion from the columns of a basis."""
+        return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
+
+    def once(self, basis: Array) -> Array:
+        """Return M times the columns of a basis, (coordinates, r)."""
+        factor, across, partner = self._grown
+        return factor * basis + across * basis[partner] + self._left @ self.answers(basis)
 
     def _begun(self, rates: Array) -> Array:
         """What the own states' start adds to their rows in the first interval, (P o, o)."""
@@ -84,31 +134,15 @@ class Floquet:
 
     def _forces(self, answers: Array) -> Array:
         """All forces at the points, (N, b, k, r), of the active ones."""
-        given = self.given
-        system = Coupled(given, given.flexibility[1], wraps=0.0)
-        count, points, _ = given.orbit.stages.shape
+        system, (count, points, _) = self._system, self.given.orbit.stages.shape
         found = np.zeros((count, points, system.k, answers.shape[1]))
         found[:, :, system.active] = answers[: system.count].reshape(count, points, -1, answers.shape[1])
         return found
 
-    @cached_property
+    @property
     def monodromy(self) -> Array:
         """M, (coordinates, coordinates)."""
-        given, kept = self.given, self.kept
-        growth = given.response.growth[-1]
-        modes, own = 2 * len(growth), len(given.others)
-        whole = np.zeros((modes + own, modes + own))
-        each = np.arange(len(growth))
-        whole[each, each] = whole[each + len(growth), each + len(growth)] = growth.real
-        whole[each, each + len(growth)], whole[each + len(growth), each] = -growth.imag, growth.imag
-        found = whole[np.ix_(kept, kept)]
-        final = np.zeros((modes + own, self.answers.shape[1]))
-        forces = self._forces(self.answers)
-        final[:modes] = given.response.final().reshape(modes, -1) @ forces.reshape(-1, forces.shape[3])
-        if own:
-            found[-own:, -own:] = 0.0
-            final[modes:] = self.answers[-own:]
-        return np.asarray(found + final[kept])
+        return self.once(np.eye(len(self.kept)))
 
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
@@ -116,7 +150,7 @@ class Floquet:
         whole = np.zeros((2 * growth.shape[1] + own, basis.shape[1]))
         whole[self.kept] = basis
         modes = whole[: growth.shape[1]] + 1j * whole[growth.shape[1] : 2 * growth.shape[1]]
-        answers = self.answers @ basis
+        answers = self.answers(basis)
         moved = growth[:, :, None] * modes + self.given.response.driven(self._forces(answers))
         parts = [moved.real, moved.imag]
         if own:
@@ -141,8 +175,13 @@ class Leading:
     @cached_property
     def basis(self) -> Array:
         """Orthonormal basis of the subspace, (coordinates, r)."""
-        matrix = self.floquet.monodromy
-        return invariant(matrix, len(matrix) if len(matrix) <= SMALL else LEADING)
+        size = len(self.floquet.kept)
+        return np.eye(size) if size <= SMALL else invariant(self.floquet, LEADING)
+
+    @property
+    def monodromy(self) -> Array:
+        """M in the subspace, (r, r)."""
+        return np.asarray(self.basis.T @ self.floquet.once(self.basis))
 
     @cached_property
     def _motion(self) -> Array:
@@ -220,19 +259,20 @@ class LeadingSpectrum(Spectrum):
         return self.leading.start(change)
 
 
-def invariant(matrix: Array, count: int) -> Array:
-    """Return an orthonormal basis of the subspace of the `count` largest eigenvalues, (n, count).
+def invariant(floquet: Floquet, count: int) -> Array:
+    """Return an orthonormal basis of the subspace of the `count` largest multipliers, (coordinates, r).
 
-    Where the last of these would tear a pair apart it takes real eigenvalues below, else what is left.
+    Of more where more are lightly damped: all of these then. Where the last would tear a pair apart it takes
+    real ones below, else what is left.
     """
-    size = len(matrix)
-    if size <= count:
-        return np.eye(size)
-    if not np.isfinite(matrix).all():
-        raise FloatingPointError("the monodromy matrix is not finite")
-    values, vectors = _largest(matrix, count)
+    values, vectors = _largest(floquet, count)
+    order = np.argsort(-np.abs(values), kind="stable")
+    if np.abs(values[order[count - 1]]) > LIGHT:
+        values, vectors = _all(floquet)
+        order = np.argsort(-np.abs(values), kind="stable")
+        count = max(count, int((np.abs(values) > LIGHT).sum()))
     columns: list[Array] = []
-    for k in np.argsort(-np.abs(values), kind="stable"):
+    for k in order:
         if values[k].imag == 0 and len(columns) < count:
             columns.append(vectors[:, k].real)
         if values[k].imag > 0 and len(columns) < count - 1:
@@ -240,15 +280,28 @@ def invariant(matrix: Array, count: int) -> Array:
     return np.linalg.qr(np.array(columns).T)[0]
 
 
-def _largest(matrix: Array, count: int) -> tuple[Complex, Complex]:
-    """Some more than `count` of the largest eigenvalues."""
-    if len(matrix) > SMALL:
-        try:
-            values, vectors = scipy.sparse.linalg.eigs(
-                matrix, count + 3, v0=np.ones(len(matrix)), ncv=4 * count, maxiter=60
-            )
-            return values, vectors
-        except scipy.sparse.linalg.ArpackError:
-            pass  # those next to each other in size are told apart by all of them
-    values, vectors = scipy.linalg.eig(matrix)
+def _largest(floquet: Floquet, count: int) -> tuple[Complex, Complex]:
+    """Some more than `count` of the largest multipliers, in a Krylov space that grows until it holds them."""
+    size = len(floquet.kept)
+    space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, BLOCK)))[0]
+    images = np.zeros((size, 0))
+    while size > DENSE and space.shape[1] + BLOCK <= MOST:
+        image = floquet.once(space[:, -BLOCK:])
+        images = np.concatenate([images, image], axis=1)
+        known = space
+        for _ in range(2):
+            image = image - space @ (space.T @ image)
+        space = np.concatenate([space, np.linalg.qr(image)[0]], axis=1)
+        if known.shape[1] >= 3 * count:
+            values, vectors = np.linalg.eig(known.T @ images)
+            first = np.argsort(-np.abs(values), kind="stable")[: count + 3]
+            left = images @ vectors[:, first] - known @ (vectors[:, first] * values[first])
+            if np.linalg.norm(left, axis=0).max() < CLOSE * max(1.0, float(np.abs(values).max())):
+                found = known @ vectors[:, first]
+                return values[first].astype(np.complex128), found.astype(np.complex128)
+    return _all(floquet)  # those next to each other in size are told apart by all of them
+
+
+def _all(floquet: Floquet) -> tuple[Complex, Complex]:
+    values, vectors = np.linalg.eig(floquet.monodromy)
     return values.astype(np.complex128), vectors.astype(np.complex128)

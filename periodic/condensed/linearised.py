@@ -103,12 +103,18 @@ class Linearised:
         return np.setdiff1d(np.arange(self.orbit.nodes.shape[1]), self.part.states)
 
     @cached_property
-    def flexibility(self) -> tuple[Array, Array]:
-        """The periodic response and that from rest, (P s, P k)."""
+    def flexibility(self) -> Array:
+        """What forces do to the states in periodic motion, (P s, P k)."""
+        return self._flat(self.response.periodic)
+
+    @cached_property
+    def from_rest(self) -> Array:
+        """What they do to those that begin with nothing, (P s, P k)."""
+        return self._flat(self.response.from_rest)
+
+    def _flat(self, response: Array) -> Array:
         size = self.orbit.stages.shape[0] * self.orbit.stages.shape[1]
-        both = self.response.flexibility()
-        rows, columns = size * len(self.part.states), size * len(self.part.forces)
-        return both[0].reshape(rows, columns), both[1].reshape(rows, columns)
+        return response.reshape(size * len(self.part.states), size * len(self.part.forces))
 
     @cached_property
     def forces(self) -> Array:
@@ -129,7 +135,7 @@ class Linearised:
         """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
-        made = (self.flexibility[0] @ self.forces.ravel()).reshape(stages.shape)
+        made = (self.flexibility @ self.forces.ravel()).reshape(stages.shape)
         return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(
             count * points, s, -1
         )

@@ -85,7 +85,11 @@ class CondensedCollocation(Collocation):
         """
         part = linear_of(problem.system)
         velocities = () if part is None else part.velocities
-        return deferred(self.linearise, problem, correction.orbit, tangent, spectrum, velocities)
+        return deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities)
+
+    def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
+        given = Linearised.about(system, orbit, free, self.tolerance)
+        return Condensed(given, event_rows(system, orbit, free), brief=True)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""

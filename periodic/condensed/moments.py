@@ -100,14 +100,14 @@ class Moments:
         moment, slope = np.empty(shape, dtype=complex), np.empty(shape, dtype=complex)
         near = np.abs(x) <= NEAR
         if near.any():
-            powers = x[near, None] ** np.arange(TERMS)
+            powers = np.vander(x[near], TERMS, increasing=True)
             series = self._taylor.reshape(TERMS, -1)
             order = np.arange(1, TERMS)[:, None]
             moment[near] = (powers @ series).reshape(-1, *shape[1:])
             slope[near] = (powers[:, :-1] @ (order * series[1:])).reshape(-1, *shape[1:])
         if not near.all():
             far = x[~near]
-            inverse = far[:, None] ** -np.arange(1.0, count + 1)
+            inverse = np.vander(1 / far, count + 1, increasing=True)[:, 1:]
             steep = -inverse * np.arange(1, count + 1) / far[:, None]
             series = self.derivatives.reshape(count, -1)
             value = (inverse @ series).reshape(-1, 1 + len(points), count)

@@ -27,10 +27,13 @@ class Condensed:
         The system about the orbit.
     own : sequence of Row
         The rows of the event nodes.
+    brief : bool
+        Whether of the fundamental matrices the last is enough.
     """
 
     given: Linearised
     own: Sequence[Row] = ()
+    brief: bool = False
 
     @property
     def orbit(self) -> Orbit:
@@ -45,15 +48,15 @@ class Condensed:
     @cached_property
     def system(self) -> Coupled:
         """The equations of forces and own states in periodic motion."""
-        return Coupled(self.given, self.given.flexibility[0], wraps=1.0)
+        return Coupled(self.given, self.given.flexibility, wraps=1.0)
 
     @property
     def effect(self) -> Array:
         """About how much the states change with each free parameter over a period, shape (q,)."""
         k, width = len(self.orbit.phases), self.given.local.forces.shape[2]
         n = self.orbit.nodes.shape[1]
-        whole = self.given.flexibility[0] @ self.given.local.forces[:, :, 1 + 2 * n + k :].reshape(
-            self.given.flexibility[0].shape[1], width - 1 - 2 * n - k
+        whole = self.given.flexibility @ self.given.local.forces[:, :, 1 + 2 * n + k :].reshape(
+            self.given.flexibility.shape[1], width - 1 - 2 * n - k
         )
         states = np.abs(whole).max(axis=0, initial=0.0)
         states += np.abs(self.given.affine[:, :, 1 + k :]).max(axis=(0, 1), initial=0.0)
@@ -111,4 +114,4 @@ class Condensed:
     @property
     def fundamental(self) -> Array:
         """The same in the subspace's own basis, (N+1, r, r)."""
-        return self.leading.fundamental
+        return self.leading.monodromy[None] if self.brief else self.leading.fundamental

@@ -54,9 +54,9 @@ class CondensedRepeating:
         """The equations of forces and own states."""
         given = self.given
         if self.mu == 1.0:
-            return Coupled(given, given.flexibility[0], wraps=1.0)
+            return Coupled(given, given.flexibility, wraps=1.0)
         earlier = given.response.earlier(*given.response.closings(self.mu))
-        whole = given.flexibility[1] + (earlier if isinstance(self.mu, complex) else earlier.real)
+        whole = given.from_rest + (earlier if isinstance(self.mu, complex) else earlier.real)
         return Coupled(given, whole, wraps=1 / self.mu)
 
     @property
@@ -184,7 +184,7 @@ class CondensedRepeating:
         size, ends = self._step(tangent), []
         for step in (size, -size):
             beside, _ = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, ())
-            whole = beside.flexibility()[0]
+            whole = beside.periodic
             ends.append(pull.ravel() @ whole.reshape(pull.size, -1))
         return np.asarray((ends[0] - ends[1]) / (2 * size)).reshape(len(pull), -1)
 

@@ -111,10 +111,21 @@ class Response:
         driven = moment * self.modes.inputs[:, None, :]
         return np.asarray(self.grid.width[:, None, None, None] * driven)
 
-    def flexibility(self) -> tuple[Array, Array]:
-        """Return the periodic response and that from z(0) = 0, each (N, a, s, N, b, k)."""
+    @cached_property
+    def periodic(self) -> Array:
+        """The periodic response, (N, a, s, N, b, k)."""
         if self.uniform:
-            return self._circulant()
+            return self._circulant(self.closing)
+        return self._parts[0] + self._parts[1]
+
+    @cached_property
+    def from_rest(self) -> Array:
+        """The response from z(0) = 0, (N, a, s, N, b, k)."""
+        return self._circulant(None) if self.uniform else self._parts[0]
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array]:
+        """Responses to forces of this period, and of the periods before."""
         s, k = self.modes.direct.shape
         count, points = len(self.grid.width), self.scheme.ncol
         later = np.tril(np.ones((count, count), dtype=bool), -1)[:, None, None, :, None, None]
@@ -127,7 +138,7 @@ class Response:
                 before += wrapped
         each = np.arange(count)
         past[each, :, :, each] += self.local
-        return past + before, past
+        return past, before
 
     def _spread(self, chosen: NDArray[np.int_]) -> tuple[Array, Array]:
         """Responses to earlier intervals of this period and to the periods before, by one product each."""
@@ -169,28 +180,27 @@ class Response:
         both = np.array(found).reshape(count, 2, *shown.shape[1:3], count, *left.shape[2:])
         return both[:, 0], both[:, 1]
 
-    def _circulant(self) -> tuple[Array, Array]:
-        """On a uniform mesh only how many intervals later counts."""
+    def _circulant(self, closing: Complex | None) -> Array:
+        """On a uniform mesh only how many intervals later counts; without `closing` that from rest."""
         modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
         s, k = modes.direct.shape
-        width = self.grid.width[0]
-        table = self._table
+        width, table = self.grid.width[0], self._table
         impulse = width * table.moment[:, -1, :, None] * modes.inputs[:, None, :]
-        ahead = np.exp(modes.exponents * (width * np.arange(count))[:, None])
+        impulse = impulse if closing is None else impulse * closing[:, None, None]
+        # by falling number of intervals, as the columns of a row have it
+        ahead = np.exp(modes.exponents[:, None] * (width * np.arange(count - 1.0, -1.0, -1.0)))
+        moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
         shown = (table.growth.T[:, None, :] * modes.outputs).reshape(points * s, -1)
-        moved = ahead[:, :, None] * impulse.reshape(1, len(modes.exponents), -1)
-        moved = np.concatenate([moved, moved * self.closing[None, :, None]], axis=2)
-        columns = np.moveaxis(moved, 1, 0).reshape(len(modes.exponents), -1)
-        found = _real_product(shown, columns).reshape(points, s, count, 2, points, k)
-        later = np.mod(np.arange(count)[:, None] - np.arange(count) - 1, count)
-        every = np.moveaxis(found, 2, 0)  # (later, a, s, 2, b, k)
-        whole = np.ascontiguousarray(np.moveaxis(every[:, :, :, 1][later], 1, 3))
-        first = np.ascontiguousarray(np.moveaxis(every[:, :, :, 0][later], 1, 3))
-        first[np.triu_indices(count)[0], :, :, np.triu_indices(count)[1]] = 0.0
-        each = np.arange(count)
-        for response in (whole, first):
-            response[each, :, :, each] += self.local
-        return whole, first
+        found = _real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
+        twice = np.concatenate([found, np.zeros_like(found) if closing is None else found], axis=1)
+        row, column, each = twice.strides
+        laid = np.lib.stride_tricks.as_strided(
+            twice[:, count:], (count, *found.shape), (-column, row, column, each), writeable=False
+        )
+        whole = np.array(laid).reshape(count, points, s, count, points, k)
+        own = np.arange(count)
+        whole[own, :, :, own] += self.local
+        return whole
 
     def history(self, forces: Array, closing: Complex | None = None) -> Complex:
         """Return the modes at the left ends and at the end in periodic motion, (N+1, J); forces (N, b, k).
@@ -200,6 +210,15 @@ class Response:
         last = self.table.moment[:, :, -1:]
         left = self._applied(last, self._driving(forces, self.modes.inputs))[..., 0]
         return self._closed(self.grid.width[:, None] * left, self.closing if closing is None else closing)
+
+    def stages(self, forces: Array) -> Array:
+        """Return the states at the points in periodic motion, (N, a, s), whatever their number."""
+        modes, history = self.modes, self.history(forces)
+        driven = self._applied(self.table.moment, self._driving(forces, modes.inputs))
+        inner = self.table.growth * history[:-1, :, None] + self.grid.width[:, None, None] * driven
+        rates = self.moments.derivatives[1, 1:] @ forces / self.grid.width[:, None, None]
+        found = (modes.outputs @ inner).real.transpose(0, 2, 1)
+        return np.asarray(found + forces @ modes.direct.T + rates @ modes.direct_rate.T)
 
     def closings(self, multiplier: complex) -> tuple[Complex, Complex]:
         """Return 1/(mu - exp(lambda T)) of the modes and of their conjugates, each (J,).
@@ -218,14 +237,25 @@ class Response:
 
     def _closed(self, left: Complex, closing: Complex) -> Complex:
         """The history of what each interval leaves in the modes, (N, J, ...)."""
-        decay = self.table.growth[:, :, -1].reshape(*left.shape[:2], *[1] * (left.ndim - 2))
+        size = [1] * (left.ndim - 2)
+        driven, grown = self._chain(left)
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
-        for i in range(len(left)):
-            found[i + 1] = decay[i] * found[i] + left[i]
-        found[0] = closing.reshape(-1, *[1] * (left.ndim - 2)) * found[-1]
-        for i in range(len(left)):
-            found[i + 1] = decay[i] * found[i] + left[i]
+        found[0] = closing.reshape(-1, *size) * driven[-1]
+        found[1:] = driven + grown.reshape(*grown.shape, *size) * found[0]
         return found
+
+    def _chain(self, left: Complex) -> tuple[Complex, Complex]:
+        """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J).
+
+        Neighbours are joined in pairs, pairs in fours, and so on.
+        """
+        driven, grown = left.copy(), self.table.growth[:, :, -1].copy()
+        size, step = [1] * (left.ndim - 2), 1
+        while step < len(left):
+            driven[step:] += grown[step:].reshape(-1, left.shape[1], *size) * driven[:-step]
+            grown[step:] = grown[step:] * grown[:-step]
+            step *= 2
+        return driven, grown
 
     def slopes(
         self, forces: Array, widths: Array, changes: list[ModesLike | None], multiplier: complex = 1.0
@@ -337,11 +367,7 @@ class Response:
         """Return the modes at the mesh points from z(0) = 0, (N+1, J, r); forces (N, b, k, r)."""
         count, modes = len(self.grid.width), len(self.modes.exponents)
         left = self.impulse.reshape(count, modes, -1) @ forces.reshape(count, -1, forces.shape[3])
-        found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
-        decay = self.table.growth[:, :, -1, None]
-        for i in range(len(left)):
-            found[i + 1] = decay[i] * found[i] + left[i]
-        return found
+        return np.concatenate([np.zeros_like(left[:1]), self._chain(left)[0]])
 
     def final(self) -> Array:
         """Return what forces leave in (Re z, Im z) at the end of the period, (2J, N, b, k)."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -12,6 +13,42 @@ from periodic.checks import named, number
 from periodic.correction.condition import Condition, SideCondition, side_conditions
 from periodic.orbit.orbit import Orbit
 from periodic.system import System, check_system, index_of
+
+
+class Wider(Protocol):
+    """A system whose orbits are given by those of the system that is solved."""
+
+    @property
+    def system(self) -> System:
+        """The wider system."""
+
+    def expanded(self, orbit: Orbit) -> Orbit:
+        """Return an orbit of the system that is solved as one of the wider system.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit.
+
+        Returns
+        -------
+        Orbit
+            The same with all states.
+        """
+
+    def restricted(self, orbit: Orbit) -> Orbit:
+        """Return an orbit of the wider system as one of the system that is solved.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit.
+
+        Returns
+        -------
+        Orbit
+            The same with fewer states.
+        """
 
 
 @dataclass(frozen=True)
@@ -30,6 +67,8 @@ class Problem:
     determined : mapping of str to Condition, optional
         Further free parameters by name, and the conditions that determine them: {"omega": PhaseCondition()}
         of an autonomous system, {"F": FoldCondition()} for a curve of folds in two parameters.
+    wider : Wider, optional
+        The system that results are of, where another one is solved in its place.
 
     Raises
     ------
@@ -41,6 +80,7 @@ class Problem:
     parameter: str
     bounds: tuple[float, float]
     determined: Mapping[str, Condition] = field(default_factory=dict)
+    wider: Wider | None = field(default=None, repr=False)
     begin: float = field(init=False, repr=False, default=0.0)
 
     def __post_init__(self) -> None:
@@ -111,6 +151,41 @@ class Problem:
             One for each of `determined`.
         """
         return side_conditions(self.conditions, self.others, origin)
+
+    @property
+    def shown(self) -> System:
+        """The system that results are of."""
+        return self.system if self.wider is None else self.wider.system
+
+    def seen(self, orbit: Orbit) -> Orbit:
+        """Return an orbit as one of the system that results are of.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            An orbit of the system that is solved.
+
+        Returns
+        -------
+        Orbit
+            The orbit that is shown.
+        """
+        return orbit if self.wider is None else self.wider.expanded(orbit)
+
+    def solved(self, orbit: Orbit) -> Orbit:
+        """Return an orbit that is shown as one of the system that is solved.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit that is shown.
+
+        Returns
+        -------
+        Orbit
+            An orbit of the system that is solved.
+        """
+        return orbit if self.wider is None else self.wider.restricted(orbit)
 
     def value(self, orbit: Orbit) -> float:
         """Return the continuation parameter of an orbit.

@@ -179,8 +179,7 @@ class Task:
             For what is not allowed.
         """
         return setup(
-            self.problem,
-            Method.of(self.system, self.tol, self.method, self.control, self.watch),
+            *Method.of(self.problem, self.tol, self.method, self.control, self.watch),
             start=self.start,
             at=self.places,
             guess=self.guess,

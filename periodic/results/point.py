@@ -171,9 +171,9 @@ def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
 
 def describe(solution: Solution, label: Label, event: str, columns: dict[str, float]) -> Point:
     """Return what is said of a solution: label, the user's name of an event, columns, and all the rest."""
-    problem, orbit = solution.problem, solution.orbit
-    found = extrema(problem.system, orbit)
-    names = [output.name for output in problem.system.outputs]
+    problem, orbit = solution.problem, solution.problem.seen(solution.orbit)
+    found = extrema(problem.shown, orbit)
+    names = [output.name for output in problem.shown.outputs]
     multipliers = solution.spectrum.multipliers
     order = -multipliers.real if orbit.equilibrium else -np.abs(multipliers)
     return Point(

@@ -128,5 +128,6 @@ def _matched(before: Spectrum, after: Spectrum) -> list[tuple[Pair, Pair]]:
 
     A pair may be born of two real multipliers or end in them.
     """
-    fewer, more = sorted((before.pairs, after.pairs), key=len)
-    return [(a, a.nearest(more)) for a in fewer]
+    if len(before.pairs) <= len(after.pairs):
+        return [(a, a.nearest(after.pairs)) for a in before.pairs]
+    return [(b.nearest(before.pairs), b) for b in after.pairs]

@@ -198,7 +198,7 @@ class Continuation:
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )
-        self.watch.check(solver.problem.system, base.orbit)
+        self.watch.check(solver.problem.shown, base.orbit)
         yield self._emitted(base, Label.END)
         if base.value in self.user:
             yield self._emitted(base, Label.USER)
@@ -227,7 +227,7 @@ class Continuation:
         Point
             Those that follow.
         """
-        c, last = checkpoint, points[-1].orbit
+        c, last = checkpoint, self.solver.problem.solved(points[-1].orbit)
         self.stop, self.collected = None, points
         try:
             begun = Start(self.solver, self._follow, self.search).found(self.start, float(c.sign))
@@ -260,6 +260,7 @@ class Continuation:
     def _follow(self, solver: Solver, start: Orbit, sign: int, most: int | None) -> tuple[Orbit | None, Stop]:
         """Follow a branch in so many steps at most; return its last orbit and why it ends."""
         control = self.control if most is None else replace(self.control, max_points=most)
+        solver = replace(solver, problem=replace(solver.problem, wider=None))
         run = Continuation(solver, start, sign, control, search=False)
         points = list(run)
         assert run.stop is not None
@@ -351,7 +352,8 @@ class Continuation:
             self.stop = Stop.asked(name, self._count[name])
 
     def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
-        columns = self.watch.measured(self.solver.problem.system, solution.orbit)
+        problem = self.solver.problem
+        columns = self.watch.measured(problem.shown, problem.seen(solution.orbit))
         point = describe(solution, label, event, columns)
         self.collected.append(point)
         return point

@@ -37,13 +37,15 @@ class Method:
     @classmethod
     def of(
         cls,
-        system: System,
+        problem: Problem,
         tol: float | Tolerance,
         discretisation: Discretisation | None,
         control: ArclengthControl | None,
         watch: Watch | None,
-    ) -> Method:
-        """Return it with defaults for what is not given, all made for the system and the tolerance.
+    ) -> tuple[Problem, Method]:
+        """Return it with defaults for what is not given, all made for the problem and the tolerance.
+
+        The problem too, of the system that suits it: condensed where that pays.
 
         Raises ValueError for what is none of these.
         """
@@ -57,8 +59,9 @@ class Method:
             if given is not None and not isinstance(given, kind):
                 raise ValueError(f"{name} is {given!r}; it must be {kind.__name__}(...)")
         tolerance = Tolerance.of(tol)
-        return cls(
-            discretisation=suited(discretisation or Collocation(), system).at(tolerance.orbit),
+        problem, suiting = suited(discretisation or Collocation(), problem)
+        return problem, cls(
+            discretisation=suiting.at(tolerance.orbit),
             tolerance=tolerance,
             control=control or ArclengthControl(),
             watch=watch or Watch(),
@@ -120,12 +123,12 @@ def setup(
     for end in (low, high):
         _check_bound(system, parameter, end)
     named("values", {} if values is None else values, "numbers")
-    for name in set(method.watch.columns) & reserved(layout_of(system)):
+    for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
     if values and parameter in values:
         raise ValueError(f"values has {parameter!r}, which is continued in; give it as start")
     if guess is not None:
-        guess = _expressed(system, guess)
+        guess = problem.solved(_expressed(problem.shown, guess))
         for name in set(problem.determined) & set(values or {}):
             raise ValueError(f"determined has {name!r}, which is also in values; it must be one or the other")
     base = np.array(system.nominal if guess is None else guess.parameter, dtype=float)

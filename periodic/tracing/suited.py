@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
+from typing import cast
 
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
+from periodic.condensed.wider import WholeSystem
+from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
+from periodic.correction.problem import Problem
 from periodic.harmonic.method import HarmonicBalance
 from periodic.harmonic.split import SplitHarmonicBalance
 from periodic.orbit.scheme import Family
-from periodic.system import System, jumps_of, linear_of, resets_of
+from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of
 
 SPLIT: dict[type[Discretisation], type[Discretisation]] = {
     Collocation: CondensedCollocation,
@@ -19,9 +23,57 @@ SPLIT: dict[type[Discretisation], type[Discretisation]] = {
 """Methods with one for split systems, whose rows are not all of their equations."""
 
 
-def suited(method: Discretisation, system: System) -> Discretisation:
-    """Return a method as it suits a system. Raises ValueError where it does not."""
-    if linear_of(system) is None or type(method) in SPLIT.values():
+def suited(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
+    """Return a problem and a method as they suit each other. Raises ValueError where they do not."""
+    system = problem.system
+    asked = method.condense if isinstance(method, Collocation) else None
+    if linear_of(system) is not None:
+        if asked is False:
+            raise ValueError(
+                "condense is False, but the system has its places alone; compile its structures with "
+                "condense=False"
+            )
+        return problem, _split(method, system)
+    if type(method) is not Collocation or asked is False:
+        return problem, method
+    found = _found(system, problem, always=bool(asked))
+    if found is None:
+        return problem, method
+    low, high = problem.bounds
+    ends = (low, high) if problem.begin == low else (high, low)
+    solved = replace(problem, system=found, bounds=ends, wider=WholeSystem(found))
+    return solved, _split(method, found)
+
+
+def _found(system: System, problem: Problem, *, always: bool) -> Within | None:
+    """The system of the nonlinear places alone, where its linear part is to be condensed."""
+    if not hasattr(system, "condensed"):
+        if always:
+            raise ValueError(
+                f"condense is True, but system is a {type(system).__name__} whose linear part is not told; "
+                f"symbolic.compile makes one that tells it"
+            )
+        return None
+    found = cast(Condensable, system).condensed(always=always)
+    if found is None:
+        return None
+    names = [output.name for output in found.outputs]
+    asked = [name for name in map(_output, problem.conditions) if name is not None and name not in names]
+    if asked and always:
+        raise ValueError(
+            f"condense is True, but a condition is on {asked[0]!r}, which the nonlinear places do not have"
+        )
+    return None if asked else found
+
+
+def _output(condition: Condition) -> str | None:
+    """The output that a condition is on, if any."""
+    return getattr(getattr(condition, "functional", None), "output", None)
+
+
+def _split(method: Discretisation, system: System) -> Discretisation:
+    """The method for a system whose linear part is given by its modes."""
+    if type(method) in SPLIT.values():
         return method
     if type(method) not in SPLIT:
         raise ValueError(

@@ -80,7 +80,7 @@ def continuation(
     if not isinstance(problem, Problem):
         raise ValueError(f"problem is {problem!r}; it must be a Problem(system, parameter, bounds)")
     guess, place = (start, None) if isinstance(start, Orbit) else (None, start)
-    chosen = Method.of(problem.system, tol, method, control, watch)
+    problem, chosen = Method.of(problem, tol, method, control, watch)
     if chosen.watch.journal is not None:
         raise ValueError(f"watch.journal is {str(chosen.watch.journal)!r}; only trace keeps a journal")
     ready = setup(problem, chosen, start=place, at=at, guess=guess, values=values)
@@ -159,7 +159,8 @@ def trace(
         A KeyboardInterrupt (Ctrl-C) with the branch so far as `branch`.
     """
     problem = Problem(system, parameter, bounds, {} if determined is None else determined)
-    chosen, before = Method.of(system, tol, method, control, watch), None
+    problem, chosen = Method.of(problem, tol, method, control, watch)
+    before = None
     if isinstance(guess, Branch):
         before = guess
         guess = None if begun_from_rest(before) else start_of(before).orbit
@@ -167,7 +168,7 @@ def trace(
     empty = joined(parameter, layout_of(system), [], made_with(ready))
     if before is not None:
         check(before, ready)
-    first = ready.first() if before is None else start_of(before).orbit
+    first = ready.first() if before is None else problem.solved(start_of(before).orbit)
     runs = [ready.run(first, sign) for sign in ready.signs]
     generators: list[Iterator[Point]] = [*runs] if before is None else taken_up(runs, before)
     return _collected(ready, runs, generators, empty, before)

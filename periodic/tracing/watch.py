@@ -172,9 +172,10 @@ def _called(what: str, functional: Functional, system: System, orbit: Orbit) -> 
 
 def _passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
     def value(solution: Solution) -> float:
-        found = _called(f"event {name}", functional, solution.problem.system, solution.orbit)
+        problem = solution.problem
+        found = _called(f"event {name}", functional, problem.shown, problem.seen(solution.orbit))
         if not (isinstance(found, int | float | np.number) and math.isfinite(found)):
-            place = f"{solution.problem.parameter} = {solution.value:.10g}"
+            place = f"{problem.parameter} = {solution.value:.10g}"
             raise ValueError(f"event {name} gave {found!r} at {place}; it must be a finite number")
         return apart(functional, float(found), level)
 

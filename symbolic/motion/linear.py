@@ -21,6 +21,7 @@ import scipy
 
 from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, refusal, sequence
+from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
 BALANCED = 1e-12
@@ -169,6 +170,7 @@ def modes(system: CompiledSystem, values: Mapping[str, float] | None = None) -> 
     NoRestError
         Where no equilibrium is found.
     """
+    system = all_states(system)
     return RestFinder(system).modes(with_values(system, {} if values is None else values))
 
 
@@ -205,7 +207,7 @@ def resonance(
         Where no equilibrium is found.
     """
     varied, ends = varying(system, parameter, values), _ends(parameter, bounds)
-    finder = RestFinder(system)
+    finder = RestFinder(all_states(system))
 
     def excess(value: float) -> float:
         found = finder.modes(varied(value))

@@ -21,6 +21,7 @@ import scipy
 from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, sequence
 from symbolic.motion.linear import Modes, RestFinder, varying
+from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
 SINGULAR = 1e14
@@ -231,6 +232,7 @@ def response(
     NoRestError
         Where no equilibrium is found.
     """
+    system = all_states(system)
     varied, points = varying(system, parameter, values), sequence("at", at)
     excited = Excited(system)
     found = [excited.finder.modes(varied(value)) for value in points]
@@ -253,6 +255,7 @@ def peak(
 
     Both in SI. The bounds must hold one peak only (take them about `symbolic.resonance`).
     """
+    system = all_states(system)
     excited, index = Excited(system), [variable.name for variable in system.outputs].index(output)
 
     def height(value: float) -> float:

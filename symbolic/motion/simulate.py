@@ -13,6 +13,7 @@ from symbolic.checks import numbers, typed, whole
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import RestFinder
+from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
 PERIOD = 2 * math.pi
@@ -117,6 +118,7 @@ def simulate(
     """
     for name, number, least in (("settle", settle, 0), ("periods", periods, 1), ("samples", samples, 3)):
         whole(name, number, least)
+    system = all_states(system)
     parameter = with_values(system, {} if values is None else values)
     flow = Flow(system, tolerance)
     state, algebraic = _beginning(system, parameter, start)

@@ -4,19 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from symbolic.arrays import Array, Complex
 from symbolic.checks import refusal
-from symbolic.structures.linearpart import Modes, like
+from symbolic.structures.linearpart import Modes
 from symbolic.structures.matrices import index
 
 STEP = 1e-6
 """Relative step of differences in a parameter."""
 
+NOTHING = 1e-9
+"""Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
+
 DEFECTIVE = 1e12
 """Condition of the eigenvectors above which they do not span the motion."""
+
+
+@dataclass(frozen=True)
+class Eigen:
+    """x' = S x + B f with S vectors = vectors diag(values): values (n,), vectors, inverse (n, n), rates B."""
+
+    values: Complex
+    vectors: Complex
+    inverse: Complex
+    rates: Array
+
+    @cached_property
+    def kept(self) -> NDArray[np.bool_]:
+        """One of each conjugate pair."""
+        return self.values.imag >= 0
+
+    @cached_property
+    def twice(self) -> Array:
+        """Two for one that stands for both."""
+        return np.where(self.values[self.kept].imag > 0, 2.0, 1.0)
+
+    @cached_property
+    def inputs(self) -> Complex:
+        """How forces drive them, (J, k)."""
+        return self.inverse[self.kept] @ self.rates
+
+    @cached_property
+    def shapes(self) -> Complex:
+        """States of them, (n, J)."""
+        return self.vectors[:, self.kept] * self.twice
 
 
 @dataclass(frozen=True)
@@ -51,7 +86,7 @@ class RowsPart:
     scales: Array
     rates: tuple[int, ...]
     omega: Callable[[Array], float]
-    _known: dict[bytes, tuple[Modes, Complex, Array]] = field(default_factory=dict, init=False, repr=False)
+    _known: dict[bytes, Eigen] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def states(self) -> tuple[int, ...]:
@@ -70,10 +105,12 @@ class RowsPart:
 
     def modes(self, parameter: Array) -> Modes:
         """Return the modes at parameters (p,). Raises ArithmeticError where they do not span the motion."""
-        return self._solved(parameter)[0]
+        at = self._solved(parameter)
+        zero = np.zeros((len(self.places), len(self.rows)))
+        return Modes(at.values[at.kept], at.inputs, at.shapes[list(self.places)], zero, zero)
 
-    def _solved(self, parameter: Array) -> tuple[Modes, Complex, Array]:
-        """The modes, the eigenvectors (n, J) that they are of, and what forces do to the rates, (n, k)."""
+    def _solved(self, parameter: Array) -> Eigen:
+        """The modes of all states."""
         chosen = parameter[list(self.varying)]
         key = chosen.tobytes()
         if key not in self._known:
@@ -82,37 +119,56 @@ class RowsPart:
             self._known[key] = self._made(parameter)
         return self._known[key]
 
-    def _made(self, parameter: Array) -> tuple[Modes, Complex, Array]:
-        inertia, stiffness = self.matrices(parameter)
+    def _made(self, parameter: Array) -> Eigen:
         try:
-            loads = np.eye(self.size)[:, list(self.rows)]
-            rates = -np.linalg.solve(inertia, loads).astype(float)
-            values, vectors = np.linalg.eig(-np.linalg.solve(inertia, stiffness))
-            condition = np.linalg.cond(vectors)
+            state, rates = self._explicit(parameter)
+            values, vectors = np.linalg.eig(state)
+            inverse = np.linalg.inv(vectors)
         except np.linalg.LinAlgError as error:
             raise ArithmeticError(f"the linear part has no modes: {error}") from None
-        if not condition < DEFECTIVE:
+        if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < DEFECTIVE:
             raise ArithmeticError("the modes of the linear part do not span its motion")
-        inputs = np.linalg.solve(vectors, rates)
-        kept = values.imag >= 0
-        twice = np.where(values[kept].imag > 0, 2.0, 1.0)
-        shapes, k = vectors[:, kept] * twice + 0j, len(self.rows)
-        zero = np.zeros((len(self.places), k))
-        outputs = shapes[list(self.places)]
-        return Modes(values[kept] + 0j, inputs[kept] + 0j, outputs, zero, zero), shapes, rates
+        return Eigen(values + 0j, vectors + 0j, inverse + 0j, rates)
+
+    def _explicit(self, parameter: Array) -> tuple[Array, Array]:
+        """x' = state x + rates f."""
+        inertia, stiffness = self.matrices(parameter)
+        loads = np.eye(self.size)[:, list(self.rows)]
+        found = -np.linalg.solve(inertia, np.concatenate([stiffness, loads], axis=1))
+        return found[:, : self.size], found[:, self.size :]
 
     def slope(self, parameter: Array, index: int) -> Modes | None:
-        """Return the derivative of the modes in a parameter, None where they do not depend on it."""
+        """Return the derivative of the modes in a parameter, None where they do not depend on it.
+
+        With x' = S x + B f and S V = V diag(lambda): dV = V C, C_ij = (V^-1 dS V)_ij / (lambda_j - lambda_i).
+        """
         if index not in self.varying:
             return None
-        middle, step = self.modes(parameter), STEP * max(abs(float(parameter[index])), STEP)
-        ends = []
-        for sign in (-1, 1):
+        step, ends = STEP * max(abs(float(parameter[index])), STEP), []
+        for sign in (1, -1):
             moved = parameter.copy()
             moved[index] += sign * step
-            ends.append(like(middle, self.modes(moved)))
-        names = ("exponents", "inputs", "outputs", "direct", "direct_rate")
-        return Modes(*((getattr(ends[1], name) - getattr(ends[0], name)) / (2 * step) for name in names))
+            ends.append(self._explicit(moved))
+        state, rates = ((after - before) / (2 * step) for after, before in zip(*ends, strict=True))
+        at = self._solved(parameter)
+        turned = at.inverse @ state @ at.vectors
+        gaps = at.values - at.values[:, None]
+        apart = np.abs(turned) > NOTHING * np.abs(turned).max(initial=0.0)
+        mixed = np.where(apart & (gaps != 0), turned / np.where(gaps == 0, 1.0, gaps), 0.0)
+        np.fill_diagonal(mixed, 0.0)
+        if not np.abs(mixed).max(initial=0.0) < DEFECTIVE:
+            raise ArithmeticError("modes of the linear part cannot be followed: two of them meet")
+        inputs = at.inverse @ rates - mixed @ (at.inverse @ at.rates)
+        kept, twice = at.kept, at.twice
+        zero = np.zeros((len(self.places), len(self.rows)))
+        shapes = (at.vectors @ mixed)[list(self.places)][:, kept] * twice
+        return Modes(np.diag(turned)[kept], inputs[kept], shapes, zero, zero)
+
+    def everything(self, parameter: Array) -> Modes:
+        """Return the modes with all states (scaled) as outputs."""
+        at = self._solved(parameter)
+        nothing = np.zeros((self.size, len(self.rows)))
+        return Modes(at.values[at.kept], at.inputs, at.shapes, nothing, nothing)
 
     def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> Modes:
         """Return the modes with the value and the time derivative (SI) of states in turn as outputs.
@@ -139,11 +195,11 @@ class RowsPart:
         if structure is not None:
             raise refusal("structure", structure, "left out: the model has none by name")
         at = [index(f"state {k}", freedom, self.size) for k, freedom in enumerate(freedoms)]
-        modes, shapes, rates = self._solved(parameter)
-        omega, scales = self.omega(parameter), self.scales[at, None]
-        outputs = np.zeros((2 * len(at), len(modes.exponents)), dtype=complex)
-        outputs[::2] = scales * shapes[at]
-        outputs[1::2] = scales * omega * shapes[at] * modes.exponents
+        found = self._solved(parameter)
+        omega, scales, shapes = self.omega(parameter), self.scales[at, None], found.shapes[at]
+        exponents = found.values[found.kept]
+        outputs = np.zeros((2 * len(at), len(exponents)), dtype=complex)
+        outputs[::2], outputs[1::2] = scales * shapes, scales * omega * shapes * exponents
         direct = np.zeros((2 * len(at), len(self.rows)))
-        direct[1::2] = scales * omega * rates[at]
-        return Modes(modes.exponents, modes.inputs, outputs, direct, np.zeros_like(direct))
+        direct[1::2] = scales * omega * found.rates[at]
+        return Modes(exponents, found.inputs, outputs, direct, np.zeros_like(direct))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from symbolic.checks import refusal, typed
@@ -14,6 +14,7 @@ from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
 from symbolic.system.compiled import CompiledSystem
+from symbolic.system.split import condensed
 
 
 def compile(  # noqa: A001
@@ -71,21 +72,53 @@ class Recipe:
     def __call__(self) -> CompiledSystem:
         return compile(self.model, self.kernels, condense=self.condense)
 
+    @property
+    def whole(self) -> Recipe:
+        """The same with all states of its structures."""
+        return replace(self, condense=False)
+
 
 @dataclass(frozen=True)
 class Valued:
     """A recipe whose system then gets other nominal values, by name."""
 
-    recipe: Callable[[], CompiledSystem]
+    recipe: Recipe | Valued
     values: Mapping[str, float]
 
     def __call__(self) -> CompiledSystem:
         return with_nominal(self.recipe(), self.values)
 
+    @property
+    def whole(self) -> Valued:
+        """The same with all states of its structures."""
+        return replace(self, recipe=self.recipe.whole)
+
+
+LARGEST = 500
+"""Degrees of freedom of a structure up to which its states are all laid down."""
+
+
+def all_states(system: CompiledSystem) -> CompiledSystem:
+    """Return a system with all states, where its linear part is condensed; else itself.
+
+    Raises ValueError for structures that are too large, or whose matrices are functions of the speed.
+    """
+    if not system.held:
+        return system.whole
+    for structure in {id(place.structure): place.structure for place in system.held}.values():
+        if structure.size > LARGEST:
+            raise ValueError(
+                f"structure {structure.name!r} has {structure.size} degrees of freedom; for all its states "
+                f"it must have {LARGEST} at the most, as symbolic.craig_bampton leaves of it"
+            )
+    assert isinstance(system.recipe, Recipe | Valued)
+    return system.recipe.whole()
+
 
 def with_nominal(system: CompiledSystem, values: Mapping[str, float]) -> CompiledSystem:
     """Return a compiled system with other nominal values of some parameters (SI), by name."""
-    assert system.recipe is not None
+    if not isinstance(system.recipe, Recipe | Valued):
+        raise ValueError("the system was not compiled from a model; give it other values where it is traced")
     for parameter in system.parameters:
         parameter.check(values.get(parameter.name, parameter.value))
     parameters = tuple(replace(p, value=values.get(p.name, p.value)) for p in system.parameters)
@@ -107,6 +140,7 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
         sketch=assembly.sketch.plain(
             list(assembly.motions), assembly.numbers.name_of, 1 / float(assembly.excitation.fundamental)
         ),
+        splitting=None if assembly.places else condensed,
     )
 
 

@@ -21,7 +21,7 @@ from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.kernels.choice import ChosenKernel, Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 from symbolic.kernels.second import Gradient, Symbols, contraction
-from symbolic.structures.linearpart import Held, LinearPart
+from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
 
 SMALL = 16
@@ -62,6 +62,10 @@ class CompiledSystem:
         Places of condensed structures.
     part : RowsPart, optional
         The linear part of a model that was split.
+    origin : CompiledSystem, optional
+        That model.
+    splitting : callable, optional
+        What splits the system, or tells why it cannot.
     recipe : callable, optional
         What compiles it again: how it is pickled. CasADi's expressions and loaded libraries stay behind.
     sketch : tuple of dict
@@ -77,6 +81,8 @@ class CompiledSystem:
     kernels: Kernels = Kernels.NUMPY
     held: tuple[Held, ...] = ()
     part: RowsPart | None = field(default=None, repr=False)
+    origin: CompiledSystem | None = field(default=None, repr=False)
+    splitting: Callable[[CompiledSystem], CompiledSystem] | None = field(default=None, repr=False)
     recipe: Callable[[], CompiledSystem] | None = field(default=None, repr=False)
     sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
     _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
@@ -158,6 +164,46 @@ class CompiledSystem:
             return np.array(ca.DM(slope(parameter)).full()).ravel()
 
         return LinearPart(self.held, self.omega, gradient) if self.held else None
+
+    @property
+    def whole(self) -> CompiledSystem:
+        """The system that this one was found in; itself where that is none."""
+        return self if self.origin is None else self.origin
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Which of the whole system's states it has."""
+        return tuple(range(len(self.states))) if self.part is None else self.part.places
+
+    def everything(self, parameter: Array) -> Modes:
+        """Return the linear part's modes with all states of the whole system as outputs."""
+        if self.part is None:
+            raise ValueError("the system was not found in the equations of another")
+        return self.part.everything(parameter)
+
+    def condensed(self, *, always: bool = False) -> CompiledSystem | None:
+        """Return the system of the nonlinear places alone: see `periodic.system.Condensable`."""
+        if not always and len(self.states) < MANY:
+            return None
+        found = self._condensed
+        if isinstance(found, CompiledSystem):
+            return found if always or PLACES * len(found.kept) <= len(self.states) else None
+        if always:
+            raise ValueError(f"condense is True, but {found}")
+        return None
+
+    @cached_property
+    def _condensed(self) -> CompiledSystem | str:
+        """The same, or why there is none."""
+        if self.splitting is None:
+            return "the system is condensed already"
+        try:
+            found = self.splitting(self)
+            assert found.part is not None
+            found.part.modes(self.nominal)
+        except (ValueError, ArithmeticError) as error:
+            return str(error)
+        return found
 
     @property
     def nominal(self) -> Array:
@@ -447,6 +493,10 @@ class CompiledSystem:
 def _columns(*arrays: Array) -> list[Array]:
     """The arrays as a kernel writes them: it takes a last axis of one for a column."""
     return [a[:, :, 0] if a.ndim == 3 and a.shape[2] == 1 else a for a in arrays]
+
+
+MANY, PLACES = 40, 20
+"""A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
 
 def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:

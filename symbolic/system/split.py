@@ -9,6 +9,7 @@ with w the states that enter nonlinearly, few as a rule; f_i is 0 in most rows.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -96,6 +97,16 @@ def condensed(system: CompiledSystem) -> CompiledSystem:
     return _Split(system).system()
 
 
+@dataclass(frozen=True)
+class Condensed:
+    """A recipe of what is condensed of a system."""
+
+    recipe: Callable[[], CompiledSystem]
+
+    def __call__(self) -> CompiledSystem:
+        return condensed(self.recipe())
+
+
 class _Split:
     def __init__(self, system: CompiledSystem) -> None:
         self.whole, self.e = system, system.expressions
@@ -152,8 +163,10 @@ class _Split:
             algebraics=(*whole.algebraics, *unknowns),
             outputs=tuple(whole.outputs[k] for k in outputs),
             expressions=self._expressions(outputs),
-            recipe=None,
+            recipe=None if whole.recipe is None else Condensed(whole.recipe),
             part=self._part(forces),
+            origin=whole,
+            splitting=None,
         )
 
     def _outputs(self) -> list[int]:
@@ -208,15 +221,15 @@ class _Split:
         for k, place in enumerate(self.places):
             full_rate[int(place)], full_state[int(place)] = rate[k], state[k]
         old = ca.vertcat(e.rate, e.state, e.algebraic)
-        still = ca.vertcat(ca.SX.zeros(n), full_state, algebraic[:m])
-        moving = ca.vertcat(full_rate, full_state, algebraic[:m])
+        still = ca.vertcat(ca.SX.zeros(n), full_state, algebraic[:m, :])
+        moving = ca.vertcat(full_rate, full_state, algebraic[:m, :])
         stiffness = self._linear()[1]
 
         def reduced(rows: ca.SX) -> ca.SX:
             here = ca.substitute(rows, old, still)
             chosen = [int(k) for k in self.rows]
             left = here[chosen] - (stiffness @ full_state)[chosen]
-            return ca.vertcat(ca.SX.zeros(s), here[n:], algebraic[m:] - left)
+            return ca.vertcat(ca.SX.zeros(s), here[n:], algebraic[m:, :] - left)
 
         shown = ca.substitute(e.outputs[outputs], old, moving)
         unexcited, residual = reduced(e.unexcited), reduced(e.residual)
@@ -237,8 +250,10 @@ class _Split:
             increment=increment,
             moved=ca.vertcat(
                 ca.substitute(
-                    e.moved, ca.vertcat(e.algebraic, e.increment), ca.vertcat(algebraic[:m], increment[:m])
+                    e.moved,
+                    ca.vertcat(e.algebraic, e.increment),
+                    ca.vertcat(algebraic[:m, :], increment[:m, :]),
                 ),
-                algebraic[m:] + increment[m:],
+                algebraic[m:, :] + increment[m:, :],
             ),
         )
