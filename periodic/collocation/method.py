@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration
 from periodic.collocation.residual import evaluated
+from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.collocation.unresolved import lost
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
@@ -130,7 +131,15 @@ class Collocation(Discretisation):
         """Return the collocation equations and those of the event nodes."""
         if not in_order(orbit):
             raise EventsCrossedError
+        return self._equations(system, orbit, free)
+
+    def _equations(
+        self, system: System, orbit: Orbit, free: tuple[int, ...], off: Array | None = None
+    ) -> Operator:
+        """The same, event nodes off their levels by so much."""
         line, own = evaluated(system, orbit, free), event_rows(system, orbit, free)
+        if off is not None:
+            own = [replace(row, value=row.value + amount) for row, amount in zip(own, off, strict=True)]
         return self.solver(system, orbit, line, own, impacts.jumps(system, orbit, free))
 
     def corrected(
@@ -146,7 +155,7 @@ class Collocation(Discretisation):
         found = iteration.corrected(*given) if self._plain else None
         return super().corrected(*given) if found is None else found
 
-    def _linearised(
+    def _beside(
         self,
         system: System,
         orbit: Orbit,
@@ -154,10 +163,15 @@ class Collocation(Discretisation):
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
     ) -> Linearised:
-        """Return the equations at an orbit linearised and solved, likewise. Raises FAILURES."""
+        """Return the equations at an orbit linearised and solved, likewise. Raises FAILURES.
+
+        Event nodes are as far beside their levels as rounding may leave them: it is nothing to the orbit, but
+        to the multipliers where a contact is shallow.
+        """
         given = (system, orbit, free, conditions, settings)
-        found = iteration.linearised(*given) if self._plain else None
-        return linearised(self.linearise, *given) if found is None else found
+        off = aside(orbit, event_rows(system, orbit, free))
+        found = iteration.linearised(*given, off) if self._plain else None
+        return linearised(partial(self._equations, off=off), *given) if found is None else found
 
     @property
     def _plain(self) -> bool:
@@ -182,21 +196,22 @@ class Collocation(Discretisation):
         Past its kink a switch hardly changes, and Newton has nothing to hold on to.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
-        for aside in ASIDE if deep.any() else (0.0,):
-            yield relax(system, transfer(orbit, mesh, phases + aside * self.tolerance * deep))
+        for before in ASIDE if deep.any() else (0.0,):
+            yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh."""
-        found = deferred(
-            self.linearise, problem, correction.orbit, tangent, spectrum, solved=self._linearised
-        )
+        found = deferred(self.linearise, problem, correction.orbit, tangent, spectrum, solved=self._beside)
         if found is UNKNOWN:
             return found
-        missing = stick.shortfall(problem.system, correction.orbit)
-        multiplier = max(found.multiplier, lost(problem.system, correction.orbit), missing)
-        return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier)
+        orbit, rows = correction.orbit, event_rows(problem.system, correction.orbit, ())
+        missing = stick.shortfall(problem.system, orbit)
+        rounding = of_states(orbit, spectrum)
+        multiplier = max(found.multiplier, lost(problem.system, orbit), missing, rounding)
+        rounding += of_events(orbit, rows, spectrum)
+        return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.linear.unknowns import Increment, mean_weights, node_phase_gradient
+from periodic.linear.unknowns import Increment, metric_weights, node_phase_gradient
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -32,7 +32,7 @@ class ArclengthConstraint:
     @cached_property
     def weighted(self) -> Array:
         """Gradient in the states at the mesh points, shape (N+1, n)."""
-        return (mean_weights(self.origin) / self.size**2)[:, None] * self.direction.profile
+        return (metric_weights(self.origin) / self.size**2)[:, None] * self.direction.profile
 
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
@@ -61,8 +61,7 @@ class ArclengthConstraint:
             return origin.nodes, origin.node_rates
         if resets_of(system) or jumps_of(system):
             return origin.nodes + way[:, None] * origin.node_rates, origin.node_rates
-        at = orbit.mesh.nodes(orbit.phases)
-        return origin.state(at), origin.rate(at)
+        return _in_own_segments(origin, orbit.mesh.nodes(orbit.phases))
 
     def _gradient(self, orbit: Orbit, free: tuple[int, ...], slope: Array) -> tuple[Array, Array]:
         weighted = self.weighted
@@ -71,3 +70,24 @@ class ArclengthConstraint:
         outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
         outer[k + free.index(self.index)] = self.direction.parameter / self.scale**2
         return weighted, outer
+
+
+def _in_own_segments(origin: Orbit, at: Array) -> tuple[Array, Array]:
+    """States and slopes of an orbit at its moved mesh points, beyond a segment on the tangent at its end.
+
+    There the motion is another one: what a point in contact comes to is not the flight before it. An event
+    node is in the longer of its two segments.
+    """
+    mesh, grid, length = origin.mesh, origin.grid, origin.mesh.segment_lengths(origin.phases)
+    own = np.searchsorted(mesh.starts, np.arange(mesh.ntst), side="right") - 1
+    segment, previous = own.copy(), np.arange(-1, len(length) - 1) % len(length)
+    longer = length[previous] > length
+    segment[mesh.starts[longer]] = previous[longer]
+    tau = at[:-1] + mesh.period * (segment > own)  # the last segment is before the first
+    inside = np.clip(tau, origin.phases[segment], origin.phases[segment] + length[segment])
+    first, last = mesh.starts[segment], np.append(mesh.starts[1:], mesh.ntst)[segment] - 1
+    index = np.clip(np.searchsorted(grid.left, inside, side="right") - 1, first, last)
+    basis = mesh.scheme.basis((inside - grid.left[index]) / grid.width[index])
+    slope = np.einsum("tl,tln->tn", basis, origin.knot_rates[index])
+    state = np.einsum("tl,tln->tn", basis, origin.knots[index]) + (tau - inside)[:, None] * slope
+    return np.concatenate([state, state[:1]]), np.concatenate([slope, slope[:1]])

@@ -7,7 +7,7 @@ mesh points, so its increment is the error of the orbit to first order.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -47,11 +47,14 @@ class ErrorEstimate:
         that exceeds 1; it is the multipliers' own error unless two of them all but coincide.
     parameter : float
         Error of the continuation parameter across the branch, so that of an LP its place, relative.
+    rounding : float
+        What of the multipliers' error is rounding of the states, about.
     """
 
     orbit: float
     multiplier: float
     parameter: float = 0.0
+    rounding: float = field(default=0.0, compare=False)
 
     @property
     def motion(self) -> float:
@@ -63,6 +66,11 @@ class ErrorEstimate:
         """What is held against the tolerance."""
         return max(self.motion, SAFETY * self.multiplier)
 
+    @property
+    def curable(self) -> float:
+        """The same without what no finer mesh betters."""
+        return self.worst if self.multiplier > ROUNDED * self.rounding else self.motion
+
 
 EXACT = ErrorEstimate(0.0, 0.0)
 """Of what is not discretised."""
@@ -71,8 +79,15 @@ UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 """Where the errors could not be estimated."""
 
 
+ROUNDED = 3.0
+"""How many times the rounding expected of them multipliers may be off by rounding."""
+
 SMALL = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
+
+
+STEEP = 0.03
+"""Part of a branch's direction that the parameter is, below which it is about a fold."""
 
 
 def deferred(
@@ -87,9 +102,10 @@ def deferred(
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
     `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
-    multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit. The
-    states `only_at_points` count at the orbit's mesh points alone, not between them. `solved` linearises and
-    solves in one; by default `periodic.correction.newton.linearised`, with `linearise`.
+    multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit, at
+    the same parameter but about a fold. The states `only_at_points` count at the orbit's mesh points alone,
+    not between them. `solved` linearises and solves in one; by default
+    `periodic.correction.newton.linearised`, with `linearise`.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
@@ -100,7 +116,8 @@ def deferred(
         found = solve(problem.system, fine, problem.free, closing, NewtonSettings())
         monodromy = found.fundamental[-1]
         if len(orbit.mesh.exact_ends):
-            better = moved(problem.system, problem.free, found.orbit, found.increment)
+            onto_branch = found.increment + _along(found, problem, size_of(orbit))
+            better = moved(problem.system, problem.free, found.orbit, onto_branch)
             monodromy = solve(problem.system, better, problem.free, closing, NewtonSettings()).fundamental[-1]
         multiplier = spectrum.apart(monodromy)
     except FAILURES:
@@ -115,6 +132,18 @@ def deferred(
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     parameter = float(abs(change.parameter) / largest)
     return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+
+
+def _along(found: Linearised, problem: Problem, size: float) -> Increment:
+    """The way along the branch from where a step across it leads to the orbit of the same parameter.
+
+    None about a fold, where the orbit of the same parameter is far away, or there is none.
+    """
+    kernel = found.kernel
+    length = float(np.sqrt(kernel.dot(kernel, found.orbit, problem.scale, size)))
+    if abs(kernel.parameter) < STEEP * length * problem.scale:
+        return kernel.scaled(0.0)
+    return kernel.scaled(-found.increment.parameter / kernel.parameter)
 
 
 def _stage_shift(orbit: Orbit, later: Array) -> Array:

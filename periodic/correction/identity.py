@@ -11,7 +11,7 @@ from periodic.correction.error import LEAST_SPAN
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
-from periodic.linear.unknowns import mean_weights
+from periodic.linear.unknowns import metric_weights
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.system import resets_of
 
@@ -38,7 +38,7 @@ def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     for i, j in _impacts(problem, a, b, later):
         profile[i] = b.nodes[j] - a.nodes[i]
     jump = (problem.value(b) - problem.value(a)) / problem.scale
-    return float(np.sqrt(np.einsum("j,jn,jn->", mean_weights(a), profile, profile) + jump**2))
+    return float(np.sqrt(np.einsum("j,jn,jn->", metric_weights(a), profile, profile) + jump**2))
 
 
 def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[tuple[int, int]]:

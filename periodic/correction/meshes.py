@@ -48,6 +48,6 @@ class Refinement:
 def wanted_ntst(orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int, most: int) -> int:
     """Return the number of intervals that brings the error estimate to its aim."""
     order = orbit.mesh.scheme.ncol + 1
-    ratio = error.worst / (AIM * tolerance) if np.isfinite(error.worst) else 4.0**order
+    ratio = error.curable / (AIM * tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * orbit.mesh.ntst), least, most))

@@ -94,7 +94,8 @@ class Correction:
 class Step:
     """One Newton increment from the operator's orbit, with the kernel of the same linearisation.
 
-    size is the largest relative increment for the convergence test, length that for damping.
+    size is the largest relative increment for the convergence test, length that for damping, and stretch the
+    largest change of the distance between two event nodes, relative to it where that is less than 1 rad.
     """
 
     operator: Operator
@@ -102,6 +103,7 @@ class Step:
     kernel: Increment | None
     size: float
     length: float
+    stretch: float
 
 
 def correct(
@@ -127,9 +129,8 @@ def correct(
     size, fundamental = last.size, nothing
     if outcome is Outcome.CONVERGED:
         try:
-            if last.length > settings.close * settings.tolerance:
-                last = equations.step(orbit)
-                orbit = last.operator.orbit
+            last = equations.closer(orbit, last)
+            orbit = orbit if last is found.last else last.operator.orbit
             fundamental = last.operator.fundamental
         except FAILURES as error:
             outcome = outcome_of(error)
@@ -186,6 +187,19 @@ class _Equations:
                 return _Iterated(orbit, outcome, iteration, last)
         return _Iterated(orbit, Outcome.TOO_MANY, settings.max_iterations, last)
 
+    def closer(self, orbit: Orbit, last: Step) -> Step:
+        """Return the linearisation at an orbit, or the one that led to it where that is as good.
+
+        It is at an orbit still closer where a contact is so short that its length is not known well enough.
+        """
+        close = self.settings.close * self.settings.tolerance
+        if max(last.length, last.stretch) <= close:
+            return last
+        step = self.step(orbit)
+        while close < step.stretch < last.stretch / 4:
+            last, step = step, self.step(self._moved(step, 1.0))
+        return step
+
     def _moved(self, step: Step, factor: float) -> Orbit:
         return moved(self.system, self.free, step.operator.orbit, step.increment, factor)
 
@@ -205,15 +219,28 @@ def newton_step(
     right = np.eye(1 + len(rows))[:, [0, -1]] if rows else np.ones((1, 1))
     found = operator.solve(rows, right)
     size, length = sizes(system, operator, found[0], free, settings)
-    return Step(operator, found[0], found[1] if rows else None, size, length)
+    stretch = stretched(orbit, found[0])
+    return Step(operator, found[0], found[1] if rows else None, max(size, stretch**2), length, stretch)
+
+
+def stretched(orbit: Orbit, increment: Increment) -> float:
+    """Return the largest change of a segment's length, relative to it where it is less than 1 rad.
+
+    Multipliers depend on how long a contact is; for convergence its square counts, what the last step leaves.
+    """
+    if len(increment.phases) == 0:
+        return 0.0
+    change = np.diff(np.append(increment.phases, increment.phases[0]))
+    return float(np.abs(change / np.minimum(orbit.mesh.segment_lengths(orbit.phases), 1.0)).max())
 
 
 @dataclass(frozen=True)
 class Linearised:
-    """The equations at an orbit: the Newton increment from there, and fundamental matrices (N+1, n, n)."""
+    """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n)."""
 
     orbit: Orbit
     increment: Increment
+    kernel: Increment
     fundamental: Array
 
 
@@ -227,7 +254,8 @@ def linearised(
 ) -> Linearised:
     """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
     step = newton_step(linearise, system, orbit, free, conditions, settings)
-    return Linearised(step.operator.orbit, step.increment, step.operator.fundamental)
+    kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
+    return Linearised(step.operator.orbit, step.increment, kernel, step.operator.fundamental)
 
 
 def in_order(orbit: Orbit) -> bool:

@@ -29,7 +29,7 @@ def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solut
             return solution
         new = remeshed(solver, solution, fixed=fixed)
         if not new.ok:
-            return solution if solution.error.worst <= solver.tolerance.orbit else new
+            return solution if solution.error.curable <= solver.tolerance.orbit else new
         solution = new
     return solution
 
@@ -37,7 +37,7 @@ def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solut
 def is_refined(solver: Solver, solution: Solution) -> bool:
     """Whether error estimate and event nodes are as they should be, or cannot be bettered."""
     exhausted = solution.refinement.exhausted
-    return solution.refinement.fits and (solution.error.worst <= solver.tolerance.orbit or exhausted)
+    return solution.refinement.fits and (solution.error.curable <= solver.tolerance.orbit or exhausted)
 
 
 def remeshed(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solution:

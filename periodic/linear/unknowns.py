@@ -10,6 +10,9 @@ import numpy as np
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
+STEEP = 5.0
+"""Rates of the states, in sizes a rad, from which on an orbit with kinks is steep."""
+
 
 class Unknowns(Protocol):
     """A change of an orbit and of its free parameters: what continuation adds, scales, measures and carries.
@@ -142,8 +145,11 @@ class Increment:
         )
 
     def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
-        """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2."""
-        states = np.einsum("j,jn,jn->", mean_weights(orbit), self.profile, other.profile)
+        """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.
+
+        Beside kinks the mean is that of `metric_weights`.
+        """
+        states = np.einsum("j,jn,jn->", metric_weights(orbit), self.profile, other.profile)
         return float(states) / size**2 + self.parameter * other.parameter / scale**2
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
@@ -174,6 +180,19 @@ def size_of(orbit: Orbit) -> float:
 def mean_weights(orbit: Orbit) -> Array:
     """Trapezoidal weights of the mesh points over one period, shape (N+1,); their sum is 1."""
     return orbit.grid.mean_weights
+
+
+def metric_weights(orbit: Orbit) -> Array:
+    """Mean weights that count less where an orbit with kinks is steep, shape (N+1,).
+
+    At fixed tau a hard contact that comes a little later changes the velocity by all it has; so distances are
+    measured where an orbit is not steep, with 1 / (1 + x'^4) of the weight, x' in `STEEP` sizes a rad.
+    """
+    weights = mean_weights(orbit)
+    if len(orbit.mesh.exact_ends) == 0:
+        return weights
+    steep = np.abs(orbit.node_rates).max(axis=1) / (STEEP * size_of(orbit))
+    return weights / (1 + steep**4)
 
 
 def node_phase_gradient(orbit: Orbit) -> Array:

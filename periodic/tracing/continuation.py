@@ -413,7 +413,7 @@ class Continuation:
         for left in reversed(range(self.control.meshes + 1)):
             tried = self._attempt(base, ds)
             new = tried.new
-            if new.error.worst <= tolerance:
+            if new.error.curable <= tolerance:
                 return tried
             if collapsed(base.orbit, new):
                 raise RejectedError("the orbit shrinks to nothing in one step")
@@ -483,7 +483,7 @@ class Continuation:
         if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
             return new
         due = self._since_remesh >= control.remesh_every
-        due = due or new.error.worst >= control.remesh_above * tolerance
+        due = due or new.error.curable >= control.remesh_above * tolerance
         if new.refinement.fits and not due and not self._too_fine(new):
             return new
         better = remeshed(solver, new)
@@ -497,6 +497,6 @@ class Continuation:
     def _too_fine(self, new: Solution) -> bool:
         """Whether a far smaller mesh would do."""
         control = self.control
-        if new.error.worst >= control.remesh_below * self.solver.tolerance.orbit:
+        if new.error.curable >= control.remesh_below * self.solver.tolerance.orbit:
             return False
         return new.refinement.refined().ntst <= control.smaller * new.orbit.mesh.ntst

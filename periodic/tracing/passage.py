@@ -113,7 +113,7 @@ def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solu
     Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
     """
     for _ in range(ROUNDS):
-        if not found.ok or found.error.worst <= solver.tolerance.orbit:
+        if not found.ok or found.error.curable <= solver.tolerance.orbit:
             break
         mesh = found.refinement.refined()
         if mesh.matches(found.orbit.mesh):

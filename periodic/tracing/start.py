@@ -29,6 +29,9 @@ ASIDE = 1e-6
 LOOSE = 1e-2
 """Tolerance of the way to a first orbit that is beyond the method's reach."""
 
+ROUGH = 1e-6
+"""Tolerance of the way to a first orbit."""
+
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
 
@@ -119,7 +122,7 @@ class Start:
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
         """Find the first orbit by that of another discretisation; None where there is none."""
         solver, system = self.solver, self.solver.problem.system
-        loose = self._loosely(solver)
+        loose = self._loosely(solver, LOOSE)
         for method in solver.discretisation.alternatives:
             other = replace(loose, discretisation=method.at(loose.tolerance.orbit))
             near = other.discretisation.guess(system, guess.parameter, guess)
@@ -130,9 +133,9 @@ class Start:
         return None
 
     @staticmethod
-    def _loosely(solver: Solver) -> Solver:
+    def _loosely(solver: Solver, least: float) -> Solver:
         """The same with orbits to a loose tolerance."""
-        tolerance = replace(solver.tolerance, orbit=max(LOOSE, solver.tolerance.orbit))
+        tolerance = replace(solver.tolerance, orbit=max(least, solver.tolerance.orbit))
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 
     def _at_turn(self, guess: Orbit, sign: float, first: Solution) -> Solution:
@@ -159,12 +162,21 @@ class Start:
         if not first.ok or far == wanted:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
-        solver = replace(self.solver, problem=nearer)
-        orbit, stop = self.follow(solver, first.orbit, sign, None)
+        own = replace(self.solver, problem=nearer)
+        solver = self._loosely(own, ROUGH) if own.tolerance.orbit < ROUGH else own
+        begin = first.orbit if solver is own else self._adopted(solver, first.orbit)
+        orbit, stop = self.follow(solver, begin, sign, None)
         if stop.reason is Reason.INACCURATE and orbit is not None:
             self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
-            orbit, _ = self.follow(self._loosely(solver), orbit, sign, None)
-        return orbit if orbit is not None and problem.value(orbit) == wanted else None
+            orbit, _ = self.follow(self._loosely(solver, LOOSE), orbit, sign, None)
+        if orbit is None or problem.value(orbit) != wanted:
+            return None
+        return orbit if solver is own else self._adopted(own, orbit)
+
+    @staticmethod
+    def _adopted(solver: Solver, orbit: Orbit) -> Orbit:
+        """An orbit as a guess in the solver's discretisation."""
+        return solver.discretisation.guess(solver.problem.system, orbit.parameter, orbit)
 
 
 def collapsed(guess: Orbit, found: Solution) -> bool:

@@ -70,9 +70,12 @@ def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
         way.phases + mean.phases,
         way.parameters + mean.parameters,
     )
+    metric = base.orbit, problem.scale, size_of(base.orbit)
+    moving = bend.dot(bend, *metric)
     jumping = resets_of(problem.system) or jumps_of(problem.system)  # a node passes what jumps at fixed tau
-    if len(base.orbit.mesh.exact_ends) and not jumping:
-        # an excursion's end moves as a root does, the motion smoothly
-        at = base.orbit.mesh.nodes(base.orbit.phases)
-        bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
-    return float(np.sqrt(bend.dot(bend, base.orbit, problem.scale, size_of(base.orbit))))
+    if not len(base.orbit.mesh.exact_ends) or jumping:
+        return float(np.sqrt(moving))
+    # an excursion's end moves as a root does, the motion at fixed tau smoothly; or, if hard, with its end
+    at = base.orbit.mesh.nodes(base.orbit.phases)
+    bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
+    return float(np.sqrt(min(moving, bend.dot(bend, *metric))))

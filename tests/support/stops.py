@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from reference.excursions import exact
 from reference.piecewise import Piecewise, periodic
 
 import periodic as per
@@ -44,3 +47,30 @@ def errors(system: Piecewise, point: per.Point, states: tuple[str, ...] = ("q",)
     largest = max(1.0, float(np.abs(found.multipliers).max()))
     apart = np.abs(np.poly(found.monodromy) - np.poly(point.multipliers)).max()
     return float(np.abs(found.start - np.array(start)).max()), float(apart) / largest
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Errors of a point's orbit at its passages, and of its multipliers as these are claimed.
+
+    wrong: how far a switch is on the wrong side of its level somewhere.
+    """
+
+    orbit: float
+    multiplier: float
+    wrong: float
+
+
+def judged(system: Piecewise, point: per.Point) -> Judged:
+    """Hold a point of a branch against the exact orbit of its pattern of passages."""
+    orbit, omega = point.orbit, point.parameter
+    at = orbit.mesh.starts if len(orbit.phases) else np.zeros(1, dtype=int)
+    n = orbit.nodes.shape[1]
+    states = orbit.nodes[at] * np.repeat([1.0, omega], n // 2)
+    switches = tuple(event.switch for event in orbit.mesh.events)
+    found = exact(system, omega, orbit.grid.left[at], states, switches, orbit.mesh.period)
+    radius = max(1.0, float(np.abs(found.multipliers).max()))
+    own, true = point.multipliers / radius, found.multipliers / radius
+    apart = max(abs(own.sum() - true.sum()), abs((own**2).sum() - (true**2).sum()) / 2)
+    away = np.abs(found.states - states).max()
+    return Judged(float(away), float(apart), found.wrong)

@@ -52,7 +52,7 @@ _SETTINGS = (
     "negligible",
     "growth",
 )
-_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length")
+_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length", "stretch")
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in _ORIGIN))
 _ADDRESSES = (*_GIVEN, *_FOUND, *_SOLVED)
@@ -109,10 +109,11 @@ def linearised(
     free: tuple[int, ...],
     conditions: Sequence[SideCondition],
     settings: NewtonSettings,
+    off: Array,
 ) -> Linearised | None:
-    """Return what `periodic.correction.newton.linearised` does, or None."""
-    found = _called(system, orbit, free, conditions, settings, 0)
-    return None if found is None else Linearised(orbit, found.increment, found.fundamental)
+    """Return what `periodic.correction.newton.linearised` does, or None; event nodes are `off` their levels."""
+    found = _called(system, orbit, free, conditions, settings, 0, off)
+    return None if found is None else Linearised(orbit, found.increment, found.kernel, found.fundamental)
 
 
 def _called(
@@ -122,6 +123,7 @@ def _called(
     conditions: Sequence[SideCondition],
     settings: NewtonSettings,
     most: int,
+    off: Array | None = None,
 ) -> _Solved | None:
     """Call C with an orbit; None where NumPy is to do, or has to."""
     constraint = conditions[0] if len(conditions) == 1 else None
@@ -143,6 +145,9 @@ def _called(
     call.shortest = 0.5**settings.max_halvings
     call.narrow, call.negligible = settings.short, settings.negligible
     kept = _constrained(call, constraint)
+    if off is not None and len(off):
+        kept.append(np.array([event.level for event in guess.mesh.events]) - off)
+        call.levels = address(kept[-1])
     for name, where in zip(_SYSTEM, functions, strict=True):
         setattr(call, name, where)
     orbit, parts, maps = _laid_out(call, guess)

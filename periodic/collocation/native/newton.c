@@ -41,7 +41,7 @@ struct call {
     struct change increment, kernel;
     double period, nominal, tolerance, close, max_change, shortest, narrow, negligible, growth;
     double origin_parameter, slope, distance;
-    double residual, size, length;
+    double residual, size, length, stretch;
     whole iterations;
 };
 
@@ -169,7 +169,14 @@ static void evaluate(const struct call *c, struct room *r)
     }
 }
 
-/* States and rates of the constraint's origin at the orbit's mesh points, where these have moved. */
+/* The end of a segment of the constraint's origin. */
+static double origin_end(const struct call *c, whole segment)
+{
+    return segment + 1 < c->k ? c->origin_phases[segment + 1] : c->origin_phases[0] + c->period;
+}
+
+/* States and rates of the constraint's origin at the orbit's mesh points, where these have moved: within their
+   own segments, beyond them on the tangents at their ends, see arclength.py. */
 static void origin_at(const struct call *c, struct room *r, const double **states, const double **rates)
 {
     const whole knots = c->ncol + 1, n = c->n;
@@ -178,19 +185,27 @@ static void origin_at(const struct call *c, struct room *r, const double **state
         moved |= c->phases[a] != c->origin_phases[a];
     *states = moved ? r->origin : c->origin_nodes;
     *rates = moved ? r->origin_rate : c->origin_node_rates;
-    for (whole j = 0; moved && j <= c->count; j++) {
-        const double tau = j < c->count ? r->left[j] : r->left[0] + c->period, begin = c->origin_left[0];
-        double place = fmod(tau - begin, c->period);
-        place = begin + (place < 0 ? place + c->period : place);
-        whole low = 0, high = c->count; /* left[low] <= place < left[high] */
-        while (high - low > 1) {
+    for (whole j = 0; moved && j < c->count; j++) {
+        whole segment = c->segment[j];
+        double tau = r->left[j];
+        if (j == c->starts[segment]) { /* an event node is in the longer of its two segments */
+            const whole before = segment ? segment - 1 : c->k - 1;
+            const double own = origin_end(c, segment) - c->origin_phases[segment];
+            if (origin_end(c, before) - c->origin_phases[before] > own) {
+                tau += before > segment ? c->period : 0;
+                segment = before;
+            }
+        }
+        const double place = fmin(origin_end(c, segment), fmax(c->origin_phases[segment], tau));
+        whole low = c->starts[segment], high = segment + 1 < c->k ? c->starts[segment + 1] : c->count;
+        while (high - low > 1) { /* left[low] <= place */
             const whole middle = (low + high) / 2;
             if (c->origin_left[middle] <= place)
                 low = middle;
             else
                 high = middle;
         }
-        const double theta = fmin(1, fmax(0, (place - c->origin_left[low]) / c->origin_width[low]));
+        const double theta = (place - c->origin_left[low]) / c->origin_width[low];
         double *state = r->origin + j * n, *rate = r->origin_rate + j * n;
         memset(state, 0, n * sizeof(double));
         memset(rate, 0, n * sizeof(double));
@@ -204,6 +219,12 @@ static void origin_at(const struct call *c, struct room *r, const double **state
                 rate[s] += basis * c->origin_knot_rates[(low * knots + l) * n + s];
             }
         }
+        for (whole s = 0; s < n; s++)
+            state[s] += (tau - place) * rate[s];
+    }
+    if (moved) {
+        memcpy(r->origin + c->count * n, r->origin, n * sizeof(double));
+        memcpy(r->origin_rate + c->count * n, r->origin_rate, n * sizeof(double));
     }
 }
 
@@ -306,7 +327,13 @@ static int measure(struct call *c, struct room *r)
         left = fmax(left, unknowns * unknowns);
         felt = fmax(felt, fmin(1, r->width[j] / c->narrow) * unknowns);
     }
-    c->size = fmax(regular, left);
+    c->stretch = 0;
+    for (whole a = 0; a < k; a++) { /* of segments, relative where they are shorter than 1 rad */
+        const whole next = a + 1 < k ? a + 1 : 0;
+        const double own = (next ? c->phases[next] : c->phases[0] + c->period) - c->phases[a];
+        c->stretch = fmax(c->stretch, fabs(d->outer[next] - d->outer[a]) / fmin(own, 1));
+    }
+    c->size = fmax(fmax(regular, left), c->stretch * c->stretch);
     c->length = fmax(regular, felt);
     const int finite = finite_all((c->count + 1) * n, d->nodes) && finite_all(points * n, d->stages)
                        && finite_all(k + 1, d->outer) && (!m || finite_all(points * m, r->moved));
@@ -410,12 +437,30 @@ static int iterate(struct call *c, struct room *r)
     return found ? DONE : TOO_MANY;
 }
 
+/* Linearise at the orbit found, or at one still closer where a contact is so short that its length is not known
+   well enough. */
+static int closer(struct call *c, struct room *r)
+{
+    const double close = c->close * c->tolerance;
+    if (c->most && c->length <= close && c->stretch <= close)
+        return DONE;
+    double last = c->stretch;
+    int code = linearised(c, r);
+    while (code == DONE && c->most && close < c->stretch && c->stretch < last / 4) {
+        last = c->stretch;
+        keep(c, r);
+        move(c, r, 1);
+        code = linearised(c, r);
+    }
+    return code;
+}
+
 static int solved(struct call *c, struct room *r)
 {
     int code = iterate(c, r);
     const double size = c->size;
-    if (code == DONE && (c->most == 0 || c->length > c->close * c->tolerance))
-        code = linearised(c, r);
+    if (code == DONE)
+        code = closer(c, r);
     if (code != DONE)
         return code;
     if (c->most)

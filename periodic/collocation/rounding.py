@@ -1,0 +1,52 @@
+"""Rounding beside hard or shallow contacts: it is nothing to the orbit, but to the multipliers.
+
+An event node lies where a switch is at its level within the rounding of the terms that cancel in it; beside a
+touch that is much of a contact's depth. Within a contact of stiffness k rounding of the states acts on the
+multipliers k times.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
+
+EPSILON = float(np.finfo(float).eps)
+CANCELLED = 4 * EPSILON
+"""How far beside its level a switch may be, as a part of the terms that cancel in it."""
+
+
+def aside(orbit: Orbit, rows: list[Row]) -> Array:
+    """Return how far from their levels rounding leaves the switches of event nodes, shape (k,)."""
+    sizes = [float(np.abs(row.nodes * orbit.nodes).sum()) for row in rows]
+    return CANCELLED * np.array(sizes)
+
+
+def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
+    """Return about by how much multipliers are off by rounding of the states, where an orbit has kinks.
+
+    That of one mesh point grows with the fastest rate of the fundamental matrices, that of all with the root
+    of their number.
+    """
+    if len(orbit.mesh.exact_ends) == 0:
+        return 0.0
+    return EPSILON * _fastest(orbit, spectrum) * float(np.sqrt(orbit.mesh.ntst))
+
+
+def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
+    """Return by how much they are off at the most as contacts begin and end where rounding has it."""
+    late, off = 0.0, aside(orbit, rows)
+    for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
+        slope = abs(float(row.nodes[start] @ orbit.node_rates[start]) + float(row.outer[i]))
+        late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
+    return _fastest(orbit, spectrum) * late / spectrum.radius if late else 0.0
+
+
+def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:
+    """The fastest rate of the fundamental matrices (1/rad)."""
+    before = spectrum.fundamental[:-1]
+    change = np.linalg.norm(np.diff(spectrum.fundamental, axis=0), axis=(1, 2))
+    return float((change / (orbit.grid.width * np.linalg.norm(before, axis=(1, 2)))).max())
