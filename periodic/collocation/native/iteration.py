@@ -111,7 +111,7 @@ def linearised(
     settings: NewtonSettings,
     off: Array,
 ) -> Linearised | None:
-    """Return what `periodic.correction.newton.linearised` does, or None; event nodes are `off` their levels."""
+    """Return what `periodic.correction.newton.linearised` does, or None; event nodes lie `off` levels."""
     found = _called(system, orbit, free, conditions, settings, 0, off)
     return None if found is None else Linearised(orbit, found.increment, found.kernel, found.fundamental)
 
