@@ -109,7 +109,7 @@ def linearised(
     free: tuple[int, ...],
     conditions: Sequence[SideCondition],
     settings: NewtonSettings,
-    off: Array,
+    off: Array | None = None,
 ) -> Linearised | None:
     """Return what `periodic.correction.newton.linearised` does, or None; event nodes lie `off` levels."""
     found = _called(system, orbit, free, conditions, settings, 0, off)
