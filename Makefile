@@ -11,8 +11,13 @@ PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadf
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
+# Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
+COUNT ?= 100
+SEED ?= 0
+SINCE ?=
+
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long bench report-paper report-trade report-extremes report-machines docs lint types layers wheel clean
+.PHONY: help run test kernels long mutants bench report-paper report-trade report-extremes report-machines docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -30,6 +35,9 @@ kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kerne
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
+
+mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
+	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) $(if $(SINCE),--since $(SINCE))
 
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
@@ -68,6 +76,11 @@ $(VENV)/.installed-dev: pyproject.toml | $(BIN)/pip
 	@echo "Installing orbitrace and its development tools into $(VENV) (a minute or two, once)"
 	@$(INSTALL) --editable '.[dev]'
 	@touch $(VENV)/.installed $@
+
+$(VENV)/.installed-mutants: pyproject.toml | $(BIN)/pip
+	@echo "Installing orbitrace and what makes mutants of it into $(VENV) (a minute or two, once)"
+	@$(INSTALL) --editable '.[dev,mutants]'
+	@touch $(VENV)/.installed $(VENV)/.installed-dev $@
 
 $(VENV)/.installed-docs: pyproject.toml | $(BIN)/pip
 	@echo "Installing orbitrace and what builds its site into $(VENV) (a minute or two, once)"

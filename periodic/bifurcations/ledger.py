@@ -8,7 +8,7 @@ account for has been passed unseen.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -56,6 +56,8 @@ class Entry:
         Whether it is one.
     conservative : bool
         Whether multipliers come in pairs mu, 1/mu.
+    touch : bool
+        Whether it sits on a touch, where multipliers jump: its own are those on one side.
     """
 
     label: Label
@@ -66,6 +68,7 @@ class Entry:
     blur: float = 0.0
     equilibrium: bool = False
     conservative: bool = False
+    touch: bool = False
 
     @property
     def passing(self) -> int | None:
@@ -75,7 +78,7 @@ class Entry:
         """
         if self.label is Label.HOPF and not self.equilibrium:
             return None
-        none = self.label in PLAIN or (self.conservative and self.label is Label.FOLD)
+        none = self.label in (*PLAIN, Label.GRAZING) or (self.conservative and self.label is Label.FOLD)
         return 0 if none else PASSING.get(self.label)
 
     @property
@@ -106,6 +109,8 @@ class Entry:
         passing = self.passing
         if passing is None:
             return set(range(len(self.growth) + 1))
+        if self.touch:
+            return {n + side * passing for n in before for side in (-1, 1)}
         few = self.beside
         more = {count + passing for count in few}
         stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
@@ -159,7 +164,7 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 
     turns: whether turns of the parameter have labels there, as folds of a branch have.
     """
-    found = []
+    entries, found = _on_touches(entries), []
     both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
     for (last, entry), (before, after), turning in both:
         if not entry.after(before, turning):
@@ -169,8 +174,19 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
     return found
 
 
+def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
+    """The entries, those at a touch marked so: a GR, and what is named right after it at the same orbit."""
+    found: list[Entry] = []
+    for entry in entries:
+        last = found[-1] if found else None
+        same = last is not None and last.touch and entry.value == last.value
+        found.append(replace(entry, touch=same or entry.label is Label.GRAZING))
+    return found
+
+
 def counts(entries: Sequence[Entry]) -> list[set[int]]:
     """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
+    entries = _on_touches(entries)
     found = [entry.after(set(range(len(entry.growth) + 1))) for entry in entries[:1]]
     for entry, turning in zip(entries[1:], _turning(entries)[1:], strict=True):
         found.append(entry.after(found[-1], turning) or entry.unstable)

@@ -11,7 +11,7 @@ from collections import Counter
 import numpy as np
 import pytest
 from reference.confirmation import Integrator
-from support.random_models import Case, drawn
+from support.drawn.models import Case, drawn
 
 import periodic as per
 from periodic import Reason

@@ -149,6 +149,17 @@ PAIR = (0.8 + 0.6j, 0.8 - 0.6j)
         [entry("", 0, 1.5, 0.2), entry("BP", 1, 1, 0.2), entry("", 2, 0.5, 0.2)],
         [entry("", 0, 1.5, 0.2), entry("BP", 1, 1, 0.2, slope=0), entry("", 0, 1.5, 0.2, slope=-1)],
         [entry("", 0, 0.5, 0.2), entry("BP", 1, 1 + 2e-6, 0.2, slope=3e-5), entry("", 0, 0.5, 0.2, slope=-1)],
+        [entry("", 0, 0.5, 0.2), entry("GR", 1, 0.5, 0.2), entry("", 2, 0.4, 0.3)],
+        [
+            entry("", 0, 0.5, 0.2),
+            entry("GR", 1, 0.5, 0.2),
+            entry("PD", 1, 0.5, 0.2),
+            entry("", 2, -58.0, -0.3),
+        ],
+        [
+            *(entry("", 0, *PAIR, 0.2), entry("GR", 1, *PAIR, 0.2), entry("PD", 1, *PAIR, 0.2)),
+            *(entry("NS", 1, *PAIR, 0.2), entry("", 2, 1.1, 1.2, -9.0)),
+        ],
         [
             entry("", 0, 0.5, 0.2),
             entry("LP", 1, 1, 0.9, slope=0),
@@ -180,6 +191,10 @@ def test_balanced(entries: list[Entry]) -> None:
         (
             [entry("", 0, 0.5, 0.2), entry("", 1, 0.5, 0.2), entry("", 0.5, 0.5, 0.2, slope=-1)],
             ["the parameter turns without a labelled point"],
+        ),
+        (
+            [entry("", 0, 0.5, 0.2), entry("GR", 1, 0.5, 0.2), entry("", 2, -58.0, -0.3)],
+            ["unstable multipliers go from 0 to 1 without a labelled point"],
         ),
         (
             [entry("", 0, 0.5, 0.2), entry("BP", 1, 1, 0.2), entry("", 2, 0.5, 0.2)],

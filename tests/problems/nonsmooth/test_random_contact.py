@@ -1,0 +1,81 @@
+"""Models with contact drawn at random: what their branches claim, judged in closed form.
+
+Every branch's ledger balances (tests/conftest.py sees to that too), and orbits and multipliers of points
+drawn from it are those of an event-exact integration that shares nothing with the packages.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Iterable
+
+import numpy as np
+import pytest
+from reference.judging import judged
+from support.drawn.contact import Case, drawn
+
+import periodic as per
+from periodic import Reason
+
+TOL = 1e-6
+CONTROL = per.ArclengthControl(max_points=400, max_newton=4000)
+JUDGED = 8
+"""Points of a branch that are judged; at a touch itself multipliers have two values."""
+
+
+def traced(case: Case) -> per.Branch:
+    """The branch of a case."""
+    return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=CONTROL)
+
+
+def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
+    """What the branch leaves unsaid or claims that is not so."""
+    found = [f"unaccounted: {gap}" for gap in branch.unaccounted]
+    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    points = [point for point in branch if point.parameter not in touched]
+    for k in np.random.default_rng(seed).permutation(len(points))[:JUDGED]:
+        point = points[int(k)]
+        said = judged(case.exact, point, case.names).wrong(point, TOL)
+        if said:
+            found.append(f"{case.told}, at {point.parameter!r} {point.label}: {said}")
+    return found
+
+
+SAMPLE = [("clearances", 2), ("gears", 0), ("gears", 2), ("impacts", 0), ("friction", 3), ("chains", 4)]
+
+
+@pytest.mark.parametrize(("kind", "seed"), SAMPLE)
+def test_some(kind: str, seed: int) -> None:
+    """Assert it of one of each kind, and that they are traced to their ends."""
+    case = drawn(kind, seed)
+    branch = traced(case)
+    assert branch.stop.reason is Reason.BOUND
+    assert wrong(case, branch, seed) == []
+
+
+@pytest.mark.long
+@pytest.mark.unaccounted
+@pytest.mark.parametrize(
+    ("kind", "seeds"),
+    [
+        *[("clearances", range(k, k + 10)) for k in range(100, 300, 10)],
+        *[(kind, range(k, k + 10)) for kind in ("gears", "impacts", "friction") for k in range(100, 200, 10)],
+        *[("chains", range(k, k + 10)) for k in range(100, 200, 10)],
+    ],
+)
+def test_six_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFixture[str]) -> None:
+    """Assert that of 500 models and 100 chains none is wrong, and print how far they are traced and why."""
+    reasons: Counter[str] = Counter()
+    found: list[str] = []
+    began = time.process_time()
+    for seed in seeds:
+        case = drawn(kind, seed)
+        branch = traced(case)
+        reasons[str(branch.stop)] += 1
+        found += wrong(case, branch, seed)
+    with capsys.disabled():
+        print(f"\n{kind} {seeds}, {time.process_time() - began:.0f} s")
+        for reason, count in reasons.most_common():
+            print(f"  {count:3}  {reason}")
+    assert not found, "\n".join(found)

@@ -1,0 +1,1 @@
+"""Models drawn at random: a seed is a case."""
