@@ -12,6 +12,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+from periodic.stability.winding import meetings
 
 
 def noise(solution: Solution) -> float:
@@ -63,4 +64,16 @@ def _pair_nearest_the_circle(solution: Solution) -> float:
     return float(np.sign(value) * np.abs(np.log(sizes)).min()) if len(sizes) else value
 
 
-TORUS = TestFunction(label=Label.TORUS, value=torus, genuine=_genuine, local=_pair_nearest_the_circle)
+def _dips(base: Solution, new: Solution) -> list[tuple[float, float]]:
+    """Where two pairs meet, and how near to the circle they are if they do not leave it."""
+    return [(m.place, abs(m.growth)) for m in meetings(base.spectrum, new.spectrum)]
+
+
+TORUS = TestFunction(
+    label=Label.TORUS,
+    value=torus,
+    genuine=_genuine,
+    local=_pair_nearest_the_circle,
+    twice=lambda base, new: bool(_dips(base, new)),
+    dips=_dips,
+)

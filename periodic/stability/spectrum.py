@@ -40,6 +40,7 @@ class Pair:
     that of a single component, which may pass through 0, it changes smoothly with the orbit.
     left: left eigenvector (n,), of such a length that 2 |left x| is the most that the pair's part of a
     disturbance, x at the beginning of the period, becomes within it; none where eigenvectors coincide.
+    place: its index among the multipliers.
     """
 
     argument: float
@@ -47,6 +48,7 @@ class Pair:
     distance: float
     turned: float
     left: Complex | None = None
+    place: int = 0
 
     def turn(self, other: Pair) -> float:
         """Return by how much the multiplier turns to that of another orbit, whole turns included."""
@@ -127,7 +129,7 @@ class Spectrum:
         mu, solution = complex(self.multipliers[k]), self.fundamental @ self.vectors[:, k]
         turned = float(np.angle((solution[:-1].conj() * solution[1:]).sum(axis=1)).sum())
         left = None if self._left is None else self._left[k] * np.abs(solution).max()
-        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned, left)
+        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned, left, k)
 
     @cached_property
     def _left(self) -> Complex | None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
 
 import numpy as np
 
@@ -28,6 +29,10 @@ TINY = 1e-9
 
 PLACES = 9
 """Places in a step at which it is looked at, and those where the multiplier is nearest +1."""
+
+
+COUPLED = 0.2
+"""Least coupling of two pairs that may leave the unit circle, over their distance from it in log |mu|."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,6 +125,58 @@ def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, 
         places = (offset + 2 * np.pi * past - a.argument) / turn
         found += [(float(p), float(a.modulus ** (1 - p) * b.modulus**p)) for p in places]
     return found
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Where two pairs meet between two orbits, as a part of the way, and log |mu| of that nearer the circle.
+
+    Pairs that meet may leave the unit circle together, one outwards, and come back.
+    """
+
+    place: float
+    growth: float
+
+
+def meetings(before: Spectrum, after: Spectrum) -> list[Meeting]:
+    """Return where pairs that are coupled enough to leave the unit circle meet between two orbits."""
+    if len(after.pairs) < len(before.pairs):
+        return [Meeting(1 - m.place, m.growth) for m in meetings(after, before)]
+    coupling, found = _coupling(before, after), []
+    for (i, (a, b)), (j, (c, d)) in combinations(enumerate(_matched(before, after)), 2):
+        for sign in (1, -1):
+            gap, closing = a.argument - sign * c.argument, a.turn(b) - sign * c.turn(d)
+            low, high = sorted((gap, gap + closing))
+            for past in 2 * np.pi * np.arange(np.ceil(low / (2 * np.pi)), np.ceil(high / (2 * np.pi))):
+                place = float((past - gap) / closing)
+                sizes = [
+                    np.log(p.modulus) * (1 - place) + np.log(q.modulus) * place for p, q in ((a, b), (c, d))
+                ]
+                growth = float(min(sizes, key=abs))
+                if coupling[i, j] > COUPLED * abs(growth):
+                    found.append(Meeting(place, growth))
+    return found
+
+
+def _coupling(own: Spectrum, other: Spectrum) -> Array:
+    """How much each two pairs of an orbit mix in the monodromy matrix of another, (pairs, pairs).
+
+    The geometric mean of both ways, by which they may part where they meet.
+    """
+    chosen = [pair.place for pair in own.pairs]
+    both = np.concatenate([own.vectors[:, chosen], own.vectors[:, chosen].conj()], axis=1)
+    try:
+        mixed = np.abs(np.linalg.pinv(both) @ other.monodromy @ both)
+    except np.linalg.LinAlgError:
+        return np.full((len(chosen), len(chosen)), np.inf)
+    k = len(chosen)
+    blocks = [
+        mixed[rows, columns]
+        for rows in (slice(0, k), slice(k, None))
+        for columns in (slice(0, k), slice(k, None))
+    ]
+    largest = np.max(blocks, axis=0)
+    return np.asarray(np.sqrt(largest * largest.T))
 
 
 @lru_cache(maxsize=4)

@@ -20,7 +20,7 @@ PEAKS = {7.0: (0.49618627, 0.29072993), 6.0: (2.43086450, 0.41931401)}
 
 @cache
 def branch() -> per.Branch:
-    """The branch from 10 krpm to beyond the doubling."""
+    """The branch from 10 krpm to beyond the doubling; it has no point between its two tori but by itself."""
     return per.trace(
         sym.scene("ball-bearing"),
         "speed",
@@ -68,6 +68,14 @@ def test_known_peaks(krpm: float) -> None:
     (point,) = [p for p in branch().labelled(per.Label.USER) if abs(p.parameter / KRPM - krpm) < 1e-9]
     found = [point.peak_to_peak(q) * 1e6 for q in "xy"]
     assert found == pytest.approx(PEAKS[krpm], rel=1e-5)
+
+
+def test_tori() -> None:
+    """Assert the two NS between which two pairs of multipliers that meet are off the unit circle."""
+    tori = branch().labelled(per.Label.TORUS)
+    assert [t.parameter / KRPM for t in tori] == pytest.approx([8.981543, 8.360663], abs=2e-6)
+    for torus in tori:
+        assert abs(confirmed(torus).multipliers[0]) == pytest.approx(1.0, abs=2e-4)
 
 
 def test_known_doubling() -> None:
