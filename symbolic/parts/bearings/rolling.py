@@ -16,6 +16,7 @@ from symbolic.equations.model import Part
 from symbolic.equations.rest import steady_force
 from symbolic.equations.variables import Coordinate, Value, apart
 from symbolic.parts.bearings.ranked import ranked
+from symbolic.parts.bearings.squeezed import SqueezedElements
 from symbolic.parts.bearings.waves import RaceWave, Turns
 from symbolic.parts.contact.law import ContactLaw, lawful
 from symbolic.parts.films.series import SeriesFilm
@@ -60,7 +61,8 @@ class RollingBearing(Part):
     waves : sequence of RaceWave
         Waviness of races and elements.
     film : SeriesFilm, optional
-        Lubricant film between each element and the races, in series with F.
+        Lubricant film between each element and the races, in series with F; with squeeze it brings a state
+        for each element (and one more where n is even), in multiblade coordinates.
     passages, spin : int, float, str or Fraction, optional
         Passages of elements and turns of an element about itself, in one turn of the shaft: rational numbers,
         for the period in common with what turns with the shaft.
@@ -109,13 +111,12 @@ class RollingBearing(Part):
             along = x.position.symbol * ca.cos(turns.place) + y.position.symbol * ca.sin(turns.place)
             approaches.append(along - g + height)
             assembly.smooth_at(approaches[-1])  # an element's own kinks have not the period of the passage
-        for turns, approach in zip(places, approaches, strict=True):
-            load = self._load(assembly, approach)
+        rest = Carried(self, g)
+        assembly.joints[rest] = rest
+        for turns, load in zip(places, self._loads(assembly, approaches, places), strict=True):
             x.force -= load * ca.cos(turns.place)
             y.force -= load * ca.sin(turns.place)
         self._draw(assembly, g)
-        rest = Carried(self, g)
-        assembly.joints[rest] = rest
         if self.film is None:
             for count, approach in enumerate(ranked(approaches), 1):
                 assembly.switch(f"{count} loaded", approach / x.position.scale - 1, 0, WEAK)
@@ -131,10 +132,19 @@ class RollingBearing(Part):
             ball = {"size": at(0.16), "arm": 0.82, "start": start, "turn": turn, "look": "mark"}
             draw("disc", of, x=at(0, self.x, factor=0.5), y=at(0, self.y, factor=0.5), **ball)
 
-    def _load(self, assembly: Assembly, approach: ca.SX) -> ca.SX:
+    def _loads(self, assembly: Assembly, approaches: list[ca.SX], places: list[Turns]) -> list[ca.SX]:
         if self.film is None:
-            return self.law.load(assembly, approach)
-        return self.film.load(assembly, self.law, approach)
+            return [self.law.load(assembly, approach) for approach in approaches]
+        if self.film.squeeze is None:
+            return [self.film.load(assembly, self.law, approach) for approach in approaches]
+        passage = self.elements * places[0].place
+        films = SqueezedElements(self.film, self.law)
+        return films.loads(assembly, approaches, passage, self._entraining(assembly))
+
+    def _entraining(self, assembly: Assembly) -> ca.SX:
+        """Speed of the surfaces through the contacts of an element with either race: Omega_c D_o/2."""
+        _, outer = self._races(assembly)
+        return self._cage(assembly) * assembly.parameter(self.speed, "speed", "rad/s") * outer / 2
 
     def _places(self, assembly: Assembly) -> list[Turns]:
         """The angles of all elements."""

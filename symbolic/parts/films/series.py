@@ -1,4 +1,4 @@
-"""A film in series with an elastic contact, solved for the load: no state, no unknown, no kink.
+"""A film in series with an elastic contact: steady, solved for the load without a state, or squeezed.
 
 The bodies' approach d (beyond that at which dry surfaces touch) and the film make up the deflection,
 
@@ -16,6 +16,8 @@ import casadi as ca
 
 from symbolic.checks import positive, refusal, whole
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.interval import POSITIVE
+from symbolic.equations.variables import Value, above_zero
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.films.law import FilmLaw
 
@@ -35,22 +37,33 @@ class SeriesFilm:
         c: 2 where an element has a film on either side.
     typical : float
         A load in N from which the equation is solved; the result does not depend on it.
+    squeeze : float or Parameter, optional
+        s of h = H(W) exp(-s (dh/dt)/u), H the law's steady thickness and u the entraining speed, which the
+        part knows that holds the film: 123 for points (Mostofi 1981), 96.775 for lines. Without it the film
+        has no state.
 
     Raises
     ------
     ValueError
-        For what is no law, no contact at all, and a load that is not positive.
+        For what is no law, no contact at all, and a load or squeeze that is not positive.
+
+    References
+    ----------
+    Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eqs. (5) and (6).
     """
 
     law: FilmLaw
     contacts: int = 1
     typical: float = 100.0
+    squeeze: Value | None = None
 
     def __post_init__(self) -> None:
         if not callable(getattr(self.law, "thickness", None)):
             raise refusal("law of a film", self.law, "a FilmLaw, as PowerFilm(1e-6, 100.0) is")
         whole("contacts", self.contacts, 1)
         positive("typical load", self.typical)
+        if self.squeeze is not None:
+            above_zero("squeeze", self.squeeze)
 
     def load(self, assembly: Assembly, contact: ContactLaw, approach: ca.SX) -> ca.SX:
         """Return the load under the film.
@@ -71,12 +84,47 @@ class SeriesFilm:
         """
         elastic = contact.preloaded(assembly, ca.SX(self.typical))
         y = ca.SX.sym("log_load")
-        log_delta = ca.log(elastic.delta0) + elastic.log_deflection(y)
-        log_film = ca.log(self.contacts * self.law.thickness(assembly, self.typical * ca.exp(y)))
-        parting, pressing = ca.fmax(-approach, 0), ca.fmax(approach, 0)
-        assembly.smooth_at(approach)
-        rising = ca.log(ca.exp(log_delta) + parting) - ca.log(ca.exp(log_film) + pressing)
-        return self.typical * ca.exp(_solved(rising, y))
+        delta = elastic.delta0 * ca.exp(elastic.log_deflection(y))
+        film = self.contacts * self.law.thickness(assembly, self.typical * ca.exp(y))
+        return self.typical * ca.exp(_solved(_balance(assembly, delta, film, approach), y))
+
+
+@dataclass(frozen=True)
+class Squeezed:
+    """A film in series that is squeezed; its state is v = ln(W/W_steady), the departure of the load.
+
+        delta(W) = d + c h,   h = H(W) exp(-s (dh/dt)/u)
+
+    W stays positive, and v small, also where the bodies part.
+    """
+
+    film: SeriesFilm
+    assembly: Assembly
+    contact: ContactLaw
+
+    def closed(
+        self, v: tuple[ca.SX, ca.SX], approach: tuple[ca.SX, ca.SX], speed: ca.SX
+    ) -> tuple[ca.SX, ca.SX]:
+        """Return W in N and the row of the film, from v and d with their rates and u in m/s."""
+        film, assembly = self.film, self.assembly
+        assert film.squeeze is not None
+        squeeze = assembly.parameter(film.squeeze, "squeeze", "", POSITIVE) / speed * assembly.omega
+        elastic = self.contact.preloaded(assembly, ca.SX(film.typical))
+        d, y = ca.SX.sym("d"), ca.SX.sym("y")
+        steady = ca.log(film.load(assembly, self.contact, d) / film.typical)
+        deflection = elastic.delta0 * ca.exp(elastic.log_deflection(y))
+        found = ca.substitute(steady, d, approach[0]) + v[0]
+        rate = ca.substitute(ca.jacobian(steady, d), d, approach[0]) * approach[1] + v[1]
+        h = (ca.substitute(deflection, y, found) - approach[0]) / film.contacts
+        h_rate = (ca.substitute(ca.jacobian(deflection, y), y, found) * rate - approach[1]) / film.contacts
+        load = film.typical * ca.exp(found)
+        return load, ca.log(h / film.law.thickness(assembly, load)) + squeeze * h_rate
+
+
+def _balance(assembly: Assembly, delta: ca.SX, film: ca.SX, approach: ca.SX) -> ca.SX:
+    """ln(delta + max(-d, 0)) - ln(film + max(d, 0)): delta = d + film, both sides positive."""
+    assembly.smooth_at(approach)
+    return ca.log(delta + ca.fmax(-approach, 0)) - ca.log(film + ca.fmax(approach, 0))
 
 
 def _solved(rising: ca.SX, y: ca.SX) -> ca.SX:
