@@ -458,6 +458,24 @@ class Assembly:
         """
         return self.omega * self.motion(coordinate).velocity.symbol
 
+    def rate(self, expression: ca.SX) -> ca.SX:
+        """Return the derivative in tau of an expression in states and the excitation.
+
+        Parameters
+        ----------
+        expression : casadi.SX
+            Any function of the states so far, of the angle and of harmonics.
+
+        Returns
+        -------
+        casadi.SX
+            In velocities for coordinates, and in derivatives of other states.
+        """
+        known = {id(motion.position): motion.velocity.symbol for motion in self.motions.values()}
+        symbols = [state.symbol for state in self.states]
+        rates = [known.get(id(state), state.derivative) for state in self.states]
+        return self.excitation.along(expression, ca.vertcat(*symbols), ca.vertcat(*rates))
+
     def output(self, name: str, unit: str, expression: ca.SX) -> None:
         """Add an output.
 

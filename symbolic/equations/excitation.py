@@ -106,6 +106,14 @@ class Excitation:
         """sin(r theta) and cos(r theta) of all `orders` one after another, a column."""
         return ca.vertcat(ca.SX(0, 1), *(symbol for r in self.orders for symbol in self.waves[r]))
 
+    def along(self, expression: ca.SX, symbols: ca.SX, rates: ca.SX) -> ca.SX:
+        """Return the derivative in tau of an expression in symbols, of given rates, and the excitation."""
+        arguments, found = [symbols, self.angle], [rates, self.pace]
+        for order, (sine, cosine) in self.waves.items():
+            arguments += [sine, cosine]
+            found += [float(order) * self.pace * cosine, -float(order) * self.pace * sine]
+        return ca.jtimes(expression, ca.vertcat(*arguments), ca.vertcat(*found))
+
     def values(self, phase: ca.SX) -> ca.SX:
         """Return what `symbols` are at a phase tau."""
         turns = [r / self.fundamental for r in self.orders]

@@ -123,7 +123,7 @@ def test_five_hundred(kind: str, share: int, block: int) -> None:
     assert sum(reasons[r] for r in (Reason.NO_START, Reason.SMALL_STEP, Reason.INACCURATE)) <= 1, reasons
 
 
-@pytest.mark.parametrize("values", [{"preload": 0.0}, {"preload": -5.0}, {"mass": 0.0}, {"stiffness": -1.0}])
+@pytest.mark.parametrize("values", [{"preload": 0.0}, {"preload": -5.0}, {"mass": 0.0}])
 def test_outside_the_domain(values: dict[str, float]) -> None:
     """Assert that equations without meaning end in a named reason, without a point or a warning."""
     options = {"values": values, "tol": per.Accuracy.DRAFT, "control": STEP}

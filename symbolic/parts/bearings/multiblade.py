@@ -51,33 +51,18 @@ class Multiblade:
         states = tuple(assembly.state(f"{name} {each}", "", 1.0, ca.SX(0)) for each in names)
         return cls(assembly, states, count, passage)
 
-    @property
-    def _pace(self) -> ca.SX:
-        """Rate of `passage` in the phase of the system."""
-        excitation = self.assembly.excitation
-        return ca.jacobian(self.passage, excitation.angle) * excitation.pace
-
-    def _waves(self, i: int) -> list[tuple[ca.SX, ca.SX]]:
-        """1, cos k theta_i and sin k theta_i, and their derivatives in the phase of the system."""
-        theta, pace = (self.passage + 2 * ca.pi * i) / self.count, self._pace / self.count
-        waves = [(ca.SX(1), ca.SX(0))]
-        for k in range(1, self.count // 2 + 1):
-            c, s = ca.cos(k * theta), ca.sin(k * theta)
-            waves += [(c, -k * s * pace), (s, k * c * pace)]
-        return waves
-
-    def element(self, i: int) -> tuple[ca.SX, ca.SX]:
-        """Return v_i and its derivative in the phase of the system."""
-        pairs = list(zip(self.states, self._waves(i), strict=True))
-        value = sum((s.symbol * w for s, (w, _) in pairs), ca.SX(0))
-        return value, sum((s.derivative * w + s.symbol * rate for s, (w, rate) in pairs), ca.SX(0))
+    def element(self, i: int) -> ca.SX:
+        """Return v_i."""
+        theta, (mean, *others) = (self.passage + 2 * ca.pi * i) / self.count, self.states
+        value = mean.symbol
+        for j, (a, b) in enumerate(zip(others[::2], others[1::2], strict=True), 1):
+            value += a.symbol * ca.cos(j * theta) + b.symbol * ca.sin(j * theta)
+        return value
 
     def idle(self) -> list[ca.SX]:
         """Return the row of what no element shows, none where n is odd."""
         if self.count % 2:
             return []
         a, b = self.states[-2:]
-        c, s = ca.cos(self.passage / 2), ca.sin(self.passage / 2)
-        hidden = b.symbol * c - a.symbol * s
-        rate = b.derivative * c - a.derivative * s - (b.symbol * s + a.symbol * c) * self._pace / 2
-        return [rate + IDLE * self._pace * hidden]
+        hidden = b.symbol * ca.cos(self.passage / 2) - a.symbol * ca.sin(self.passage / 2)
+        return [self.assembly.rate(hidden) + IDLE * self.assembly.rate(self.passage) * hidden]

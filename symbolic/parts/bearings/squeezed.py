@@ -27,17 +27,8 @@ class SqueezedElements:
         blades = Multiblade.of(assembly, "film", len(approaches), passage)
         film, found = Squeezed(self.film, assembly, self.law), []
         for i, approach in enumerate(approaches):
-            load, row = film.closed(blades.element(i), (approach, _rate(assembly, approach)), speed)
+            load, row = film.closed(blades.element(i), approach, speed)
             assembly.differential_rows.append(row)
             found.append(load)
         assembly.differential_rows.extend(blades.idle())
         return found
-
-
-def _rate(assembly: Assembly, approach: ca.SX) -> ca.SX:
-    """Derivative of an approach in the phase, from those of the coordinates and of the angle."""
-    excitation = assembly.excitation
-    total = ca.jacobian(approach, excitation.angle) * excitation.pace
-    for motion in assembly.motions.values():
-        total += ca.jacobian(approach, motion.position.symbol) * motion.velocity.symbol
-    return total

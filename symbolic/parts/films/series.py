@@ -102,23 +102,16 @@ class Squeezed:
     assembly: Assembly
     contact: ContactLaw
 
-    def closed(
-        self, v: tuple[ca.SX, ca.SX], approach: tuple[ca.SX, ca.SX], speed: ca.SX
-    ) -> tuple[ca.SX, ca.SX]:
-        """Return W in N and the row of the film, from v and d with their rates and u in m/s."""
+    def closed(self, v: ca.SX, approach: ca.SX, speed: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Return W in N and the row of the film, from v, d in m and u in m/s."""
         film, assembly = self.film, self.assembly
         assert film.squeeze is not None
         squeeze = assembly.parameter(film.squeeze, "squeeze", "", POSITIVE) / speed * assembly.omega
         elastic = self.contact.preloaded(assembly, ca.SX(film.typical))
-        d, y = ca.SX.sym("d"), ca.SX.sym("y")
-        steady = ca.log(film.load(assembly, self.contact, d) / film.typical)
-        deflection = elastic.delta0 * ca.exp(elastic.log_deflection(y))
-        found = ca.substitute(steady, d, approach[0]) + v[0]
-        rate = ca.substitute(ca.jacobian(steady, d), d, approach[0]) * approach[1] + v[1]
-        h = (ca.substitute(deflection, y, found) - approach[0]) / film.contacts
-        h_rate = (ca.substitute(ca.jacobian(deflection, y), y, found) * rate - approach[1]) / film.contacts
-        load = film.typical * ca.exp(found)
-        return load, ca.log(h / film.law.thickness(assembly, load)) + squeeze * h_rate
+        load = film.load(assembly, self.contact, approach) * ca.exp(v)
+        deflection = elastic.delta0 * ca.exp(elastic.log_deflection(ca.log(load / film.typical)))
+        h = (deflection - approach) / film.contacts
+        return load, ca.log(h / film.law.thickness(assembly, load)) + squeeze * assembly.rate(h)
 
 
 def _balance(assembly: Assembly, delta: ca.SX, film: ca.SX, approach: ca.SX) -> ca.SX:

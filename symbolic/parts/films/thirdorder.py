@@ -125,11 +125,6 @@ def _eliminate(assembly: Assembly, inner: Assembly, coordinate: Coordinate, redu
 
 def _along(inner: Assembly, states: list[State], expression: ca.SX) -> ca.SX:
     """Return the total derivative d/dtau of an expression in h, h', h'' and the phase."""
-    excitation, turns = inner.excitation, [float(order) for order in inner.excitation.orders]
-    pairs = [excitation.waves[order] for order in excitation.orders]
-    arguments = [state.symbol for state in states] + [wave for pair in pairs for wave in pair]
+    symbols = [state.symbol for state in states]
     rates = [state.symbol for state in states[1:]] + [states[-1].derivative]
-    for turn, (sine, cosine) in zip(turns, pairs, strict=True):
-        rates += [turn * excitation.pace * cosine, -turn * excitation.pace * sine]
-    arguments, rates = [*arguments, excitation.angle], [*rates, excitation.pace]
-    return ca.jtimes(expression, ca.vertcat(*arguments), ca.vertcat(*rates))
+    return inner.excitation.along(expression, ca.vertcat(*symbols), ca.vertcat(*rates))
