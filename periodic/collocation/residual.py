@@ -7,6 +7,7 @@ eliminated point by point through the algebraic rows.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -35,28 +36,85 @@ class Rows:
         return float(np.abs(self.columns[:, :, 0]).max())
 
 
-def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> LinearisationLike:
+@dataclass(frozen=True, eq=False)
+class Evaluated:
+    """Residual and derivatives at the collocation points of an orbit, as `LinearisationLike` has them.
+
+    All at once, interval after interval, when one of these is asked for; or of some intervals, where all of
+    them would take too much memory.
+    """
+
+    system: System
+    orbit: Orbit
+    free: tuple[int, ...]
+
+    def part(self, intervals: slice) -> LinearisationLike:
+        """Return them for the points of consecutive intervals."""
+        system, orbit, (count, ncol, n) = self.system, self.orbit, self.orbit.stages.shape
+        begin, end, _ = intervals.indices(count)
+        tau, stages = self._places
+        rate = orbit.knot_rates[begin:end, 1:].reshape(-1, n)
+        line = linearise(
+            system,
+            rate,
+            stages[begin:end].reshape(-1, n),
+            orbit.algebraic[begin:end].reshape(len(rate), orbit.algebraic.shape[2]),
+            tau[begin:end].ravel(),
+            orbit.parameter,
+            np.repeat(sides(system, orbit.mesh)[begin:end], ncol, axis=0),
+            self.free,
+        )
+        exact = orbit.mesh.exact_ends
+        ends = (exact[(exact >= begin) & (exact < end)] - begin) * ncol + ncol - 1
+        if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
+            if line.d_state.shape[1:] != (line.residual.shape[1], n):
+                return line  # it is refused where it is condensed
+            late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate[ends])
+            line.residual[ends] += BEFORE * late
+        return line
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        return _before_kinks(self.orbit, self.orbit.knot_rates[:, 1:])
+
+    @cached_property
+    def _whole(self) -> LinearisationLike:
+        return self.part(slice(None))
+
+    @property
+    def residual(self) -> Array:
+        """R, shape (points, n+m)."""
+        return self._whole.residual
+
+    @property
+    def d_rate(self) -> Array:
+        """Its derivative in x', shape (points, n+m, n)."""
+        return self._whole.d_rate
+
+    @property
+    def d_state(self) -> Array:
+        """Its derivative in x, shape (points, n+m, n)."""
+        return self._whole.d_state
+
+    @property
+    def d_algebraic(self) -> Array:
+        """Its derivative in z, shape (points, n+m, m)."""
+        return self._whole.d_algebraic
+
+    @property
+    def d_phase(self) -> Array:
+        """Its derivative in tau, shape (points, n+m)."""
+        return self._whole.d_phase
+
+    @property
+    def d_parameter(self) -> Array:
+        """Its derivatives in the free parameters, shape (points, n+m, q)."""
+        return self._whole.d_parameter
+
+
+def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Evaluated:
     """Return residual and derivatives at the collocation points of an orbit, interval by interval."""
-    count, ncol, n = orbit.stages.shape
-    rate = orbit.knot_rates[:, 1:]
-    tau, stages = _before_kinks(orbit, rate)
-    line = linearise(
-        system,
-        rate.reshape(-1, n),
-        stages.reshape(-1, n),
-        orbit.algebraic.reshape(count * ncol, orbit.algebraic.shape[2]),
-        tau.ravel(),
-        orbit.parameter,
-        np.repeat(sides(system, orbit.mesh), ncol, axis=0),
-        free,
-    )
-    if len(orbit.mesh.exact_ends) and orbit.mesh.scheme.points[-1] == 1.0:
-        ends = orbit.mesh.exact_ends * ncol + ncol - 1
-        if line.d_state.shape[1:] != (line.residual.shape[1], n):
-            return line  # it is refused where it is condensed
-        late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate.reshape(-1, n)[ends])
-        line.residual[ends] += BEFORE * late
-    return line
+    return Evaluated(system, orbit, free)
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:

@@ -91,19 +91,34 @@ class Correction:
 
 
 @dataclass(frozen=True)
-class Step:
-    """One Newton increment from the operator's orbit, with the kernel of the same linearisation.
+class Way:
+    """One Newton increment from an orbit, with the kernel of the same linearisation.
 
-    size is the largest relative increment for the convergence test, length that for damping, and stretch the
-    largest change of the distance between two event nodes, relative to it where that is less than 1 rad.
+    residual is the largest one at that orbit, size the largest relative increment for the convergence test,
+    length that for damping, and stretch the largest change of the distance between two event nodes, relative
+    to it where that is less than 1 rad.
     """
 
-    operator: Operator
+    orbit: Orbit
+    residual: float
     increment: Increment
     kernel: Increment | None
     size: float
     length: float
     stretch: float
+
+
+@dataclass(frozen=True)
+class Step(Way):
+    """The same with the linearised equations, which take much memory where systems are large."""
+
+    operator: Operator
+
+    @property
+    def way(self) -> Way:
+        """Without them."""
+        known = (self.orbit, self.residual, self.increment, self.kernel)
+        return Way(*known, self.size, self.length, self.stretch)
 
 
 def correct(
@@ -126,27 +141,26 @@ def correct(
     nothing = np.full((1, n, n), np.nan)
     if last is None:
         return Correction(orbit, outcome, found.iterations, np.inf, np.inf, nothing, None)
-    size, fundamental = last.size, nothing
+    size, fundamental, operator = last.size, nothing, None
     if outcome is Outcome.CONVERGED:
         try:
-            last = equations.closer(orbit, last)
-            orbit = orbit if last is found.last else last.operator.orbit
-            fundamental = last.operator.fundamental
+            orbit, last, operator = equations.closer(orbit, last, found.operator)
+            fundamental = operator.fundamental
         except FAILURES as error:
             outcome = outcome_of(error)
-    residual = last.operator.residual
-    ended = (outcome, found.iterations, size, residual, fundamental, last.kernel, last.operator)
+    ended = (outcome, found.iterations, size, last.residual, fundamental, last.kernel, operator)
     return Correction(orbit, *ended)
 
 
 @dataclass(frozen=True)
 class _Iterated:
-    """The last iterate, how the iteration ended, the last step taken."""
+    """The last iterate, how the iteration ended, the last step taken, and its equations if they will do."""
 
     orbit: Orbit
     outcome: Outcome
     iterations: int
-    last: Step | None
+    last: Way | None
+    operator: Operator | None = None
 
 
 @dataclass(frozen=True)
@@ -165,10 +179,11 @@ class _Equations:
 
     def iterated(self, guess: Orbit) -> _Iterated:
         """Iterate until an increment is small, in steps that are cut where they make things worse."""
-        orbit, last, factor, settings = guess, None, 1.0, self.settings
+        orbit, factor, settings = guess, 1.0, self.settings
+        last: Way | None = None
         failure = Outcome.TOO_MANY
         for iteration in range(1, settings.max_iterations + 1):
-            trial: Step | None = None
+            trial: Step | None = None  # the equations of the last one go before those of the next are made
             try:
                 trial = self.step(orbit)
             except FAILURES as error:
@@ -180,28 +195,29 @@ class _Equations:
                 continue
             if trial is None:
                 return _Iterated(orbit, failure, iteration, last)
-            last, factor = trial, settings.max_change / max(trial.length, settings.max_change)
+            last, factor = trial.way, settings.max_change / max(trial.length, settings.max_change)
             orbit = self._moved(last, factor)
             if last.size < settings.tolerance:
                 outcome = Outcome.CONVERGED if in_order(orbit) else Outcome.EVENTS_CROSSED
-                return _Iterated(orbit, outcome, iteration, last)
+                close = max(last.length, last.stretch) <= settings.close * settings.tolerance
+                return _Iterated(orbit, outcome, iteration, last, trial.operator if close else None)
         return _Iterated(orbit, Outcome.TOO_MANY, settings.max_iterations, last)
 
-    def closer(self, orbit: Orbit, last: Step) -> Step:
-        """Return the linearisation at an orbit, or the one that led to it where that is as good.
+    def closer(self, orbit: Orbit, last: Way, operator: Operator | None) -> tuple[Orbit, Way, Operator]:
+        """Return the linearisation at an orbit, or the one that led to it where that is there and as good.
 
         It is at an orbit still closer where a contact is so short that its length is not known well enough.
         """
+        if operator is not None:
+            return orbit, last, operator
         close = self.settings.close * self.settings.tolerance
-        if max(last.length, last.stretch) <= close:
-            return last
         step = self.step(orbit)
         while close < step.stretch < last.stretch / 4:
-            last, step = step, self.step(self._moved(step, 1.0))
-        return step
+            last, step = step.way, self.step(self._moved(step, 1.0))
+        return step.orbit, step.way, step.operator
 
-    def _moved(self, step: Step, factor: float) -> Orbit:
-        return moved(self.system, self.free, step.operator.orbit, step.increment, factor)
+    def _moved(self, way: Way, factor: float) -> Orbit:
+        return moved(self.system, self.free, way.orbit, way.increment, factor)
 
 
 def newton_step(
@@ -219,8 +235,9 @@ def newton_step(
     right = np.eye(1 + len(rows))[:, [0, -1]] if rows else np.ones((1, 1))
     found = operator.solve(rows, right)
     size, length = sizes(system, operator, found[0], free, settings)
-    stretch = stretched(orbit, found[0])
-    return Step(operator, found[0], found[1] if rows else None, max(size, stretch**2), length, stretch)
+    kernel, stretch = found[1] if rows else None, stretched(orbit, found[0])
+    size = max(size, stretch**2)
+    return Step(orbit, operator.residual, found[0], kernel, size, length, stretch, operator)
 
 
 def stretched(orbit: Orbit, increment: Increment) -> float:

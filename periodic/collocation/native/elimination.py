@@ -7,11 +7,13 @@ full ones are BLAS's.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from periodic.collocation.residual import Evaluated
 from periodic.orbit.native.arrays import plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -27,6 +29,9 @@ FULL = 0.25
 """... full where more than this part of their elements is not 0."""
 
 ELIMINATION = "periodic.collocation.native:elimination.c"
+
+MEMORY = 16e6
+"""Bytes of derivatives that are held at a time."""
 
 _Address = ctypes.c_char * 0
 
@@ -49,28 +54,42 @@ class Routines:
         Raises as `periodic.collocation.condensation.condense`, and ValueError for derivatives of a wrong
         shape.
         """
-        (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
-        k, p = len(orbit.phases), line.d_parameter.shape[2]
-        w = 1 + n + k + p
-        _check(line, count * ncol, n, m)
-        step, stages = np.empty((count, n, w)), np.empty((count, ncol, n, w))
-        algebraic, residual = np.empty((count, ncol, m, w + n)), np.empty(1)
+        (count, ncol, n), m, residual = orbit.stages.shape, orbit.algebraic.shape[2], 0.0
+        step: Array | None = None
+        for part, own in _parts(orbit, line):
+            k, p = len(orbit.phases), own.d_parameter.shape[2]
+            w = 1 + n + k + p
+            if step is None:
+                step, stages = np.empty((count, n, w)), np.empty((count, ncol, n, w))
+                algebraic = np.empty((count, ncol, m, w + n))
+            _check(own, (part.stop - part.start) * ncol, n, m)
+            into = step[part], stages[part], algebraic[part]
+            residual = max(residual, self._condense(orbit, part, own, into))
+        assert step is not None
+        return step, stages, algebraic, residual
+
+    def _condense(
+        self, orbit: Orbit, part: slice, line: LinearisationLike, into: tuple[Array, Array, Array]
+    ) -> float:
+        """Condense some intervals; return their largest residual."""
+        (ncol, n), m, residual = orbit.stages.shape[1:], orbit.algebraic.shape[2], np.empty(1)
+        w, nodes = into[0].shape[2], orbit.nodes[part.start : part.stop + 1]
         room = (ncol * n + m) * (w + n) + m * (m + w + n) + ncol * n * (ncol * n + w + 1) + 3 * ncol**2
         grid, scheme = orbit.grid, orbit.mesh.scheme
         code = self.library.condense(
-            *(count, ncol, n, m, k, p),
+            *(part.stop - part.start, ncol, n, m, len(orbit.phases), line.d_parameter.shape[2]),
             *_given(line.residual, line.d_rate, line.d_state),
             *_given(line.d_algebraic, line.d_phase, line.d_parameter),
-            *_given(grid.width, grid.left_gradient, grid.width_gradient),
+            *_given(grid.width[part], grid.left_gradient[part], grid.width_gradient[part]),
             *_given(scheme.points, scheme.stage_rates, scheme.end),
-            *_given(orbit.knots, orbit.knot_rates, orbit.nodes),
-            *_given(step, stages, algebraic, residual, np.empty(room), np.empty(4 * n)),
+            *_given(orbit.knots[part], orbit.knot_rates[part], nodes),
+            *_given(*into, residual, np.empty(room), np.empty(4 * n)),
         )
         if code == NOT_FINITE:
             raise FloatingPointError("the residual or a derivative is not finite")
         if code == SINGULAR:
             raise np.linalg.LinAlgError("a local matrix is singular")
-        return step, stages, algebraic, float(residual[0])
+        return float(residual[0])
 
     def chain(self, step: Array) -> Array:
         """Return the affine maps from the first mesh point to all, see `periodic.linear.bordering.chain`."""
@@ -110,7 +129,20 @@ def routines(system: System, line: LinearisationLike) -> Routines | None:
 
 def _full(line: LinearisationLike) -> bool:
     """Whether the derivatives in the states at the first point are mostly other than 0."""
-    return bool(np.count_nonzero(line.d_state[:1]) > FULL * line.d_state[:1].size)
+    first = line.part(slice(0, 1)) if isinstance(line, Evaluated) else line
+    return bool(np.count_nonzero(first.d_state[:1]) > FULL * first.d_state[:1].size)
+
+
+def _parts(orbit: Orbit, line: LinearisationLike) -> Iterator[tuple[slice, LinearisationLike]]:
+    """Yield intervals and their equations: so many at a time that derivatives stay below MEMORY."""
+    (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
+    if not isinstance(line, Evaluated):
+        yield slice(0, count), line
+        return
+    each = max(1, int(MEMORY / (8 * ncol * (n + m) * (2 * n + m + 3))))
+    for begin in range(0, count, each):
+        part = slice(begin, min(begin + each, count))
+        yield part, line.part(part)
 
 
 @cache
