@@ -8,6 +8,7 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from periodic.linear.unknowns import Increment
@@ -23,6 +24,10 @@ ROUNDING = 1e-10
 
 LOST = 0.1
 """Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+
+
+DEPENDENT = 1e8
+"""Left eigenvectors as long as this, of right ones of unit length, are those of dependent ones."""
 
 
 class Stability(Enum):
@@ -128,16 +133,46 @@ class Spectrum:
     def _pair(self, k: int) -> Pair:
         mu, solution = complex(self.multipliers[k]), self.fundamental @ self.vectors[:, k]
         turned = float(np.angle((solution[:-1].conj() * solution[1:]).sum(axis=1)).sum())
-        left = None if self._left is None else self._left[k] * np.abs(solution).max()
+        left = self._left(k)
+        left = None if left is None else left * np.abs(solution).max()
         return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned, left, k)
 
     @cached_property
-    def _left(self) -> Complex | None:
-        """Left eigenvectors, one a row, whose products with the right ones are 1."""
+    def _inverse(self) -> Complex | None:
+        """Left eigenvectors, one a row, with products of 1 with the right ones; None where some coincide."""
         try:
-            return np.linalg.inv(self.vectors).astype(np.complex128)
+            found = np.linalg.inv(self.vectors).astype(np.complex128)
         except np.linalg.LinAlgError:
             return None
+        return found if np.abs(found).max() < DEPENDENT else None
+
+    @cached_property
+    def _triangle(self) -> tuple[Complex, Complex]:
+        """M = Q T Q* with T upper triangular."""
+        found = scipy.linalg.schur(self.monodromy, output="complex")
+        return found[0].astype(np.complex128), found[1].astype(np.complex128)
+
+    def _left(self, k: int) -> Complex | None:
+        """The left eigenvector whose product with the right one is 1; None where these coincide with others.
+
+        By itself where the others are of no use: multipliers that all but vanish have no eigenvectors of
+        their own. In T it follows from its own entry on.
+        """
+        if self._inverse is not None:
+            return np.asarray(self._inverse[k])
+        triangle, turned = self._triangle
+        values = np.diag(triangle)
+        at = int(np.abs(values - self.multipliers[k]).argmin())
+        rest = triangle[at + 1 :, at + 1 :] - values[at] * np.eye(len(values) - at - 1)
+        found = np.zeros(len(values), dtype=complex)
+        found[at] = 1.0
+        try:
+            found[at + 1 :] = scipy.linalg.solve_triangular(rest, -triangle[at, at + 1 :], trans="T")
+        except np.linalg.LinAlgError:
+            return None
+        found = found @ turned.conj().T
+        product = found @ self.vectors[:, k]
+        return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
 
     def apart(self, monodromy: Array) -> float:
         """Distance from another spectrum in the sums of first and second powers, over the largest multiplier.
