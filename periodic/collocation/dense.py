@@ -171,6 +171,17 @@ class Dense:
             sides[start:] = direction
         return sides
 
+    def size(self, switch: int) -> float:
+        """How far the states take a switch: the largest s_x . x along the orbit."""
+        orbit = self.orbit
+        states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
+        slope = self.system.switch_gradient(states, tau, orbit.parameter)[0][:, switch]
+        return float(np.abs(np.einsum("pn,pn->p", slope, states)).max())
+
+    def flat(self, switch: int, part: float) -> bool:
+        """Whether a switch is the same all along the orbit but for a part of its size."""
+        return float(np.ptp(self.knots[:, :, switch])) < part * self.size(switch)
+
     def side(self, switch: int) -> int:
         """The side of its level on which a switch goes farthest."""
         values = np.nan_to_num(self.knots[:, :, switch])

@@ -27,7 +27,6 @@ from periodic.correction.meshes import Refinement, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
-from periodic.linear.bordering import GROWTH
 from periodic.linear.operator import LinearSolver, Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import at_rest, transfer
@@ -35,7 +34,7 @@ from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.product import multipliers
+from periodic.stability.product import spectrum_of
 from periodic.stability.spectrum import Spectrum
 from periodic.system import System
 
@@ -224,10 +223,7 @@ class Collocation(Discretisation):
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
-        fundamental, steps = correction.fundamental, getattr(correction.operator, "steps", None)
-        if steps is None or not np.abs(fundamental).max() > GROWTH:
-            return Spectrum(fundamental, trivial)
-        return Spectrum(fundamental, trivial, known_better=multipliers(steps))
+        return spectrum_of(correction.fundamental, correction.operator, trivial)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""

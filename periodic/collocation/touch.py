@@ -41,18 +41,27 @@ ALIKE = 1e-3
 """Excursions whose lengths differ by this part end at once."""
 
 
+RIPPLES = 2.0
+"""How far short of its level a switch is held that is the same all along the orbit, in its ripples."""
+
+FLAT = 1e-5
+"""A switch is the same all along an orbit where it changes by no more, as a part of its size."""
+
+
 @dataclass(frozen=True)
 class Clearance:
-    """Side condition: the extremum of a switch nearest a phase lies on its level, min of side * s = 0."""
+    """Side condition: the extremum of a switch nearest a phase lies at `level`, min of side * s."""
 
     switch: int
     side: int
     phase: float
+    level: float = 0.0
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
         at = Dense(system, orbit).nearest(self.switch, self.side, self.phase)
-        return clearance(system, orbit, at, self.side, free)
+        row = clearance(system, orbit, at, self.side, free)
+        return Row(row.value - self.level, row.nodes, row.outer, row.stages)
 
 
 def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple[int, ...]) -> Row:
@@ -103,14 +112,15 @@ class Birth:
     side: int
     part: float
     shortest: float
+    ripple: float = 0.0
 
     touches = True
     final = True
 
     @property
     def condition(self) -> Clearance:
-        """The touch."""
-        return Clearance(self.extremum.switch, self.side, self.extremum.phase)
+        """The touch; of all of the orbit at once just before it, where it still has a tangent."""
+        return Clearance(self.extremum.switch, self.side, self.extremum.phase, self.ripple)
 
     @property
     def name(self) -> str:
@@ -118,8 +128,17 @@ class Birth:
         return f"{self.system.switches[self.extremum.switch].name} is touched"
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
-        """Yield meshes with a short excursion where the switch touches, and where others do by symmetry."""
-        at = Dense(system, orbit).nearest(self.extremum.switch, self.side, self.extremum.phase)
+        """Yield meshes with a short excursion where the switch touches, and where others do by symmetry.
+
+        Where all of the orbit touches at once, as a circle does, it goes beyond at once, on the same mesh.
+        """
+        dense, k = Dense(system, orbit), self.extremum.switch
+        at = dense.nearest(k, self.side, self.extremum.phase)
+        if self.ripple:
+            for depth in SHORT:
+                held = Clearance(k, -self.side, at.phase, depth * dense.size(k))
+                yield Beyond(orbit.mesh, orbit.phases, held, False)
+            return
         others = [(e, side) for e, side in touching(system, orbit) if not _same(e, at, orbit.mesh.period)]
         for length in SHORT:
             for touches in ([(at, self.side), *others], [(at, self.side)])[: 2 if others else 1]:
@@ -289,5 +308,6 @@ def _birth(system: System, before: Orbit, after: Orbit, shortest: float) -> Birt
             side = int(sides[extremum.interval])
             nearest = base.nearest(k, side, extremum.phase).value
             gone = abs(nearest) / (abs(nearest) + abs(extremum.value))
-            found.append(Birth(system, extremum, side, float(gone), shortest))
+            ripple = RIPPLES * float(np.ptp(base.knots[:, :, k])) if base.flat(k, FLAT) else 0.0
+            found.append(Birth(system, extremum, side, float(gone), shortest, ripple))
     return min(found, key=lambda birth: birth.part, default=None)

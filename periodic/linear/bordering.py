@@ -91,11 +91,16 @@ class Chain:
         return chain(self.condensed)
 
     @property
+    def _joints(self) -> NDArray[np.int_]:
+        """The mesh points that others follow from, and the last one."""
+        return np.append(np.unique(self.condensed.origin), len(self.condensed.origin))
+
+    @property
     def steps(self) -> Array:
-        """How perturbations pass each interval, shape (N, n, n)."""
+        """How perturbations pass from joint to joint, each interval as a rule, shape (N, n, n)."""
         perturbed: Array | None = getattr(self.condensed, "perturbed", None)
         step, n = self.condensed.step, self.condensed.step.shape[1]
-        return step[:, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
+        return step[self._joints[1:] - 1, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
 
     @cached_property
     def fundamental(self) -> Array:
@@ -120,7 +125,7 @@ class Chain:
         """
         orbit, n, count = self.orbit, self.maps.shape[1], len(self.own)
         growth = np.abs(self.maps[:, :, 1 : 1 + n]).max()
-        if growth > GROWTH and np.array_equal(self.condensed.origin, np.arange(len(self.maps) - 1)):
+        if growth > GROWTH:
             maps, top = self._from_both_ends()
         else:
             maps, top = self.maps, self.maps[-1].copy()
@@ -138,12 +143,18 @@ class Chain:
 
     def _from_both_ends(self) -> tuple[Array, Array]:
         """The mesh points from both ends, and the equations of these: intervals and periodicity."""
-        reduced, orbit = reduce(self.condensed.step), self.orbit
-        n = orbit.nodes.shape[1]
+        joints, step, origin, orbit = self._joints, self.condensed.step, self.condensed.origin, self.orbit
+        reduced, n = reduce(step[joints[1:] - 1]), orbit.nodes.shape[1]
+        maps = np.empty((len(step) + 1, *reduced.maps.shape[1:]))
+        maps[joints] = reduced.maps
+        inner = np.setdiff1d(np.arange(1, len(step)), joints)
+        maps[inner] = step[inner - 1, :, 1 : 1 + n] @ maps[origin[inner - 1]]
+        maps[inner, :, 0] += step[inner - 1, :, 0]
+        maps[inner, :, 1 + 2 * n :] += step[inner - 1, :, 1 + n :]
         closed = np.zeros((n, reduced.maps.shape[2]))
         closed[:, 0] = orbit.nodes[-1] - orbit.nodes[0]
         closed[:, 1 : 1 + n], closed[:, 1 + n : 1 + 2 * n] = -np.eye(n), np.eye(n)
-        return reduced.maps, np.concatenate([reduced.ends, closed])
+        return maps, np.concatenate([reduced.ends, closed])
 
     def _recovered(self, maps: Array, constant: float, found: Array) -> Increment:
         """The increment of the ends and dy."""

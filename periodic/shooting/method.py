@@ -28,6 +28,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
 from periodic.shooting.flow import condense
+from periodic.stability.product import spectrum_of
 from periodic.stability.spectrum import Spectrum
 from periodic.system import Flowing, System, resets_of
 
@@ -124,6 +125,10 @@ class Shooting(Discretisation):
             return Chain(condense(_flowing(system), orbit, free, self.segments, tolerance))
 
         return deferred(tighter, problem, correction.orbit, tangent, spectrum)
+
+    def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
+        """Return the multipliers, where motions grow by many decades from the segments one by one."""
+        return spectrum_of(correction.fundamental, correction.operator, trivial, self.tolerance)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say how many intervals interpolate the orbit."""

@@ -14,7 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
 
 APART = np.log(10.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
@@ -25,13 +27,18 @@ PERIODS = 16
 SETTLED = 1e-11
 """What is left below the blocks when the columns span the motions in their order."""
 
+ROUNDING = float(np.finfo(float).eps)
 
 TINY = float(np.finfo(float).tiny)
 """What grows by less in an interval is gone, as where a motion begins to stick."""
 
 
-def multipliers(steps: Array) -> NDArray[np.complex128]:
-    """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first."""
+def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]:
+    """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first.
+
+    known: the relative error of the steps. Eigenvalues are 0 whose motions a step makes smaller than that:
+    of them the steps say nothing more.
+    """
     n = steps.shape[1]
     basis = np.eye(n)
     for _ in range(PERIODS):
@@ -45,7 +52,17 @@ def multipliers(steps: Array) -> NDArray[np.complex128]:
         blocks = np.split(np.arange(n), cuts)
         if all(np.abs(turn[cut:, :cut]).max() < SETTLED for cut in cuts):
             break
-    return np.concatenate([_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks])
+    lost = (sizes < known * sizes.max(axis=1, keepdims=True)).any(axis=0)
+    found = [_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks]
+    return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])
+
+
+def spectrum_of(fundamental: Array, operator: object, trivial: int, known: float = ROUNDING) -> Spectrum:
+    """Return the spectrum of an orbit, from the steps of its operator where motions grow by many decades."""
+    steps = getattr(operator, "steps", None)
+    if steps is None or not np.abs(fundamental).max() > GROWTH:
+        return Spectrum(fundamental, trivial)
+    return Spectrum(fundamental, trivial, known_better=multipliers(steps, known))
 
 
 def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:

@@ -28,6 +28,7 @@ from support.traces import (
 
 import periodic as per
 import symbolic as sym
+from periodic.stability.product import multipliers
 from periodic.correction.newton import NewtonSettings, correct
 from periodic.correction.outcome import Outcome
 from periodic.orbit.construction import transfer
@@ -286,3 +287,30 @@ def test_bad_input() -> None:
         per.Shooting(tolerance=1.0)
     with pytest.raises(ValueError, match="^tolerance of Shooting is 1e-09; for orbits to 1e-07 it"):
         per.trace(linear_system(), "Omega", (0.7, 0.8), tol=1e-7, method=per.Shooting(tolerance=1e-9))
+
+
+def test_segments_carry_what_grows_by_many_decades() -> None:
+    """Assert orbit and both multipliers, e**63 and e**-63, beside collocation."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p, w: {"x": x.v, "v": 100 * x.x - 0.1 * x.x**3 + w.cos},
+            {"x": 0.0, "v": 0.0},
+            {"W": 1.0},
+            frequency="W",
+        )
+    )
+    expected = per.trace(system, "W", (1.0, 1.05))[0]
+    for segments in (8, 20):
+        branch = per.trace(system, "W", (1.0, 1.05), method=per.Shooting(segments=segments))
+        assert "bound reached" in str(branch.stop)
+        assert branch[0].maximum["x"] == pytest.approx(expected.maximum["x"], rel=1e-9)
+        large, least = np.abs(branch[0].multipliers)
+        assert large == pytest.approx(np.abs(expected.multipliers[0]), rel=1e-6)
+        assert large * least == pytest.approx(1.0, rel=1e-6)
+
+
+def test_multipliers_that_steps_do_not_carry() -> None:
+    """Assert that a multiplier is 0 of which an error of the steps leaves nothing, and kept where it does."""
+    steps = np.array([np.diag([1e7, 1e-7]), np.diag([10.0, 0.1])])
+    assert multipliers(steps, 1e-15) == pytest.approx([1e8, 1e-8])
+    assert multipliers(steps, 1e-12) == pytest.approx([1e8, 0.0])
