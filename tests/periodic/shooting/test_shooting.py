@@ -28,13 +28,13 @@ from support.traces import (
 
 import periodic as per
 import symbolic as sym
-from periodic.stability.product import multipliers
 from periodic.correction.newton import NewtonSettings, correct
 from periodic.correction.outcome import Outcome
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Array
 from periodic.shooting import flow as shooting
+from periodic.stability.product import multipliers
 from periodic.system import index_of
 from symbolic.equations.assembly import Assembly
 
