@@ -12,6 +12,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from periodic.checks import whole
+from periodic.display.meter import Advance, meter
 from periodic.maps.adaptive import Adaptive
 from periodic.maps.cell import Cell, Outcome
 from periodic.maps.chunks import computed
@@ -62,10 +63,16 @@ class Run:
     def through(self, execution: Execution) -> None:
         """Compute all cells that are not known yet."""
         known = len(self.found)
+        with meter("mapping", "cells", self.plan.total) if self.progress is None else nullcontext() as show:
+            self._through(execution, known, show or (lambda steps, said: None))
+
+    def _through(self, execution: Execution, known: int, show: Advance) -> None:
+        show(known, "")
         for chunks in self.plan.rounds(self.found, self.size):
             missing = [tuple(cell for cell in chunk if cell not in self.found) for chunk in chunks]
             for outcomes in execution.outcomes([chunk for chunk in missing if chunk]):
                 self._keep(outcomes)
+                show(len(outcomes), "")
                 if self.progress is not None:
                     self.progress(self._progress(known))
 

@@ -12,8 +12,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.display.tables import paragraph
 from periodic.orbit.layout import Layout, Source
 from periodic.orbit.mesh import Grid, Mesh
+from periodic.orbit.overview import orbit_html
 from periodic.orbit.scheme import Array
 from periodic.orbit.signal import Signal
 
@@ -60,6 +62,12 @@ class Orbit:
         if self.equilibrium:
             return f"Orbit(equilibrium, {self.nodes.shape[1]} states)"
         return f"Orbit({self.mesh.ntst} intervals, {self.nodes.shape[1]} states, {self.periods} periods)"
+
+    def _repr_html_(self) -> str:
+        if self.equilibrium or self.layout is None:
+            return paragraph(repr(self))
+        told = f"{self!r}: period {self.period:.9g} s, Omega {self.omega:.9g} rad/s"
+        return orbit_html(told, [self[name] for name in self.names], self.period)
 
     def __getitem__(self, name: str) -> Signal:
         """Return a signal in SI units over time in s.

@@ -14,6 +14,7 @@ from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
+from periodic.results.overview import branch_html
 from periodic.results.point import Point
 from periodic.results.record import Record
 
@@ -57,6 +58,9 @@ class Branch(Record):
 
     def __repr__(self) -> str:
         return f"Branch({self.parameter}, {len(self)} points, {self.stop})"
+
+    def _repr_html_(self) -> str:
+        return branch_html(self, self.stable_between, (repr(self), *self.remarks))
 
     def __len__(self) -> int:
         return len(self.points)

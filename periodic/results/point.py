@@ -13,9 +13,13 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
+from periodic.display.tables import paragraph
 from periodic.orbit.extrema import extrema
 from periodic.orbit.orbit import Orbit
 from periodic.stability.spectrum import CONSERVED, LOST, ROUNDING, without_trivial
+
+SHOWN = 8
+"""Multipliers that a notebook shows."""
 
 NOISE = 30.0
 """How much larger than its estimate the error of a small multiplier may be."""
@@ -82,6 +86,11 @@ class Point:
     def __repr__(self) -> str:
         kind = " ".join(filter(None, [self.label.value, self.event, "stable" if self.stable else "unstable"]))
         return f"Point({self.parameter:.12g}, {kind})"
+
+    def _repr_html_(self) -> str:
+        shown = ", ".join(f"{m:.5g}" for m in self.multipliers[:SHOWN])
+        kind = "eigenvalues (1/s)" if self.equilibrium else "multipliers"
+        return paragraph(f"{self!r}, {kind} {shown}") + self.orbit._repr_html_()
 
     @property
     def stable(self) -> bool:

@@ -31,7 +31,10 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a trace; `branch` is what was traced until then, for `guess=` to take up."""
 
     def __init__(self, branch: Branch) -> None:
-        super().__init__(f"interrupted after {len(branch)} points")
+        super().__init__(
+            f"interrupted after {len(branch)} points, which are the `branch` of this exception: "
+            f"`import sys; sys.last_value.branch` where nothing caught it"
+        )
         self.branch = branch
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import cache
 from importlib import metadata
@@ -16,6 +16,7 @@ from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.tolerance import Accuracy, Tolerance
+from periodic.display.meter import Advance, meter
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.branch import Branch
@@ -185,15 +186,28 @@ def _collected(
     journal, clock = ready.method.watch.journal, time.perf_counter()
     keeping = nullcontext() if journal is None else Journal(Path(journal), empty)
     interrupted = False
-    with keeping as kept, threadpool_limits(limits=1, user_api="blas"):
+    with keeping as kept, threadpool_limits(limits=1, user_api="blas"), _shown(ready, empty) as show:
         for run, points in zip(runs, generators, strict=True):
-            interrupted = _exhaust(run, points, kept)
+            interrupted = _exhaust(run, _each(points, show), kept)
             if interrupted or (run.stop is not None and run.stop.reason in ENDS_ALL):
                 break
     branch = _joined(empty, runs, time.perf_counter() - clock, before)
     if interrupted:
         raise Interrupted(branch)
     return branch
+
+
+def _shown(ready: Setup, empty: Branch) -> AbstractContextManager[Advance]:
+    """How far the trace is, for whoever looks on; the user's own progress in its place."""
+    if ready.method.watch.progress is not None:
+        return nullcontext(lambda steps, said: None)
+    return meter(f"tracing over {empty.parameter}", "points")
+
+
+def _each(points: Iterator[Point], show: Advance) -> Iterator[Point]:
+    for point in points:
+        show(1, f"at {point.parameter:.6g}")
+        yield point
 
 
 def _exhaust(run: Continuation, points: Iterator[Point], journal: Journal | None) -> bool:

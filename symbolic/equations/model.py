@@ -8,7 +8,9 @@ from typing import ClassVar
 
 from symbolic.checks import refusal, text, typed
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import Parameter
+from symbolic.tables import told
 
 PART = "Part, as symbolic.Mass(x, 1.0) is"
 
@@ -100,6 +102,17 @@ class Model:
         for part in parts:
             typed("part", part, Part, f"a {PART}")
         object.__setattr__(self, "parts", parts)
+
+    def __repr__(self) -> str:
+        return f"Model({told(type(part).__name__ for part in self.parts)})"
+
+    @property
+    def latex(self) -> str:
+        """The equations of motion, in SI units and time, as LaTeX for a mathematical display."""
+        return equations(self.parts)
+
+    def _repr_latex_(self) -> str:
+        return f"$$\n{self.latex}\n$$"
 
     def __add__(self, other: Part | Model) -> Model:
         if isinstance(other, Model):

@@ -34,6 +34,10 @@ class Variable:
     value: float = math.nan
     allowed: Interval = ANY
 
+    def __repr__(self) -> str:
+        value = f" = {self.value:.12g}" if math.isfinite(self.value) else ""
+        return f"Variable({self.name}{value}{' ' if self.unit else ''}{self.unit})"
+
     def check(self, value: float) -> None:
         """Refuse a value that the parameter may not have.
 
@@ -92,6 +96,9 @@ class Parameter:
         typed(f"unit of {self.name!r}", self.unit, str, "a text")
         object.__setattr__(self, "value", finite(f"parameter {self.name!r}", self.value))
         object.__setattr__(self, "symbol", ca.SX.sym(self.name))
+
+    def __repr__(self) -> str:
+        return f"Parameter({self.name!r}, {self.value!r})"
 
     def __reduce__(self) -> tuple[type[Parameter], tuple[str, float, str]]:
         return Parameter, (self.name, self.value, self.unit)  # its symbol is CasADi's and made anew
@@ -155,6 +162,9 @@ class Coordinate:
         if self.scale is not None:
             positive(f"scale of coordinate {self.name!r}", self.scale)
         object.__setattr__(self, "start", finite(f"start of coordinate {self.name!r}", self.start))
+
+    def __repr__(self) -> str:
+        return f"Coordinate({self.name!r})"
 
 
 def apart(field: str, one: Coordinate, other: Coordinate | None) -> None:

@@ -77,6 +77,11 @@ class Recipe:
         """The same with all states of its structures."""
         return replace(self, condense=False)
 
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts of the model."""
+        return self.model.parts if isinstance(self.model, Model) else (self.model,)
+
 
 @dataclass(frozen=True)
 class Valued:
@@ -92,6 +97,11 @@ class Valued:
     def whole(self) -> Valued:
         """The same with all states of its structures."""
         return replace(self, recipe=self.recipe.whole)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts of the model, with the values that they were given first."""
+        return self.recipe.parts
 
 
 LARGEST = 500

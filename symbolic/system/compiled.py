@@ -15,6 +15,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
+from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
@@ -23,6 +24,8 @@ from symbolic.kernels.kernel import Argument, batch, build, points, vector
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
+from symbolic.system.overview import overview
+from symbolic.tables import told
 
 SMALL = 16
 """Number of states up to which the engine iterates in C."""
@@ -44,7 +47,7 @@ class Linearisation:
     d_parameter: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CompiledSystem:
     """A model ready for `periodic`: see `periodic.system.System` for the protocol it fulfils.
 
@@ -94,6 +97,28 @@ class CompiledSystem:
     _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
     _addresses: dict[tuple[str, tuple[int, ...]], int] = field(default_factory=dict, init=False, repr=False)
     _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
+
+    def __repr__(self) -> str:
+        groups = {name: told(v.name for v in some) for name, some in self._groups.items() if some}
+        return f"CompiledSystem({'; '.join(f'{name} {names}' for name, names in groups.items())})"
+
+    @property
+    def _groups(self) -> dict[str, tuple[Variable, ...]]:
+        return {
+            "states": self.states,
+            "unknowns": self.algebraics,
+            "parameters": self.parameters,
+            "outputs": self.outputs,
+        }
+
+    def _repr_html_(self) -> str:
+        return overview(self.latex, self._groups, self.switches)
+
+    @property
+    def latex(self) -> str:
+        """The equations of the model that was compiled, SI, as LaTeX; empty where none is known."""
+        parts = getattr(self.recipe, "parts", None)
+        return equations(parts) if parts else ""
 
     def __reduce__(self) -> tuple[Callable[[], CompiledSystem], tuple[()]]:
         if self.recipe is None:

@@ -1,0 +1,65 @@
+"""How far long work is: a bar in a notebook or on a terminal, once it takes longer than a second."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+VARIABLE = "ORBITRACE_PROGRESS"
+"""The environment's choice, 0 or 1, in the place of whether somebody looks on."""
+
+DELAY = 1.0
+"""Seconds before anything is shown."""
+
+_SHOWN = ContextVar("shown", default=False)
+"""Whether a bar is shown already: what goes on within it has none."""
+
+Advance = Callable[[int, str], None]
+"""Told how many steps are done since the last call, and what to say of the last one."""
+
+
+def watched() -> bool:
+    """Return whether somebody looks on: in a notebook, or where standard error is a terminal."""
+    told = os.environ.get(VARIABLE, "").strip()
+    return told != "0" if told else "ipykernel" in sys.modules or sys.stderr.isatty()
+
+
+@contextmanager
+def meter(what: str, unit: str, total: int | None = None) -> Iterator[Advance]:
+    """Give what advances a bar; where nobody looks on it does nothing.
+
+    Parameters
+    ----------
+    what : str
+        What is done.
+    unit : str
+        What is counted.
+    total : int, optional
+        How many there will be.
+
+    Yields
+    ------
+    callable
+        Takes a number of steps, and what to say of the last.
+    """
+    if _SHOWN.get() or not watched():
+        yield lambda steps, said: None
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # a notebook without widgets gets a bar of text
+        from tqdm.auto import tqdm
+    shown = _SHOWN.set(True)
+    with tqdm(total=total, desc=what, unit=f" {unit}", delay=DELAY, leave=False) as bar:
+
+        def advance(steps: int, said: str) -> None:
+            bar.set_postfix_str(said, refresh=False)
+            bar.update(steps)
+
+        try:
+            yield advance
+        finally:
+            _SHOWN.reset(shown)

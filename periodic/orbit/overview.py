@@ -1,0 +1,45 @@
+"""What a notebook shows of an orbit: sizes of its signals, and a small picture of the first over a period."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from periodic.display.sketch import Line, sketch
+from periodic.display.tables import beside, paragraph, table, with_unit
+from periodic.orbit.signal import Signal
+
+SAMPLES = 400
+"""Times at which the signals are read."""
+
+ROWS = 12
+"""Signals that are told of."""
+
+
+def orbit_html(said: str, signals: Sequence[Signal], period: float) -> str:
+    """Return an orbit as HTML.
+
+    Parameters
+    ----------
+    said : str
+        A line about it.
+    signals : sequence of Signal
+        Its states and unknowns.
+    period : float
+        Its period in s.
+
+    Returns
+    -------
+    str
+        The line, a table of least and largest values, and a picture.
+    """
+    times = np.linspace(0.0, period, SAMPLES)
+    read = [(signal, signal(times)) for signal in signals[:ROWS]]
+    rows = [
+        [with_unit(signal.name, signal.unit), *(f"{v:.6g}" for v in (y.min(), y.max(), np.ptp(y)))]
+        for signal, y in read
+    ]
+    first, values = read[0]
+    picture = sketch([Line(times, values)], [], "t (s)", with_unit(first.name, first.unit))
+    return paragraph(said) + beside(table(["", "least", "largest", "p-p"], rows), picture)

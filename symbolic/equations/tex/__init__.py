@@ -1,0 +1,1 @@
+"""Equations of motion in LaTeX, written from the expressions themselves."""

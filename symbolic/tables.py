@@ -1,0 +1,30 @@
+"""Tables and lists as notebooks and terminals show them."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Sequence
+
+MANY = 12
+"""Names of a list that are told, and rows of a table that are shown at once."""
+
+
+def told(names: Iterable[str]) -> str:
+    """Return names in a line, of many the first and how many there are."""
+    known = list(names)
+    shown = ", ".join(known[:MANY]) or "none"
+    return shown if len(known) <= MANY else f"{shown}, ... ({len(known)})"
+
+
+def table(headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> str:
+    """Return an HTML table under a title that folds up a long one; nothing for one without rows."""
+    if not rows:
+        return ""
+    head = "".join(f"<th style='text-align:left'>{html.escape(cell)}</th>" for cell in headings)
+    body = "".join(
+        "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(c)}</td>" for c in row) + "</tr>"
+        for row in rows
+    )
+    inner = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    opened = " open" if len(rows) <= MANY else ""
+    return f"<details{opened}><summary>{html.escape(title)} ({len(rows)})</summary>{inner}</details>"

@@ -1,0 +1,79 @@
+"""What a notebook shows of branches, points and orbits."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from support.traces import duffing, duffing_system
+
+import periodic as per
+from periodic.display.sketch import Line, Mark, sketch
+from periodic.display.tables import table
+
+
+def parsed(text: str) -> ElementTree.Element:
+    """HTML that is well-formed XML too."""
+    return ElementTree.fromstring(f"<all>{text}</all>")
+
+
+def test_branch() -> None:
+    """Assert a row for each special point, a picture with stable and unstable lines, and the stop."""
+    branch = duffing(at=(1.7,))
+    found = parsed(branch._repr_html_())
+    rows = [[cell.text for cell in row] for row in found.iter("tr")]
+    assert rows[0] == [None, "Omega (rad/s)", "x p-p (m)", "|mu| max", "stable"]
+    assert [row[0] for row in rows[1:]] == [point.label.value for point in branch.special_points]
+    lines = [line.get("stroke-dasharray") for line in found.iter("polyline")]
+    assert [dashes is not None for dashes in lines] == [False, True, False]
+    marks = [text.text for text in found.iter("text")]
+    assert marks.count("LP") == 2 and marks.count("UZ") == 3 and "EP" not in marks
+    assert [p.text for p in found.iter("p")] == [repr(branch)]
+
+
+def test_lines_join() -> None:
+    """Assert that stable and unstable lines end where the next begins, and that all points are there."""
+    found = parsed(duffing()._repr_html_())
+    lines = [str(line.get("points")).split() for line in found.iter("polyline")]
+    assert [a[-1] for a in lines[:-1]] == [b[0] for b in lines[1:]]
+    assert sum(map(len, lines)) - (len(lines) - 1) == len(duffing())
+
+
+def test_branch_without_points() -> None:
+    """Assert that what is left is why it ended."""
+    empty = replace(duffing(), points=())
+    found = parsed(empty._repr_html_())
+    assert not list(found.iter("svg")) and [p.text for p in found.iter("p")] == [repr(empty)]
+
+
+def test_point_and_orbit() -> None:
+    """Assert the sizes of each signal, and multipliers of the point."""
+    point = duffing()[10]
+    text = point._repr_html_()
+    assert text.endswith(point.orbit._repr_html_()) and f"{point.multipliers[0]:.5g}" in text
+    (row, *_) = [[cell.text for cell in row] for row in parsed(text).iter("tr")][1:]
+    assert row[0] == "x (m)" and float(str(row[3])) == pytest.approx(point.peak_to_peak("x"), rel=1e-3)
+
+
+def test_equilibria() -> None:
+    """Assert that a branch of equilibria is shown by its values."""
+    system = duffing_system(0.1, 1.0, 0.0)
+    branch = per.equilibria(system, "k", (0.5, 1.5), method=per.Equilibrium(frequency="Omega"))
+    headings = [cell.text for cell in parsed(branch._repr_html_()).iter("th")]
+    assert headings == [None, "k (N/m)", "x (m)", "Re lambda max (1/s)", "stable"]
+    assert "equilibrium" in branch[0]._repr_html_()
+
+
+def test_sketch_keeps_within_its_frame() -> None:
+    """Assert that points that are not finite are left out, a constant lies in the middle, names are text."""
+    x, y = np.array([0.0, 1.0, np.nan, 3.0]), np.array([2.0, 2.0, 2.0, 2.0])
+    text = sketch([Line(x, y)], [Mark(1.0, 2.0, "<b>")], "x & y", "up")
+    (line,) = parsed(text).iter("polyline")
+    assert len({pair.split(",")[1] for pair in str(line.get("points")).split()}) == 1
+    assert len(str(line.get("points")).split()) == 3 and "<b>" not in text
+    width = float(re.findall(r"viewBox='0 0 (\d+)", text)[0])
+    assert all(0 <= float(pair.split(",")[0]) <= width for pair in str(line.get("points")).split())
+    assert sketch([], [], "", "") == "" and table(["a"], []) == ""
