@@ -58,9 +58,9 @@ types: $(VENV)/.installed-dev ## Check the type hints
 layers: $(VENV)/.installed-dev ## Check which packages and rooms import which
 	$(BIN)/lint-imports --no-logo
 
-wheel: $(VENV)/.installed ## Build the wheel into dist/
-	$(BIN)/pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
-	@du -h --apparent-size dist/*.whl
+wheel: $(VENV)/.installed-dev ## Build the wheel and the sdist into dist/
+	$(BIN)/python -m build --outdir dist .
+	@du -h --apparent-size dist/*
 
 # Only the default environment: a VENV from outside may hold more than this project.
 clean: ## Remove the environment, caches and builds

@@ -17,16 +17,17 @@ import shlex
 import shutil
 import stat
 import subprocess
+import sys
 import sysconfig
 import tempfile
 from collections.abc import Iterator
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import platformdirs
 
-FLAGS = ("-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno")
-"""No option among them changes a result: no fast mathematics, no fused multiply-add."""
+from symbolic.kernels.built import FLAGS, built
 
 KEPT = 500
 """How many libraries are kept, of some 20 kB each; the ones longest unused go first."""
@@ -34,7 +35,7 @@ KEPT = 500
 LONGEST = 120.0
 """Seconds after which the compiler is stopped."""
 
-NONE = "no C compiler was found; install one, or set CC to its command"
+NONE = "no C compiler was found; install one (pip install 'orbitrace[cc]'), or set CC to its command"
 """What is said without a compiler."""
 
 _log = logging.getLogger(__name__)
@@ -47,9 +48,11 @@ class CompilerError(RuntimeError):
 
 
 def kept(source: str) -> ctypes.CDLL | None:
-    """Return the library of a source if it was made before, in this run or an earlier one."""
-    if source not in _loaded and compiler() is not None:
-        found = _from_cache(_key(source))
+    """Return the library of a source if it was made before: with the package, in this run or another."""
+    if source not in _loaded:
+        found = built(source)
+        if found is None and compiler() is not None:
+            found = _from_cache(_key(source))
         if found is not None:
             _loaded[source] = found
     return _loaded.get(source)
@@ -64,7 +67,7 @@ def library(source: str) -> ctypes.CDLL:
 
 def attempted(source: str) -> ctypes.CDLL | None:
     """Return the library of a C source, or None without a compiler or, with one warning, where it fails."""
-    if compiler() is None or source in _failed:
+    if source in _failed or (compiler() is None and kept(source) is None):
         return None
     try:
         return library(source)
@@ -84,10 +87,11 @@ def forget() -> None:
 def compiler() -> tuple[tuple[str, ...], str] | None:
     """Return the C compiler's command and version, or None without a compiler.
 
-    The environment's CC if it names one, else cc, gcc, clang or the one that Python was built with.
+    The environment's CC if it names one, else cc, gcc, clang, the one that Python was built with, or the one
+    of the package ziglang.
     """
     asked_for = os.environ.get("CC")
-    names = (asked_for,) if asked_for else ("cc", "gcc", "clang", sysconfig.get_config_var("CC"))
+    names = (asked_for,) if asked_for else ("cc", "gcc", "clang", sysconfig.get_config_var("CC"), packaged())
     for name in filter(None, names):
         try:
             command = shlex.split(name)
@@ -103,6 +107,11 @@ def compiler() -> tuple[tuple[str, ...], str] | None:
         if said.returncode == 0:
             return tuple(command), said.stdout
     return None
+
+
+def packaged() -> str | None:
+    """Return the command of the compiler that the package ziglang brings, if it is installed."""
+    return f"{shlex.quote(sys.executable)} -m ziglang cc" if find_spec("ziglang") else None
 
 
 def directory() -> Path | None:

@@ -69,11 +69,13 @@ def _extra(extra: str) -> str:
 def _compiling() -> dict[str, str]:
     """The compiler, where its libraries are kept, and whether what it makes runs."""
     from symbolic.kernels import native
+    from symbolic.kernels.built import FOLDER
     from symbolic.kernels.choice import PROBE
 
     known, where = native.compiler(), native.directory()
+    brought = {"came with the package": ", ".join(p.name for p in FOLDER.glob("*")) or "no library"}
     if known is None:
-        return {"compiler": f"none: equations run in NumPy ({native.NONE})"}
+        return {"compiler": f"none: equations run in NumPy ({native.NONE})", **brought}
     try:
         native.library(PROBE)
         works = "yes"
@@ -83,6 +85,7 @@ def _compiling() -> dict[str, str]:
     return {
         "compiler": f"{' '.join(command)}: {said.strip().splitlines()[0]}",
         "makes libraries": works,
+        **brought,
         "kept in": str(where) if where else "nowhere: no safe directory of this user's",
     }
 

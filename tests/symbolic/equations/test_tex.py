@@ -25,9 +25,8 @@ def equation(function: Any, names: str) -> str:
     """The first equation of a system of two states."""
     parameters = {"Omega": 1.0} | dict.fromkeys(names.split(), 1.0)
     states = {"q": 0.0, "v": 0.0}
-    return lines(sym.Equations(function, states, parameters, frequency="Omega", **given))[0].partition(
-        " &= "
-    )[2]
+    (first, *_) = lines(sym.Equations(function, states, parameters, frequency="Omega"))
+    return first.partition(" &= ")[2]
 
 
 def test_duffing() -> None:
