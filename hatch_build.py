@@ -16,10 +16,6 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SOURCES = ("periodic/collocation/native/elimination.c",)
-EXPORTED = ["condense", "chain", "recover"]
-"""Functions that Windows has to be told of."""
-
 WINDOWS = ["/O2", "/std:c11", "/fp:precise"]
 
 
@@ -34,8 +30,9 @@ class Libraries(BuildHookInterface):  # type: ignore[type-arg]
         self._made = tempfile.TemporaryDirectory()
         folder = Path(self._made.name)
         try:
-            for source in (Path(self.root, place) for place in SOURCES):
-                _compile(source, folder / names.file_name(source.read_text("utf-8")), names.FLAGS)
+            for files in self.config["libraries"]:
+                source = "".join(Path(self.root, file).read_text("utf-8") for file in files)
+                _compile(source, folder / names.file_name(source), names.FLAGS, self.config["functions"])
         except Exception as error:
             self.app.display_warning(f"no C library is built, NumPy does what it would do: {error}")
             return
@@ -60,20 +57,21 @@ def _names(root: Path) -> ModuleType:
     return module
 
 
-def _compile(source: Path, library: Path, flags: tuple[str, ...]) -> None:
-    """Compile a C file as the machine's Python was, but with our options."""
+def _compile(source: str, library: Path, flags: tuple[str, ...], functions: list[str]) -> None:
+    """Compile a C source as the machine's Python was, but with our options."""
     from setuptools._distutils.ccompiler import new_compiler
     from setuptools._distutils.sysconfig import customize_compiler
 
-    compiler = new_compiler()
+    compiler, windows = new_compiler(), os.name == "nt"
     customize_compiler(compiler)
-    windows = os.name == "nt"
+    file = library.with_suffix(".c")
+    file.write_text(source, "utf-8")
     made = compiler.compile(
-        [str(source)],
+        [str(file)],
         output_dir=str(library.parent),
         extra_preargs=None if windows else [flag for flag in flags if flag != "-shared"],
         extra_postargs=WINDOWS if windows else None,
     )
     compiler.link_shared_object(
-        made, str(library), export_symbols=EXPORTED, libraries=[] if windows else ["m"]
+        made, str(library), export_symbols=functions, libraries=[] if windows else ["m"]
     )

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import tomllib
 import zlib
 from pathlib import Path
 
+import pytest
+
+import periodic as per
+import symbolic as sym
+from periodic.collocation.native.elimination import ELIMINATION
+from periodic.orbit.native.arrays import source
+from symbolic.kernels import built, native
+
 ROOT = Path(__file__).resolve().parent.parent
-WHEEL = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["hatch"]["build"]["targets"][
-    "wheel"
-]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+WHEEL = SETTINGS["tool"]["hatch"]["build"]["targets"]["wheel"]
+LIBRARIES = WHEEL["hooks"]["custom"]["libraries"]
 MEGABYTE = 1_000_000
 
 
@@ -28,3 +37,56 @@ def test_what_is_installed_imports_nothing_else() -> None:
     """Assert that the command line names no module that is run from a checkout."""
     for path in (ROOT / "reports" / "app").rglob("*.py"):
         assert not re.search(r"reports\.(studies|benchmarks)|jinja2", path.read_text("utf-8")), path
+
+
+def test_version_is_the_same_everywhere() -> None:
+    """Assert that the project, its citation and both packages tell one version."""
+    version = SETTINGS["project"]["version"]
+    assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text("utf-8")
+    assert per.__version__ == sym.__version__ == version
+
+
+def library_source() -> str:
+    """The C source that the wheel's library is made of."""
+    (files,) = LIBRARIES
+    return "".join((ROOT / file).read_text("utf-8") for file in files)
+
+
+def test_wheel_has_the_library_that_is_asked_for() -> None:
+    """Assert that the source which the build compiles is the one that the engine asks for."""
+    assert library_source() == source(ELIMINATION)
+
+
+def test_library_of_the_wheel_needs_no_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a library in its folder is used where there is no compiler and agrees with NumPy."""
+    if (compiler := native.compiler()) is None:
+        pytest.skip("this machine has no C compiler")
+    text = library_source()
+    command = [*compiler[0], *built.FLAGS, "-o", str(tmp_path / built.file_name(text)), "-x", "c", "-", "-lm"]
+    made = subprocess.run(command, input=text, text=True, capture_output=True, check=False)
+    assert made.returncode == 0, made.stderr
+    here = per.trace(sym.compile(duffing_model(), kernels="numpy"), "Omega", (0.3, 0.5))
+    native.forget()
+    monkeypatch.setattr(built, "FOLDER", tmp_path)
+    monkeypatch.setattr(native, "compiler", lambda: None)
+    system = sym.compile(duffing_model(), kernels="auto")
+    found = per.trace(system, "Omega", (0.3, 0.5))
+    native.forget()
+    library = system.library(source(ELIMINATION))
+    assert library is not None and str(tmp_path) in library._name
+    assert found.values == pytest.approx(here.values, rel=1e-9)
+    assert found[-1].multipliers == pytest.approx(here[-1].multipliers, rel=1e-8)
+
+
+def test_library_that_does_not_load_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a library of another machine is passed over."""
+    monkeypatch.setattr(built, "FOLDER", tmp_path)
+    (tmp_path / built.file_name("int x;")).write_bytes(b"of another machine")
+    assert built.built("int x;") is None and built.built("int y;") is None
+
+
+def duffing_model() -> sym.Model:
+    """A forced oscillator."""
+    x = sym.coordinate("x")
+    model = sym.Mass(x, 1.0) + sym.Damper(x, 0.1) + sym.Spring(x, 1.0) + sym.CubicSpring(x, 1.0)
+    return model + sym.HarmonicForce(x, 0.5)

@@ -64,6 +64,7 @@ def no_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Hide every compiler."""
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setattr(native.sysconfig, "get_config_var", lambda name: None)
+    monkeypatch.setattr(native, "packaged", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     native.compiler.cache_clear()
 
@@ -193,7 +194,7 @@ def test_without_a_compiler_numpy_runs(tmp_path: Path, monkeypatch: pytest.Monke
         for _ in range(run.pays + 1):
             assert right(run)
     assert not run.compiled
-    with pytest.raises(native.CompilerError, match="^no C compiler was found; install one, or set CC"):
+    with pytest.raises(native.CompilerError, match="^no C compiler was found; install one .pip install"):
         made(Kernels.C)
     with pytest.raises(native.CompilerError, match="^no C compiler was found"):
         sym.compile(sym.combine(duffing_parts()), kernels="c")
@@ -299,3 +300,16 @@ def test_choice_is_the_programs_then_the_environments(monkeypatch: pytest.Monkey
     monkeypatch.setenv("ORBITRACE_KERNELS", "C++")
     with pytest.raises(ValueError, match=r"^ORBITRACE_KERNELS is 'C\+\+'; it must be auto, numpy or c$"):
         sym.compile(model)
+
+
+def test_compiler_from_the_package_index(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Assert that the compiler that pip installs is found where the machine has none."""
+    no_compiler(monkeypatch, tmp_path)
+    assert native.compiler() is None
+    monkeypatch.undo()
+    if native.packaged() is None:
+        pytest.skip("the package ziglang is not installed")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("CC", str(native.packaged()))
+    native.compiler.cache_clear()
+    assert right(made(Kernels.C))
