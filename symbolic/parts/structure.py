@@ -17,8 +17,8 @@ from symbolic.equations.model import Part
 from symbolic.equations.terms import Place
 from symbolic.equations.variables import Coordinate
 from symbolic.structures.damping import ModalDamping
-from symbolic.structures.matrices import Matrices, dense
-from symbolic.structures.modal import ModalForm, modal_form
+from symbolic.structures.matrices import DENSE, Matrices, dense
+from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
 
 Freedoms = int | Sequence[int]
 Given = Any
@@ -224,19 +224,38 @@ class Structure(Part):
             if len(self._forms) > 8:
                 self._forms.clear()
             given = self.matrices(speed), self.modal_damping, speed, self.modes
-            self._forms[key] = modal_form(self.name, *given)
+            self._forms[key] = modal_form(self.name, *given, self._held)
         return self._forms[key]
 
     @cached_property
     def _forms(self) -> dict[float, ModalForm]:
         return {}
 
+    @cached_property
+    def _held(self) -> dict[int, float]:
+        return {}
+
+    def _holding(self, speed: float, freedoms: list[int]) -> ModalForm:
+        """The modes; of a structure that is not held by itself those with a spring at each place in use.
+
+        The forces there are greater by those of the springs, so that all is as without them.
+        """
+        self._held.clear()
+        self._forms.clear()
+        try:
+            return self.modal(speed)
+        except LooseError:
+            if self.size > DENSE:
+                raise
+        self._held.update(holding(self.matrices(speed), speed, freedoms))
+        return self.modal(speed)
+
     def condense(self, assembly: Assembly) -> None:
         """Leave two states at each place in use, the force there an unknown of its own."""
         used = list(self._used(assembly))
         if not used:
             raise ValueError(f"structure {self.name!r} has no place where another part acts; it needs one")
-        form = self.modal(assembly.nominal(assembly.omega))
+        form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used])
         flexibility = np.diag(form.static([k for k, _ in used])[[k for k, _ in used]])
         for (index, coordinate), softness in zip(used, flexibility, strict=True):
             motion = assembly.motion(coordinate)
@@ -248,7 +267,9 @@ class Structure(Part):
             unit = self.scale / softness if softness > 0 else 1.0
             name = f"force on {coordinate.name}"
             unknown = assembly.algebraic(name, ca.SX(0), unit="N", scale=unit)
-            assembly.output(name, "N", unit * unknown)
+            spring = self._held.get(index, 0.0) * motion.position.symbol
+            motion.force += spring
+            assembly.output(name, "N", unit * unknown - spring)
             assembly.places.append(Place(motion, self, index, unknown, unit))
 
     def expand(self, assembly: Assembly) -> None:

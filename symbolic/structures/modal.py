@@ -8,7 +8,7 @@ their static flexibility.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -25,9 +25,16 @@ MODES = 200
 RIGID = 1e-14
 """Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
 
-DEFECTIVE = 1e-6
-"""Relative distance of two exponents of a mode, or reciprocal condition of the eigenvectors, below which the
-modes are not enough to span the motion."""
+APART = 3e-6
+"""Relative distance to which the two exponents of a critically damped mode are moved apart. It changes the
+square of its frequency by 1e-11, as much as rounding then costs."""
+
+DEFECTIVE = 1e-12
+"""Reciprocal condition of the eigenvectors below which they are not enough to span the motion."""
+
+
+class LooseError(ValueError):
+    """A structure that is not held: it has rigid-body modes, or modes of negative stiffness."""
 
 
 @dataclass(frozen=True)
@@ -81,15 +88,25 @@ class ModalForm:
 
 
 def modal_form(
-    name: str, matrices: Matrices, damping: ModalDamping, speed: float, count: int | None
+    name: str,
+    matrices: Matrices,
+    damping: ModalDamping,
+    speed: float,
+    count: int | None,
+    held: Mapping[int, float] | None = None,
 ) -> ModalForm:
     """Return the modes of a structure at a speed Omega (rad/s), `count` of them where it is given.
 
-    Raises ValueError for a structure whose modes do not span its motion: rigid-body modes and critically
-    damped ones, and for one that is not stable.
+    `held` are stiffnesses (N/m) added at some degrees of freedom; damping is that without them. Raises
+    LooseError for a structure with rigid-body modes or modes of negative stiffness, ValueError for one whose
+    modes do not span its motion.
     """
     n = matrices.size
     own = matrices.C if matrices.G is None else matrices.C + speed * matrices.G
+    if held:
+        if not damping.none:
+            own = dense(own) + damping.matrix(matrices)
+        matrices, damping = stiffened(matrices, held), ModalDamping()
     symmetric = abs(matrices.K - matrices.K.T).max() <= 1e-10 * abs(matrices.K).max()
     wanted = count or (n if n <= DENSE else min(MODES, n // 2))
     if symmetric:
@@ -110,6 +127,23 @@ def modal_form(
     return _coupled(name, matrices, dense(own))
 
 
+def stiffened(matrices: Matrices, held: Mapping[int, float]) -> Matrices:
+    """Return matrices with stiffnesses (N/m) added at some degrees of freedom."""
+    added = np.zeros(matrices.size)
+    added[list(held)] = list(held.values())
+    more = sparse.diags_array(added) if sparse.issparse(matrices.K) else np.diag(added)
+    return Matrices(matrices.M, matrices.C, matrices.K + more, matrices.G)
+
+
+def holding(matrices: Matrices, speed: float, freedoms: Sequence[int]) -> dict[int, float]:
+    """Return stiffnesses (N/m) that hold a structure at degrees of freedom: its dynamic ones at a speed."""
+    own = matrices.C if matrices.G is None else matrices.C + speed * matrices.G
+    dynamic = dense(matrices.K) - speed**2 * dense(matrices.M) + 1j * speed * dense(own)
+    loads = np.eye(matrices.size)[:, list(freedoms)]
+    answer = np.abs(np.linalg.lstsq(dynamic, loads)[0][list(freedoms), np.arange(len(freedoms))])
+    return {k: float(1 / flexibility) for k, flexibility in zip(freedoms, answer, strict=True)}
+
+
 def _undamped(matrices: Matrices, count: int) -> tuple[Array, Array]:
     """The `count` lowest undamped modes; from M phi = omega^-2 K phi the lowest are the most accurate."""
     n = matrices.size
@@ -128,16 +162,12 @@ def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shap
     rigid = np.abs(squares) <= RIGID * max(np.abs(squares).max(), 1e-300)
     if rigid.any() or (squares < 0).any():
         kind = "rigid-body modes" if rigid.any() else "modes of negative stiffness"
-        raise ValueError(
-            f"structure {name!r} has {int((rigid | (squares < 0)).sum())} {kind}; condensation needs it "
-            f"held: add a stiffness to K, or compile it with condense=False"
+        raise LooseError(
+            f"structure {name!r} has {int((rigid | (squares < 0)).sum())} {kind} that forces at its places "
+            f"do not hold; add a stiffness to K, or compile it with condense=False"
         )
     root = np.sqrt((rates / 2) ** 2 - squares + 0j)
-    if (np.abs(root) < DEFECTIVE * np.sqrt(squares)).any():
-        raise ValueError(
-            f"structure {name!r} has a critically damped mode, whose two exponents are one; "
-            f"condensation needs them apart: change its damping a little"
-        )
+    root = np.where(np.abs(root) < APART * np.sqrt(squares), APART * np.sqrt(squares), root)
     first, second = -rates / 2 + root, -rates / 2 - root
     oscillates = root.imag != 0
     single = np.flatnonzero(~oscillates)
@@ -154,6 +184,11 @@ def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
     """From the eigenvectors of the state matrix of (q, q')."""
     n = matrices.size
     mass = scipy.linalg.cho_factor(dense(matrices.M))
+    if not np.linalg.cond(dense(matrices.K)) < 1 / RIGID:
+        raise LooseError(
+            f"structure {name!r} has rigid-body modes that forces at its places do not hold; add a "
+            f"stiffness to K, or compile it with condense=False"
+        )
     state = np.zeros((2 * n, 2 * n))
     state[:n, n:] = np.eye(n)
     state[n:, :n] = -scipy.linalg.cho_solve(mass, dense(matrices.K))
@@ -161,10 +196,10 @@ def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
     scale = np.sqrt(np.abs(state[n:, :n]).max())
     balance = np.repeat([1.0, 1 / scale], n)
     values, vectors = np.linalg.eig(balance[:, None] * state / balance)
-    if np.linalg.cond(vectors) > 1 / DEFECTIVE**2 or np.abs(values).min() <= RIGID * scale:
+    if np.linalg.cond(vectors) > 1 / DEFECTIVE:
         raise ValueError(
-            f"structure {name!r} has modes that do not span its motion (rigid-body modes without damping, or "
-            f"critically damped ones); condensation needs them apart: change its matrices a little"
+            f"structure {name!r} has modes that do not span its motion, as critically damped ones; "
+            f"condensation needs their exponents apart: change its matrices a little"
         )
     drive = np.linalg.inv(vectors)[:, n:] * balance[n:] @ scipy.linalg.cho_solve(mass, np.eye(n))
     shapes = vectors[:n]
