@@ -18,6 +18,7 @@ from periodic.conditions.grazing import GrazingCondition
 from periodic.conditions.levels import Level, Peak
 from periodic.conditions.phase import Conservative, PhaseCondition
 from periodic.conditions.sensitivity import sensitivities
+from periodic.conditions.unstable import unstable
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.newton import NewtonSettings
@@ -159,6 +160,7 @@ __all__ = [
     "sampled",
     "sensitivities",
     "trace",
+    "unstable",
 ]
 
 

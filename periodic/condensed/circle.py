@@ -1,0 +1,81 @@
+"""How many Floquet multipliers lie outside a circle, from the winding of a determinant.
+
+det K_mu (see `periodic.condensed.repeating`) vanishes at the multipliers and has its poles at those of the
+linear part by itself, exp(lambda T); it tends to a constant far out. On its way once round the circle it
+therefore turns -(zeros - poles outside) times (the argument principle).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from periodic.condensed.variations import CondensedVariations
+from periodic.orbit.scheme import Array
+
+FEWEST = 24
+"""Intervals of the half circle to begin with, besides places opposite poles near it."""
+
+TURN = 0.8
+"""Largest turn (rad) of the determinant from one place to the next."""
+
+DEEPEST = 40
+"""How often an interval is halved for this."""
+
+NEAR = 0.3
+"""Moduli between this part of the radius and its inverse are those of poles near the circle."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """The determinant round a circle about 0.
+
+    Parameters
+    ----------
+    variations : CondensedVariations
+        The motions beside the orbit.
+    radius : float
+        Of the circle.
+    """
+
+    variations: CondensedVariations
+    radius: float = 1.0
+
+    @property
+    def poles(self) -> Array:
+        """exp(lambda T) of all modes, conjugates included."""
+        response = self.variations.given.response
+        grown = np.exp(response.modes.exponents * response.period)
+        return np.concatenate([grown, grown[response.modes.exponents.imag != 0].conj()])
+
+    def outside(self) -> int:
+        """Return how many multipliers lie outside.
+
+        Raises FloatingPointError where one lies on the circle, to rounding.
+        """
+        near = self.poles[(np.abs(self.poles) > NEAR * self.radius) & (self.poles.imag > 0)]
+        angles = np.unique(np.concatenate([np.linspace(0, np.pi, FEWEST + 1), np.angle(near)]))
+        places = [(float(angle), self._value(float(angle))) for angle in angles]
+        turn = sum(self._turn(*ends, DEEPEST) for ends in pairwise(places))
+        return int((np.abs(self.poles) > self.radius).sum()) - round(turn / np.pi)
+
+    def _value(self, angle: float) -> complex:
+        """The determinant's direction at an angle."""
+        mu = self.radius * np.exp(1j * angle)
+        sign = np.linalg.slogdet(self.variations.repeating(mu).coupled.matrix)[0]
+        if not np.isfinite(sign) or sign == 0:
+            raise FloatingPointError(f"a multiplier lies on the circle of radius {self.radius:g}")
+        return complex(sign)
+
+    def _turn(self, begin: tuple[float, complex], end: tuple[float, complex], left: int) -> float:
+        """How far the determinant turns between two angles."""
+        turn = float(np.angle(end[1] / begin[1]))
+        if abs(turn) < TURN:
+            return turn
+        if left == 0:
+            raise FloatingPointError(f"a multiplier lies on the circle of radius {self.radius:g}")
+        angle = (begin[0] + end[0]) / 2
+        middle = (angle, self._value(angle))
+        return self._turn(begin, middle, left - 1) + self._turn(middle, end, left - 1)

@@ -1,0 +1,47 @@
+"""How many multipliers of an orbit lie outside the unit circle, whatever the number of its states."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.checks import positive
+from periodic.condensed.circle import Circle
+from periodic.condensed.variations import CondensedVariations
+from periodic.conditions.variations import variations
+from periodic.orbit.construction import as_read_by
+from periodic.orbit.orbit import Orbit
+from periodic.system import System
+
+
+def unstable(system: System, orbit: Orbit, radius: float = 1.0) -> int:
+    """Return how many Floquet multipliers of an orbit have a modulus larger than `radius`.
+
+    Of a condensed system by the winding of a determinant round the circle, beside the leading multipliers
+    that a branch has: for any number of states at the cost of a few tens of matrices of its places.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    orbit : Orbit
+        An orbit of it, a piecewise polynomial.
+    radius : float
+        Of the circle; one a little larger than 1 leaves out multipliers that are 1 whatever the parameters.
+
+    Returns
+    -------
+    int
+        Their number.
+
+    Raises
+    ------
+    ValueError
+        For a radius that is not positive, and a Fourier series.
+    FloatingPointError
+        Where a multiplier lies on the circle, to rounding.
+    """
+    found = variations(system, as_read_by(system, orbit), ())
+    circle = positive("radius", radius)
+    if isinstance(found, CondensedVariations):
+        return Circle(found, circle).outside()
+    return int((np.abs(found.multipliers) > circle).sum())
