@@ -11,6 +11,10 @@ import pytest
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 KEYS = {
+    "beam_stop": (3.341671435481361, 1e-9),
+    "damper_design": (1.08707, 1e-5),
+    "isola": (0.99123409951, 1e-9),
+    "measured_fit": (0.9926, 5e-3),
     "ball_bearing": (0.49618804, 1e-6),
     "cylinder_film": (6.28655, 2e-6),
     "design_map": (4.0841704, 1e-4),
@@ -23,6 +27,7 @@ KEYS = {
     "oil_whirl": (7771.187, 1e-6),
     "parametric": (1.9007661188, 1e-6),
     "pendulum_backbone": (2.9830777999, 1e-6),
+    "ross_rotor": (121.66576065, 1e-7),
     "rotor_whirl": (1.7147671116, 1e-8),
     "rub": (1.3407996345, 1e-8),
     "squeeze_film": (184.207242, 1e-6),
