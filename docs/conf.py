@@ -62,6 +62,7 @@ def reference() -> None:
     """Write the pages of the reference: a list of what each package exports, parts apart."""
     import periodic
     import symbolic
+    from symbolic import functions
 
     def page(name: str, title: str, module: str, names: list[str]) -> None:
         lines = [title, "=" * len(title), "", f".. currentmodule:: {module}", "", ".. autosummary::"]
@@ -78,6 +79,7 @@ def reference() -> None:
     names = [name for name in symbolic.__all__ if name != "functions"]
     page("parts", "Parts", "symbolic", sorted(filter(is_part, names)))
     page("symbolic", "symbolic: what the equations are", "symbolic", [n for n in names if not is_part(n)])
+    page("functions", "symbolic.functions: of symbols", "symbolic.functions", sorted(functions.__all__))
     page("periodic", "periodic: what a periodic orbit is", "periodic", sorted(periodic.__all__))
 
 

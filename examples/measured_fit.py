@@ -3,8 +3,8 @@ A fit to measured amplitudes
 ============================
 
 Stiffness, cubic stiffness and damping from 10 noisy amplitudes of Duffing's oscillator, with the derivatives
-of the orbits. The standard errors tell what the measurement does not: it has nothing near the top of resonance,
-and so the damping stays unknown.
+of the orbits. The standard errors tell what the measurement does not: nothing was measured near the top of
+the resonance, and so the damping stays unknown.
 """
 
 import matplotlib.pyplot as plt

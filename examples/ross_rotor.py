@@ -7,14 +7,12 @@ Mass, damping, stiffness and gyroscopic matrices of a rotor of the program ROSS,
 unbalance meets its natural frequencies, a branch how a hardening bearing answers there.
 """
 
-from pathlib import Path
-
 import numpy as np
 
 import periodic as per
 import symbolic as sym
 
-matrices = sym.read_matrices(Path(__file__).with_name("ross_rotor.npz"))
+matrices = sym.read_matrices("ross_rotor.npz")
 diagram = sym.campbell(matrices, np.linspace(1, 400, 400), count=4)
 axes = per.plot_campbell(diagram)
 rotor = sym.Structure(matrices, at={"disc": (8, 9), "left": (0, 1)}, damping=0.02)

@@ -58,6 +58,8 @@ from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
 from periodic.shooting.method import Shooting
 from periodic.system import System
+from periodic.tori.invariant import Torus
+from periodic.tori.torus import TorusError, torus
 from periodic.tracing.continuation import Continuation
 from periodic.tracing.equilibria import equilibria
 from periodic.tracing.resumption import Interrupted, ResumeError
@@ -128,7 +130,9 @@ __all__ = [
     "Task",
     "TestFunction",
     "Tolerance",
+    "Torus",
     "TorusCondition",
+    "TorusError",
     "Unknowns",
     "Value",
     "Watch",
@@ -159,6 +163,7 @@ __all__ = [
     "recovery",
     "sampled",
     "sensitivities",
+    "torus",
     "trace",
     "unstable",
 ]

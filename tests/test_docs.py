@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 import periodic as per
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
+REFERENCE = ("parts", "symbolic", "functions", "periodic")
 PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}
 
 
@@ -72,6 +74,22 @@ def cosine(point: per.Point) -> float:
     return math.cos(float(point.orbit["q"](0.0)))
 
 
+def test_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the touch by the linear response's closed form, and what is drawn of the orbit."""
+    said = run("tutorials/contact.md", tmp_path, monkeypatch)
+    touch = said["branch"].labelled("GR")[0].parameter
+    assert (1 - touch**2) ** 2 + (0.1 * touch) ** 2 == pytest.approx(0.25, rel=1e-7)
+    assert said["touching"].maximum["q"] > 1
+
+
+def test_fitting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the truth is within three standard errors, and that the damping is known less well."""
+    said = run("tutorials/fitting.md", tmp_path, monkeypatch)
+    found, errors = said["found"].x, said["errors"]
+    assert (abs(found - [1.0, 0.1]) < 3 * errors).all()
+    assert errors[1] / found[1] > 3 * errors[0] / found[0]
+
+
 def test_structures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the error of the reduction that the page prints."""
     said = run("tutorials/structures.md", tmp_path, monkeypatch)
@@ -117,3 +135,34 @@ def test_every_reason_is_explained() -> None:
     for reason in per.Reason:
         words = reason.value.removesuffix(" reached").removesuffix("largest number of Newton iterations")
         assert words in text, reason
+
+
+def test_reference_has_every_name() -> None:
+    """Assert that the reference lists all that the packages export, each in one place."""
+    import symbolic
+
+    said = runpy.run_path(str(DOCS / "conf.py"))
+    pages = sorted((DOCS / "reference").glob("*.rst"))
+    listed = [line.strip() for page in pages for line in page.read_text("utf-8").splitlines()]
+    for name in {*symbolic.__all__, *per.__all__} - {"functions", "__version__"}:
+        assert name in listed, name
+    assert said["project"] == "orbitrace"
+
+
+def test_links_lead_somewhere() -> None:
+    """Assert that each link within the site is to a page that is there or made by its build."""
+    examples = {f"gallery/{file.stem}.rst" for file in (DOCS.parent / "examples").glob("*.py")}
+    made = examples | {"gallery/index.rst"} | {f"reference/{name}.rst" for name in REFERENCE}
+    for name, file in [*PAGES.items(), ("index.md", DOCS / "index.md")]:
+        prose = re.sub(r"```.*?```", "", file.read_text("utf-8"), flags=re.DOTALL)
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", prose):
+            there = (file.parent / target).resolve()
+            inside = there.is_relative_to(DOCS) and str(there.relative_to(DOCS)) in made
+            assert inside or there.exists(), (name, target)
+
+
+def test_index_has_every_page() -> None:
+    """Assert that no page is left out of the site's list."""
+    text = (DOCS / "index.md").read_text("utf-8")
+    for name in PAGES:
+        assert name.removesuffix(".md") in text.splitlines(), name

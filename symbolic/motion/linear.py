@@ -72,7 +72,7 @@ class Modes:
 
     @property
     def frequencies(self) -> Array:
-        """Undamped natural frequencies |lambda| of the oscillating pairs, in rad/s."""
+        """Undamped natural frequencies ``|lambda|`` of the oscillating pairs, in rad/s."""
         return np.abs(self.oscillating)
 
     @property
@@ -82,7 +82,7 @@ class Modes:
 
     @property
     def damping_ratios(self) -> Array:
-        """Damping ratios -Re(lambda)/|lambda| of the oscillating pairs."""
+        """Damping ratios ``-Re(lambda)/|lambda|`` of the oscillating pairs."""
         return -self.oscillating.real / np.abs(self.oscillating)
 
 
@@ -180,7 +180,7 @@ def resonance(
     bounds: tuple[float, float],
     values: Mapping[str, float] | None = None,
 ) -> float | None:
-    """Return where the excitation frequency meets the lowest natural frequency, omega(p) = |lambda(p)|.
+    """Return where the excitation frequency meets the lowest natural frequency, ``omega(p) = |lambda(p)|``.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ class FrequencyResponse:
         return self.amplitude[:, self._index(output), 0]
 
     def peak_to_peak(self, output: str) -> Array:
-        """Return maximum minus minimum over a period: 2 |amplitude| of a single harmonic.
+        """Return maximum minus minimum over a period: ``2 |amplitude|`` of a single harmonic.
 
         Parameters
         ----------

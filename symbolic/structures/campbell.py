@@ -24,7 +24,7 @@ class Campbell:
     frequencies : ndarray, shape (N, k)
         Damped natural frequencies Im(lambda) in rad/s, ascending; NaN where fewer than k oscillate.
     damping : ndarray, shape (N, k)
-        Damping ratios -Re(lambda)/|lambda|; negative where the rotor is unstable.
+        Damping ratios ``-Re(lambda)/|lambda|``; negative where the rotor is unstable.
     """
 
     speeds: Array

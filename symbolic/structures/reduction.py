@@ -41,7 +41,7 @@ class Reduction:
     def error(self, low: float, high: float, *, points: int = 40, speed: float = 0.0) -> float:
         """Return the error of the reduction over a band of frequencies.
 
-        The largest of |H_reduced - H|/|H| (2-norms) of the dynamic flexibility H at the places, over
+        The largest of ``|H_reduced - H|/|H|`` (2-norms) of the dynamic flexibility H at the places, over
         `points` even angular frequencies and the reduced structure's natural frequencies in the band.
 
         Parameters
