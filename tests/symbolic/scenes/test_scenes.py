@@ -13,6 +13,7 @@ from symbolic.scenes.schema import DiscScene, OscillatorScene
 SIZES = {
     "ball-bearing": (4, 0),
     "ball-bearing-lubricated": (4, 0),
+    "beam-stop": (2, 1),
     "cavitating-film-810N": (3, 0),
     "dry-810N": (2, 0),
     "duffing": (2, 0),
