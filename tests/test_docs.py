@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import periodic as per
+from periodic.correction.outcome import Outcome
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 REFERENCE = ("parts", "symbolic", "functions", "periodic")
@@ -135,6 +136,13 @@ def test_every_reason_is_explained() -> None:
     for reason in per.Reason:
         words = reason.value.removesuffix(" reached").removesuffix("largest number of Newton iterations")
         assert words in text, reason
+
+
+def test_every_detail_is_explained() -> None:
+    """Assert that the page on stops has each way in which a step fails."""
+    text = PAGES["howto/when-a-trace-stops.md"].read_text("utf-8")
+    for outcome in set(Outcome) - {Outcome.CONVERGED, Outcome.COLLAPSED}:
+        assert outcome.value.split(",")[0] in text, outcome
 
 
 def test_reference_has_every_name() -> None:
