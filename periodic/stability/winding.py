@@ -144,6 +144,8 @@ def meetings(before: Spectrum, after: Spectrum) -> list[Meeting]:
         return [Meeting(1 - m.place, m.growth) for m in meetings(after, before)]
     coupling, found = _coupling(before, after), []
     for (i, (a, b)), (j, (c, d)) in combinations(enumerate(_matched(before, after)), 2):
+        if a.place == c.place or b.place == d.place:  # one pair that is the nearest of two
+            continue
         for sign in (1, -1):
             gap, closing = a.argument - sign * c.argument, a.turn(b) - sign * c.turn(d)
             low, high = sorted((gap, gap + closing))
