@@ -8,6 +8,35 @@ from typing import Any
 import numpy as np
 
 
+class UnknownNameError(KeyError):
+    """A name that is none of those there are; a sentence says which."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+class ByName(dict[str, float]):
+    """Numbers by name; for another name the error says which there are.
+
+    Parameters
+    ----------
+    what : str
+        What has the names.
+    numbers : mapping of str to float
+        The numbers.
+    """
+
+    def __init__(self, what: str, numbers: Mapping[str, float]) -> None:
+        super().__init__(numbers)
+        self._what = what
+
+    def __missing__(self, name: str) -> float:
+        raise UnknownNameError(f"{self._what} is {name!r}; it must be one of {', '.join(self) or 'none'}")
+
+    def __reduce__(self) -> tuple[type[ByName], tuple[str, dict[str, float]]]:
+        return ByName, (self._what, dict(self))
+
+
 def number(name: str, value: Any) -> float:
     """Return a real number, not finite ones included. Raises ValueError for what is none."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.checks import ByName
 from periodic.display.tables import paragraph
 from periodic.orbit.layout import Layout, Source
 from periodic.orbit.mesh import Grid, Mesh
@@ -103,7 +104,7 @@ class Orbit:
     def parameters(self) -> dict[str, float]:
         """The parameters in SI units, by name."""
         both = zip(self._known.parameters, self.parameter, strict=True)
-        return {q.name: q.scale * float(value) for q, value in both}
+        return ByName("parameter", {q.name: q.scale * float(value) for q, value in both})
 
     @property
     def omega(self) -> float:

@@ -68,7 +68,10 @@ class Branch(Record):
     def __getitem__(self, index: int) -> Point:
         if not self.points:
             raise IndexError(f"branch has no points; it ended with: {self.stop}")
-        return self.points[index]
+        try:
+            return self.points[index]
+        except IndexError:
+            raise IndexError(f"index is {index}; the branch has {len(self)} points") from None
 
     def __iter__(self) -> Iterator[Point]:
         return iter(self.points)
@@ -125,9 +128,17 @@ class Branch(Record):
     def remarks(self) -> tuple[str, ...]:
         """What whoever reads the branch should know, in sentences.
 
-        Which points miss the tolerance, and what no labelled point accounts for.
+        Which points miss the tolerance, what no labelled point accounts for, and which values of `at` the
+        branch does not pass.
         """
-        return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted))))
+        return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted), self._missed)))
+
+    @property
+    def _missed(self) -> str:
+        values = self.values
+        missed = [v for v in self.made.get("at", ()) if not np.isclose(values, v, rtol=1e-9, atol=0).any()]
+        told = ", ".join(f"{value:.10g}" for value in missed)
+        return f"no point at {self.parameter} = {told}: the branch does not pass there" if told else ""
 
     @property
     def values(self) -> Array:

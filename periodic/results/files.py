@@ -16,7 +16,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Parameters
     ----------
     path : Path
-        The file to make or to replace; a link stays a link.
+        The file to make or to replace; a link stays a link. Folders are made.
 
     Yields
     ------
@@ -29,6 +29,7 @@ def replacing(path: Path) -> Iterator[Path]:
         Where it cannot be written; what was there stays.
     """
     path = path.resolve()
+    path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         yield part

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from periodic.bifurcations.codim2 import marginal
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
+from periodic.checks import ByName
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
@@ -82,6 +83,10 @@ class Point:
     marginal: bool = False
     event: str = ""
     columns: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, what in (("minimum", "output"), ("maximum", "output"), ("columns", "column")):
+            object.__setattr__(self, name, ByName(what, getattr(self, name)))
 
     def __repr__(self) -> str:
         kind = " ".join(filter(None, [self.label.value, self.event, "stable" if self.stable else "unstable"]))

@@ -53,6 +53,9 @@ class Part:
     def __add__(self, other: Part | Model) -> Model:
         return Model((self,)) + other
 
+    def __radd__(self, other: object) -> Model:
+        return Model((self,)) if other == 0 else NotImplemented  # what sum begins with
+
 
 @dataclass(frozen=True)
 class Named(Part):
@@ -120,6 +123,9 @@ class Model:
         if isinstance(other, Part):
             return Model((*self.parts, other))
         return NotImplemented
+
+    def __radd__(self, other: object) -> Model:
+        return self if other == 0 else NotImplemented
 
 
 def combine(parts: Iterable[Part]) -> Model:

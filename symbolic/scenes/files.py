@@ -92,6 +92,9 @@ def _text(source: str) -> str:
         if path.is_file():
             found = f'file "{source}" is not text in UTF-8'
             raise InputError("scene", found, "it must be a TOML file") from error
+        if path.suffix == ".toml":
+            found = f'is "{source}", and there is no such file'
+            raise InputError("scene", found, f"`orbitrace new model {path.name}` writes one") from None
         raise refused("scene", source, f"{names}; nearest is {near}" if near else names) from None
     except OSError as error:
         found = f'file "{source}" cannot be read ({error.strerror})'

@@ -59,5 +59,4 @@ def export(branch: Branch, path: str | Path, *, samples: int = 256) -> list[Path
     file, count = Path(path), whole("samples", samples, FEWEST)
     if file.suffix.lower() not in FORMATS:
         raise ValueError(f"path is {str(path)!r}; it must be a file that ends in {', '.join(FORMATS)}")
-    file.parent.mkdir(parents=True, exist_ok=True)
     return FORMATS[file.suffix.lower()](file, content(branch, count))

@@ -6,6 +6,7 @@ What is imported here is small, so that --help is quick.
 from __future__ import annotations
 
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -64,6 +65,7 @@ def map_(
     from reports.app.map.axes import axes
     from reports.app.request import Request, validated
     from reports.app.settings import folder_for, settings
+    from symbolic.scenes.errors import InputError
     from symbolic.scenes.names import short_name
 
     overrides = pairs(changes)
@@ -73,6 +75,9 @@ def map_(
     name, asked = short_name(scene), {"over": values, "cells": cells, "accuracy": accuracy.value}
     from reports.app.map.run import How
 
+    if cells is not None and find_spec("adaptive") is None:
+        missing = "needs the package adaptive"
+        raise InputError("--adaptive", missing, "pip install 'orbitrace[adaptive]' installs it")
     how = How(accuracy=accuracy.name, jobs=processes, adaptive=cells, resume=resume)
     with folder_for(out, settings(name, task.scene, "map", **asked), resume) as folder:
         return _run(name, task, values, keys, how, folder)

@@ -69,7 +69,8 @@ def computed(
         store = folder / MAP
         return per.map(given, _plan(over, how), how.jobs, store, how.resume, progress=progress)
     except per.MapFileError as error:
-        raise InputError("--out", f'is "{folder}"', f"it must be fit for this map ({error})") from error
+        why = str(error).partition("; choose another")[0]
+        raise InputError("--out", f'is "{folder}"', f"it must be fit for this map ({why})") from error
     except OSError as error:
         raise unwritable(folder, error) from error
     except ValueError as error:

@@ -13,7 +13,7 @@ from support.commands import check_sentence, refusal
 import periodic as per
 import symbolic as sym
 from reports.app.cli import main
-from reports.app.map import run
+from reports.app.map import command, run
 from reports.app.map.picture import _field
 
 Capture = pytest.CaptureFixture[str]
@@ -98,10 +98,21 @@ def test_stores_of_something_else(tmp_path: Path, capsys: Capture) -> None:
     assert main(arguments) == 0
     capsys.readouterr()
     other = ("map", "duffing", "--over", "F=0.1,0.3", *QUICK, "--out", str(tmp_path), "--resume")
-    assert "holds a map made with grid" in refusal(capsys, *other)
+    said = refusal(capsys, *other)
+    assert "holds a map made with grid" in said and "resume=False" not in said
     (tmp_path / "map.nc").write_text("a diary")
     assert "is not written over" in refusal(capsys, *arguments)
     assert (tmp_path / "map.nc").read_text() == "a diary"
+
+
+def test_adaptive_without_its_package(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that the option is blamed that needs the package, and that the package is named."""
+    monkeypatch.setattr(command, "find_spec", lambda name: None)
+    arguments = ("map", "duffing", "--over", "F=0.1,0.2", "--adaptive", "8", *QUICK, "--out", str(tmp_path))
+    said = "--adaptive needs the package adaptive; pip install 'orbitrace[adaptive]' installs it"
+    assert refusal(capsys, *arguments) == said
 
 
 def test_picture_leaves_out_cells_that_failed() -> None:

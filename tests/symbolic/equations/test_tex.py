@@ -115,3 +115,11 @@ def test_system_in_a_notebook() -> None:
     text = sym.compile(sym.Mass(X, 1.0) + spring + sym.HarmonicForce(X, 1.0))._repr_html_()
     assert text.startswith("$$") and "<b>" not in text
     assert "<td style='text-align:left'>k&lt;b&gt;</td>" in text
+
+
+def test_sum_of_parts() -> None:
+    """Assert that Python's sum adds parts and models up."""
+    parts = [sym.Mass(X, 1.0), sym.Spring(X, 1.0)]
+    assert sum(parts) == parts[0] + parts[1] == sum([sym.Model(tuple(parts))])
+    with pytest.raises(TypeError):
+        1 + parts[0]  # type: ignore[operator]
