@@ -9,7 +9,7 @@ from .kernels.choice import Kernels
 from .kernels.native import CompilerError
 from .motion.linear import Modes, NoRestError, modes, resonance
 from .motion.response import FrequencyResponse, response
-from .motion.simulate import Simulation, simulate
+from .motion.simulate import Simulation, SimulationInterrupted, simulate
 from .parts.bearings.rolling import RollingBearing
 from .parts.bearings.waves import RaceWave
 from .parts.contact.excitation import RampedWaviness, Waviness
@@ -157,6 +157,7 @@ __all__ = [
     "SeriesFilm",
     "ShaftDisc",
     "Simulation",
+    "SimulationInterrupted",
     "Spring",
     "SqueezeFilm",
     "SqueezeFilmDamper",

@@ -12,6 +12,7 @@ from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.flow import Flow, Trajectory
+from symbolic.meter import counted
 from symbolic.motion.linear import RestFinder
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
@@ -66,6 +67,22 @@ class Simulation:
         raise KeyError(f"the simulation has no {name!r}; it has {', '.join(names)}")
 
 
+class SimulationInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a simulation.
+
+    Parameters
+    ----------
+    motion : Simulation
+        Where it stood after its last whole period: `simulate(start=...)` goes on from there.
+    periods : int
+        How many periods that were.
+    """
+
+    def __init__(self, motion: Simulation, periods: int) -> None:
+        super().__init__(f"interrupted after {periods} periods; the `motion` of this exception goes on")
+        self.motion, self.periods = motion, periods
+
+
 def simulate(
     system: CompiledSystem,
     values: Mapping[str, float] | None = None,
@@ -113,6 +130,8 @@ def simulate(
         For an unknown parameter or state, numbers out of range, and a start of another system.
     NoRestError
         Where no rest is found to begin at.
+    SimulationInterrupted
+        A KeyboardInterrupt (Ctrl-C) with what goes on as `motion`.
     IntegrationError
         Where both integrators fail; the message says how far the motion could be followed.
     """
@@ -126,10 +145,13 @@ def simulate(
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
     done = 0
     try:
-        while done < settle:
+        for _ in counted(settle, "settling", "periods"):
             end = flow.run(state, algebraic, parameter, ends)
             state, algebraic, done = end.state[-1], end.algebraic[-1], done + 1
         found = flow.run(state, algebraic, parameter, phase)
+    except KeyboardInterrupt:
+        still = {"phase": np.zeros(1), "state": state[None], "algebraic": algebraic[None]}
+        raise SimulationInterrupted(Simulation(system=system, parameter=parameter, **still), done) from None
     except IntegrationError as error:
         time = (PERIOD * done + error.phase) / system.omega(parameter)
         raise IntegrationError(f"the motion could not be followed past {time:.6g} s; {error}") from None

@@ -15,7 +15,7 @@ WRONG: list[tuple[Callable[[per.Branch], object], str]] = [
     (lambda branch: branch[0].maximum["zz"], "output is 'zz'; it must be one of x"),
     (lambda branch: branch[0].minimum["zz"], "output is 'zz'; it must be one of x"),
     (lambda branch: branch[0].columns["zz"], "column is 'zz'; it must be one of none"),
-    (lambda branch: branch[0].orbit.parameters["zz"], "parameter is 'zz'; it must be one of m, k, F, Omega, c, k3"),
+    (lambda branch: branch[0].orbit.parameters["zz"], "parameter is 'zz'; it must be one of "),
     (lambda branch: branch[1000], f"index is 1000; the branch has {len(duffing())} points"),
 ]  # fmt: skip
 
@@ -26,7 +26,7 @@ def test_names_that_are_none(case: int) -> None:
     read, said = WRONG[case]
     with pytest.raises(LookupError) as caught:
         read(duffing())
-    assert str(caught.value).startswith(said.split("; it must be one of m,")[0])
+    assert str(caught.value).startswith(said)
 
 
 def test_numbers_by_name_are_pickled() -> None:

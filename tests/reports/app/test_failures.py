@@ -21,7 +21,7 @@ SCENES = ", ".join(sym.scene_names())
 
 REFUSALS = {
     "trace vitrea80": f'scene is "vitrea80"; it must be one of {SCENES} or the path of a TOML file',
-    "trace mine.toml": 'scene is "mine.toml", and there is no such file; `orbitrace new model mine.toml` writes',
+    "trace mine.toml": 'scene is "mine.toml", and there is no such file; `orbitrace new model mine.toml`',
     "report paper": "No such command 'report'.",
     "trace duffing --set mess=1": '--set key is "mess"; it must be one of oscillator.mass',
     "trace duffing --set force": '--set is "force"; it must be KEY=VALUE',

@@ -10,6 +10,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
+from symbolic import meter
 from symbolic.integration import flow
 
 RPM = 2 * np.pi / 60
@@ -145,3 +146,34 @@ def test_unknown_quantity() -> None:
     motion = sym.simulate(oscillator(), settle=0, samples=5)
     with pytest.raises(KeyError, match="the simulation has no 'y'; it has x, x'"):
         motion["y"]
+
+
+def test_interrupted_simulation_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that Ctrl-C leaves what the next call goes on from, to the motion that was to be found."""
+    system, runs = oscillator(), itertools.count()
+    whole = sym.simulate(system, settle=7)
+    original = flow.Flow.run
+
+    def run(self: flow.Flow, *args: Any, **kwargs: Any) -> flow.Trajectory:
+        if next(runs) == 4:
+            raise KeyboardInterrupt
+        return original(self, *args, **kwargs)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(flow.Flow, "run", run)
+        with pytest.raises(sym.SimulationInterrupted, match="after 4 periods") as caught:
+            sym.simulate(system, settle=7)
+    again = sym.simulate(system, start=caught.value.motion, settle=3)
+    assert again["x"] == pytest.approx(whole["x"], abs=1e-7)
+
+
+def test_progress_of_a_simulation(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert a bar where somebody looks on, and none elsewhere."""
+    sym.simulate(oscillator(), settle=5)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setenv(meter.VARIABLE, "1")
+    monkeypatch.setattr(meter, "DELAY", 0.0)
+    sym.simulate(oscillator(), settle=5)
+    assert "settling" in capsys.readouterr().err
