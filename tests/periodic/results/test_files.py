@@ -160,9 +160,11 @@ def test_saving_replaces(tmp_path: Path) -> None:
 
 
 def test_saving_to_nowhere(tmp_path: Path) -> None:
-    """Assert that a folder which does not exist is the caller's OSError."""
+    """Assert that a folder which cannot be made is the caller's OSError, and that nothing is left."""
+    (tmp_path / "none").touch()
     with pytest.raises(OSError):
         duffing().save(tmp_path / "none" / "branch.nc")
+    assert [file.name for file in tmp_path.iterdir()] == ["none"]
 
 
 def test_file_is_portable_text_and_numbers(saved: bytes, tmp_path: Path) -> None:
