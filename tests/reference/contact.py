@@ -31,6 +31,9 @@ SAMPLES = 200
 EVENTS = 400
 """Most events in a period."""
 
+ROUNDING = 1e-14
+"""Rows that dip less below 0 do not."""
+
 Mode = tuple[int, ...]
 
 
@@ -226,7 +229,7 @@ def _zero(piece: Piece, z: Array, k: int, length: float) -> float | None:
     if rate(0.0) * rate(length) < 0:
         ends.insert(1, float(brentq(rate, 0.0, length, xtol=1e-15)))
     for a, b in zip(ends[:-1], ends[1:], strict=True):
-        if value(b) < 0:
+        if value(b) < (0.0 if b == length else -ROUNDING):
             return float(brentq(value, a, b, xtol=1e-16, rtol=1e-15)) if value(a) > 0 else a
     return None
 

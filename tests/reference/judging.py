@@ -12,8 +12,8 @@ from reference.contact import Contact, Period, period, periodic
 
 Array = NDArray[np.float64]
 
-ILL = 1e4
-"""Condition of M - 1 above which an orbit at a fixed parameter is not found anew: near a fold."""
+FOLD = 1e-4
+"""Least singular value of M - 1 below which an orbit at a fixed parameter is not found anew: near a fold."""
 
 CIRCLE = 1e-4
 """Multipliers nearer to the unit circle decide nothing."""
@@ -49,7 +49,7 @@ def judged(exact: Contact, point: per.Point, names: list[str]) -> Verdict:
     size = max(float(np.ptp(orbit.nodes, axis=0).max()), 1e-3)
     gap = found.end - found.start
     singular = np.linalg.svd(found.monodromy - np.eye(len(begin)), compute_uv=False)
-    if singular[0] / singular[-1] < ILL:
+    if singular[-1] > FOLD:
         found = periodic(exact, omega, begin, tau)
         off = float(np.abs(found.start - begin).max())
     else:

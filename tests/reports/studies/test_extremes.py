@@ -8,9 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from reference.piecewise import periodic
+from support.stops import exactly
 
 import periodic as per
-from reports.studies.extremes import multipliers, vanderpol
+from reports.studies.extremes import multipliers, piecewise, vanderpol
 from reports.studies.extremes.confirm import CVODES, FINE, Checked, check, compared, finer, near
 from reports.studies.extremes.page import REPORT, STUDIES
 from reports.studies.extremes.study import key_numbers
@@ -188,3 +190,14 @@ def test_period_of_van_der_pol() -> None:
     """Assert the asymptotic period against DOP853 at mu = 10 to its own order, mu^-5/3."""
     assert vanderpol.period(10.0) == pytest.approx(19.0783695669, abs=3 * 10 ** (-5 / 3))
     assert vanderpol.period(1e4) == pytest.approx(16137.381218, abs=1e-5)
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 1e3])
+def test_orbits_at_a_stop_in_closed_form(stiffness: float) -> None:
+    """Assert orbit and multipliers of the study's closed form against that of the tests, past the touch."""
+    phase, guess = 2.0, np.array([0.0, 0.7])
+    state, monodromy = piecewise.orbit(stiffness, 0.72, phase, guess)
+    exact = periodic(exactly(stiffness), 0.72, state, phase=phase)
+    assert exact.highest[0] > 0
+    assert state == pytest.approx(exact.start, abs=1e-11)
+    assert monodromy == pytest.approx(exact.monodromy, rel=1e-7, abs=1e-7)
