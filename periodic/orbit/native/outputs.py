@@ -29,7 +29,12 @@ class Call(ctypes.Structure):
 
 
 def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
-    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do."""
+    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do.
+
+    Only piecewise polynomials are read in C: what a Fourier series is between its samples, it knows itself.
+    """
+    if type(orbit) is not Orbit:
+        return None
     with_compiler, values_at = compiling(system), address_of(system, "output")
     if with_compiler is None or values_at is None:
         return None
