@@ -60,7 +60,8 @@ class Shape:
     ----------
     kind : str
         "disc" (radius `size`; with `waves` a corrugation of height `depth`), "ring" (a bore of radius
-        `size`), "block" (of half width `size`), "wall" (its face at x, its body towards the sign of `size`).
+        `size`), "block" (of half width `size`), "wall" (its face at x, its body towards the sign of `size`),
+        "line" (a structure's shape, through `nodes`).
     of : tuple of Coordinate
         The coordinates that it shows: shapes of the same ones are drawn together.
     x, y, size, depth : Place
@@ -72,6 +73,10 @@ class Shape:
         Corrugations around a disc; the phase of the excitation is that of the topmost one.
     look : str
         "body", "fixed", "film" or "mark".
+    nodes : tuple of (str, int)
+        Of a "line", a structure's shape: names and indices of degrees of freedom, one after another along it.
+    structure : str
+        Their structure.
     """
 
     kind: str
@@ -85,6 +90,8 @@ class Shape:
     turn: float = 0.0
     waves: int = 0
     look: str = "body"
+    nodes: tuple[tuple[str, int], ...] = ()
+    structure: str = ""
 
 
 @dataclass
@@ -108,6 +115,10 @@ class Sketch:
             self.draw("ring", (x, y), size=at(BODY, clearance), look="fixed")
         self.draw("disc", (x, y), x=at(0, x), y=at(0, y), size=at(BODY))
 
+    def structure(self, of: tuple[Coordinate, ...], name: str, nodes: Sequence[tuple[str, int]]) -> None:
+        """Add the shape of a structure, which shows all its coordinates."""
+        self.draw("line", of, nodes=tuple(nodes), structure=name)
+
     def plain(
         self, coordinates: Sequence[Coordinate], name_of: NameOf, order: float
     ) -> tuple[Mapping[str, Any], ...]:
@@ -124,10 +135,12 @@ class Sketch:
         """
         drawn = {q for shape in self.shapes if shape.kind != "wall" for q in shape.of}
         blocks = [Shape("block", (q,), x=at(0, q), size=at(BODY / 2)) for q in coordinates if q not in drawn]
+        bent = {q for shape in self.shapes if shape.kind == "line" for q in shape.of}
+        shapes = [s for s in self.shapes if s.kind != "wall" or not bent & set(s.of)]
         places: dict[tuple[str, ...], float] = {}
         found: list[Mapping[str, Any]] = []
-        for shape in (*self.shapes, *blocks):
-            group = tuple(q.name for q in shape.of)
+        for shape in (*shapes, *blocks):
+            group = (shape.structure,) if shape.structure else tuple(q.name for q in shape.of)
             shift = places.setdefault(group, APART * len(places))
             plain = {
                 "kind": shape.kind,
@@ -141,6 +154,8 @@ class Sketch:
                 "start": shape.start,
                 "turn": shape.turn * order,
                 "waves": shape.waves,
+                "nodes": [list(node) for node in shape.nodes],
+                "structure": shape.structure,
             }
             if plain not in found:
                 found.append(plain)

@@ -255,6 +255,7 @@ class Structure(Part):
         used = list(self._used(assembly))
         if not used:
             raise ValueError(f"structure {self.name!r} has no place where another part acts; it needs one")
+        self._draw(assembly, tuple(coordinate for _, coordinate in used))
         form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used])
         flexibility = np.diag(form.static([k for k, _ in used])[[k for k, _ in used]])
         for (index, coordinate), softness in zip(used, flexibility, strict=True):
@@ -272,6 +273,16 @@ class Structure(Part):
             assembly.output(name, "N", unit * unknown - spring)
             assembly.places.append(Place(motion, self, index, unknown, unit))
 
+    def _draw(self, assembly: Assembly, of: tuple[Coordinate, ...]) -> None:
+        """Draw the deflections w0, w1, ... or x0, x1, ... of its nodes, where its places are called so."""
+        places = {place: k for place, k in self.at.items() if isinstance(k, int | np.integer)}
+        for letter in ("w", "x"):
+            numbers = sorted(int(p[1:]) for p in places if p[0] == letter and p[1:].isdecimal())
+            nodes = [(f"{letter}{n}", int(places[f"{letter}{n}"])) for n in numbers]
+            if len(nodes) > 2:
+                assembly.sketch.structure(of, self.name, [(self._place_of(k) or p, k) for p, k in nodes])
+                return
+
     def expand(self, assembly: Assembly) -> None:
         """Add the two states of every degree of freedom, inertia and internal forces."""
         speed = assembly.nominal(assembly.omega)
@@ -281,7 +292,9 @@ class Structure(Part):
                 f"it can be condensed only, condense=True"
             )
         matrices = self.matrices(speed)
-        motions = [assembly.motion(self.freedom(k)) for k in range(matrices.size)]
+        freedoms = [self.freedom(k) for k in range(matrices.size)]
+        self._draw(assembly, tuple(freedoms))
+        motions = [assembly.motion(freedom) for freedom in freedoms]
         position = ca.vertcat(*[m.position.symbol for m in motions])
         velocity = assembly.omega * ca.vertcat(*[m.velocity.symbol for m in motions])
         rates = assembly.omega**2 * ca.vertcat(*[m.velocity.derivative for m in motions])

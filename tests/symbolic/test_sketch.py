@@ -65,3 +65,15 @@ def test_angles_are_in_the_phase() -> None:
     )
     turns = [shape["turn"] for shape in halved.sketch if shape["look"] == "mark"]
     assert turns == [2.0]
+
+
+def test_structure_is_a_line() -> None:
+    """Assert the nodes of a beam, condensed or with all its states, and no blocks nor walls besides."""
+    beam = sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=3)
+    structure = sym.Structure(beam, damping=0.02)
+    tip = structure["tip"]
+    model = structure + sym.HarmonicForce(tip, 0.01, 2.6) + sym.OneSidedSpring(tip, 3.0, gap=0.03)
+    for condense in (True, False):
+        (line,) = sym.compile(model, condense=condense).sketch
+        assert line["kind"] == "line" and line["structure"] == "structure"
+        assert [k for _, k in line["nodes"]] == [0, 2, 4]  # type: ignore[attr-defined]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from periodic.orbit.extrema import outputs
 from periodic.orbit.scheme import Array
 from periodic.results.branch import Branch
-from periodic.results.interactive.drawing import drawing, sketch_of
+from periodic.results.interactive.drawing import drawing, packed, sketch_of
 from periodic.results.plots.regions import second_of
 from periodic.results.plots.units import Shown, Unit, Units, quantities
 from periodic.results.point import Point
@@ -44,7 +43,7 @@ def content(branch: Branch, units: Units, system: System | None = None) -> dict[
         "border": second_of(branch) is not None,
         "points": [_said(p, across, heights) for p in points],
         "orbits": packed(orbits),
-        "drawing": drawing(sketch_of(system), points, places, orbits, quantities(branch.layout)),
+        "drawing": drawing(sketch_of(system), points, places, orbits, quantities(branch.layout), system),
     }
 
 
@@ -53,11 +52,6 @@ def kept(branch: Branch) -> list[int]:
     every = -(-len(branch) // MOST)
     last = len(branch) - 1
     return [k for k, p in enumerate(branch.points) if k % every == 0 or k == last or p.label.value]
-
-
-def packed(values: Array) -> str:
-    """Return numbers as base64 of their 32-bit floats."""
-    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
 
 
 class Signals:

@@ -6,16 +6,23 @@ in units of the drawing, plus the outputs and parameters named times their facto
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from periodic.condensed.motion import motion
+from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.units import prefixed
 from periodic.results.point import Point
+from periodic.system import System, linear_of
 
 LENGTHS = ("x", "y", "size", "depth")
+
+STEPS, MOST_NODES = 32, 20
+"""Of the shape of a structure: instants in a period, and nodes."""
 
 LARGEST = 0.4
 """Magnified size of the largest movement, in units of the drawing."""
@@ -32,6 +39,7 @@ def drawing(
     signals: Mapping[str, tuple[int, float]],
     orbits: Array,
     units: Mapping[str, str],
+    system: System | None,
 ) -> dict[str, Any] | None:
     """Return what the page needs to draw; None where nothing can be drawn.
 
@@ -47,24 +55,51 @@ def drawing(
         Its signals.
     units : dict of str to str
         Units in SI by name, for the scale.
+    system : System, optional
+        The system, which knows where a structure is between its places.
     """
     names = {name for shape in shapes for key in LENGTHS for name, _ in shape[key]["moved"]}
     parameters = [p.orbit.parameters for p in points]
+    shapes = [_deflected(shape, points, system) for shape in shapes]
+    deflections = [np.abs(shape["values"]).max() for shape in shapes if shape["kind"] == "line"]
     numbers = {name: [float(known[name]) for known in parameters] for name in names if name in parameters[0]}
     if not shapes or not names <= set(signals) | set(numbers):
         return None
     swings = [
         abs(signals[name][1]) * np.abs(orbits[:, signals[name][0]]).max() for name in names & set(signals)
     ]
-    sizes = [*swings, *(max(map(abs, values)) for values in numbers.values())]
+    sizes = [*swings, *deflections, *(max(map(abs, values)) for values in numbers.values())]
     largest = max(sizes, default=0.0) or 1.0
     return {
-        "shapes": list(shapes),
+        "shapes": [{**s, "values": packed(s["values"])} if s["kind"] == "line" else s for s in shapes],
         "signals": {name: [*signals[name]] for name in names & set(signals)},
         "numbers": numbers,
         "magnified": LARGEST / largest,
-        "bar": _bar(largest, units.get(next(iter(sorted(names)), ""), "")),
+        "bar": _bar(largest, units.get(shapes[0]["of"][0], "")),
     }
+
+
+def _deflected(shape: Mapping[str, Any], points: Sequence[Point], system: System | None) -> dict[str, Any]:
+    """Return a shape; that of a structure with its deflections, shape (points, nodes, STEPS)."""
+    if shape["kind"] != "line" or system is None:
+        return dict(shape)
+    every = -(-len(shape["nodes"]) // MOST_NODES)
+    nodes = [*shape["nodes"][:-1:every], shape["nodes"][-1]]
+    values = np.array([_deflections(p.orbit, nodes, shape["structure"], system) for p in points])
+    return {**shape, "nodes": nodes, "values": values}
+
+
+def _deflections(orbit: Orbit, nodes: Sequence[tuple[str, int]], structure: str, system: System) -> Array:
+    """Displacements of nodes over a period (SI), shape (nodes, STEPS)."""
+    phases = np.linspace(0, orbit.mesh.period, STEPS, endpoint=False)
+    if linear_of(system) is not None:
+        return motion(system, orbit, [k for _, k in nodes], phases, structure)[0].T
+    return np.array([orbit[name](phases / orbit.omega) for name, _ in nodes])
+
+
+def packed(values: Array) -> str:
+    """Return numbers as base64 of their 32-bit floats."""
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
 
 
 def _bar(largest: float, unit: str) -> dict[str, Any]:

@@ -114,6 +114,25 @@ def test_loads_and_drawing_of_a_disc(tmp_path: Path) -> None:
     assert drawn["magnified"] * max(largest, drawn["numbers"]["amplitude"][0]) == pytest.approx(0.4, rel=0.05)
 
 
+@pytest.mark.parametrize("condense", [True, False])
+def test_shape_of_a_structure(condense: bool, tmp_path: Path) -> None:
+    """Assert that the drawn beam's last node moves as its tip does, and that the others follow."""
+    beam = sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=3)
+    structure = sym.Structure(beam, damping=0.02)
+    model = (
+        structure + sym.HarmonicForce(structure["tip"], 0.01, 2.6) + sym.CubicSpring(structure["tip"], 1.0)
+    )
+    system = sym.compile(model, condense=condense)
+    branch = per.trace(system, "Omega", (2.6, 3.0), start=2.6, tol=1e-4)
+    drawn = held(per.page(branch, tmp_path / "beam.html", system=system))["drawing"]
+    (line,) = drawn["shapes"]
+    bent = np.frombuffer(base64.b64decode(line["values"]), "<f4").reshape(len(branch), 3, 32)
+    times = np.arange(32) / 32 * branch[2].orbit.period
+    assert bent[2, -1] == pytest.approx(branch[2].orbit["tip"](times), abs=1e-6 * np.abs(bent).max())
+    assert (np.ptp(bent[2], axis=1) == np.sort(np.ptp(bent[2], axis=1))).all()
+    assert drawn["bar"]["text"].endswith("m")
+
+
 def test_page_of_a_map(tmp_path: Path) -> None:
     """Assert numbers over both parameters, no number as null, and that three parameters are refused."""
     x, y = xr.Variable("F", [1.0, 2.0], {"units": "N"}), xr.Variable("c", [0.1, 0.2, 0.3])
