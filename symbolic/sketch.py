@@ -144,7 +144,7 @@ class Sketch:
             shift = places.setdefault(group, APART * len(places))
             plain = {
                 "kind": shape.kind,
-                "of": list(group),
+                "of": [q.name for q in shape.of],
                 "look": shape.look,
                 "x": shape.x.plain(name_of, shift),
                 "y": shape.y.plain(name_of, 0.0),

@@ -280,7 +280,9 @@ class Structure(Part):
             numbers = sorted(int(p[1:]) for p in places if p[0] == letter and p[1:].isdecimal())
             nodes = [(f"{letter}{n}", int(places[f"{letter}{n}"])) for n in numbers]
             if len(nodes) > 2:
-                assembly.sketch.structure(of, self.name, [(self._place_of(k) or p, k) for p, k in nodes])
+                known = self.coordinates
+                named = [(known[k].name if k in known else place, k) for place, k in nodes]
+                assembly.sketch.structure(of, self.name, named)
                 return
 
     def expand(self, assembly: Assembly) -> None:
