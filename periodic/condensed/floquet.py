@@ -119,6 +119,33 @@ class Floquet:
         """Return forces and own states at the points in free motion from the columns of a basis."""
         return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
 
+    def modes(self, basis: Array) -> Complex:
+        """Return the columns of a basis as modes, (J, r)."""
+        count = len(self.given.response.modes.exponents)
+        whole = np.zeros((2 * count + len(self.given.others), basis.shape[1]))
+        whole[self.kept] = basis
+        return whole[:count] + 1j * whole[count : 2 * count]
+
+    def left(self, states: Array, modes: Complex) -> Array:
+        """Return what is left at the end of the period, (coordinates, r), by what is missing in a motion.
+
+        Of systems without own states.
+
+        Parameters
+        ----------
+        states : ndarray, shape (N, a, s, r)
+            What is missing of the states at the points.
+        modes : ndarray of complex, shape (J, r)
+            What is missing of the modes at the end.
+        """
+        system = self._system
+        flat = states.reshape(system.points, len(system.places), -1)
+        forces = self.given.local.forces[:, system.active]
+        places = [1 + system.n + k for k in system.places]
+        right = (forces[:, :, places] @ flat).reshape(system.count, -1)
+        answer = scipy.linalg.lu_solve(self._factors, right, check_finite=False)
+        return np.concatenate([modes.real, modes.imag])[self.kept] + self._left @ answer
+
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
         factor, across, partner = self._grown
@@ -132,8 +159,8 @@ class Floquet:
         found[: len(weights)] = weights[:, None, None] * rates[: len(weights)]
         return found.reshape(-1, rates.shape[2])
 
-    def _forces(self, answers: Array) -> Array:
-        """All forces at the points, (N, b, k, r), of the active ones."""
+    def forces(self, answers: Array) -> Array:
+        """Return all forces at the points, (N, b, k, r), of the active ones."""
         system, (count, points, _) = self._system, self.given.orbit.stages.shape
         found = np.zeros((count, points, system.k, answers.shape[1]))
         found[:, :, system.active] = answers[: system.count].reshape(count, points, -1, answers.shape[1])
@@ -146,17 +173,14 @@ class Floquet:
 
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
-        growth, own = self.given.response.growth, len(self.given.others)
-        whole = np.zeros((2 * growth.shape[1] + own, basis.shape[1]))
-        whole[self.kept] = basis
-        modes = whole[: growth.shape[1]] + 1j * whole[growth.shape[1] : 2 * growth.shape[1]]
+        growth, own, modes = self.given.response.growth, len(self.given.others), self.modes(basis)
         answers = self.answers(basis)
-        moved = growth[:, :, None] * modes + self.given.response.driven(self._forces(answers))
+        moved = growth[:, :, None] * modes + self.given.response.driven(self.forces(answers))
         parts = [moved.real, moved.imag]
         if own:
             count, points, _ = self.given.orbit.stages.shape
             ends = answers[-count * points * own :].reshape(count, points, own, -1)[:, -1]
-            parts.append(np.concatenate([whole[None, -own:], ends]))
+            parts.append(np.concatenate([basis[None, -own:], ends]))
         return np.concatenate(parts, axis=1)[:, self.kept]
 
 

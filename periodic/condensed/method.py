@@ -9,6 +9,7 @@ import numpy as np
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, CollocationRefinement, scheme_for
+from periodic.condensed.estimate import applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
@@ -78,11 +79,14 @@ class CondensedCollocation(Collocation):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by a Newton step on the halved mesh.
+        """Estimate the errors by what is missing on the halved mesh, or by a Newton step there.
 
         Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
         the forces, however fast they change between them.
         """
+        operator = correction.operator
+        if isinstance(operator, Condensed) and applies(operator):
+            return estimate(problem, operator, tangent, spectrum)
         part = linear_of(problem.system)
         velocities = () if part is None else part.velocities
         return deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities)

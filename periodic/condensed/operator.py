@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.condensed.coupled import Coupled, folded
 from periodic.condensed.floquet import Floquet, Leading
@@ -67,19 +69,39 @@ class Condensed:
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         system, k = self.system, len(self.orbit.phases)
-        every = [folded(self.orbit, row) for row in (*self.own, *rows)]
-        border = [system.restricted(*row) for row in every]
-        width = system.right.shape[1]
-        inner = np.array([row[0] for row in border]).reshape(len(border), system.size)
-        outer = np.array([row[1] for row in border]).reshape(len(border), width)
-        matrix = np.block([[system.matrix, -system.right[:, 1:]], [inner, outer[:, 1:]]])
-        aim = np.concatenate([system.right[:, :1], -outer[:, :1]]) * right[:1]
+        matrix, constant = self._bordered(rows)
+        aim = np.concatenate([system.right[:, :1], -constant[:, None]]) * right[:1]
         aim[system.size + len(self.own) :] += right[1:]
-        found = np.linalg.solve(matrix, aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        found = _finite(np.linalg.solve(matrix, aim))
         pairs = zip(right[0], found.T, strict=True)
         return tuple(self._recovered(float(s), u[: system.size], u[system.size :], k) for s, u in pairs)
+
+    def _bordered(self, rows: Sequence[Row]) -> tuple[Array, Array]:
+        """The equations with the rows of event nodes and side conditions, and these rows' constants."""
+        system = self.system
+        border = [system.restricted(*folded(self.orbit, row)) for row in (*self.own, *rows)]
+        inner = np.array([row[0] for row in border]).reshape(len(border), system.size)
+        outer = np.array([row[1] for row in border]).reshape(len(border), system.right.shape[1])
+        return np.block([[system.matrix, -system.right[:, 1:]], [inner, outer[:, 1:]]]), outer[:, 0]
+
+    def answered(self, rows: Sequence[Row], states: Array) -> Increment:
+        """Return the increment by which an orbit answers what is missing of the places' states, (N, a, s).
+
+        Of systems without own states; `states` are part of the increment.
+        """
+        system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
+        flat = states.reshape(system.points, -1)
+        forces = self.given.local.forces[:, system.active]
+        by_place = forces[:, :, [1 + system.n + place for place in system.places]]
+        missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
+        aim = [np.einsum("pks,ps->pk", by_place, flat).ravel(), [-float(np.vdot(m, flat)) for m in missed]]
+        found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
+        outer = found[system.size :]
+        stages = system.stages(found[: system.size], np.append(0.0, outer))
+        stages[:, system.places] += flat
+        stages = stages.reshape(orbit.stages.shape)
+        nodes = np.concatenate([stages[-1:, -1], stages[:, -1]])
+        return Increment.of(orbit, nodes, stages, np.zeros_like(orbit.algebraic), outer[:k], outer[k:])
 
     def _recovered(self, constant: float, inner: Array, outer: Array, k: int) -> Increment:
         """The increment of forces and own states, and dy."""
@@ -115,3 +137,9 @@ class Condensed:
     def fundamental(self) -> Array:
         """The same in the subspace's own basis, (N+1, r, r)."""
         return self.leading.monodromy[None] if self.brief else self.leading.fundamental
+
+
+def _finite(found: NDArray[Any]) -> Array:
+    if not np.isfinite(found).all():
+        raise np.linalg.LinAlgError("the bordered matrix is singular")
+    return found

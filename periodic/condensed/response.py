@@ -213,12 +213,43 @@ class Response:
 
     def stages(self, forces: Array) -> Array:
         """Return the states at the points in periodic motion, (N, a, s), whatever their number."""
-        modes, history = self.modes, self.history(forces)
-        driven = self._applied(self.table.moment, self._driving(forces, modes.inputs))
-        inner = self.table.growth * history[:-1, :, None] + self.grid.width[:, None, None] * driven
-        rates = self.moments.derivatives[1, 1:] @ forces / self.grid.width[:, None, None]
-        found = (modes.outputs @ inner).real.transpose(0, 2, 1)
-        return np.asarray(found + forces @ modes.direct.T + rates @ modes.direct_rate.T)
+        history = self.history(forces)
+        flat = forces.reshape(len(forces), -1, 1)
+        local = self.local.reshape(len(flat), -1, flat.shape[1]) @ flat
+        found = local + self._seen(history[:-1, :, None])
+        return np.asarray(found.reshape(*forces.shape[:2], -1))
+
+    def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
+        """Return states at the points (N, a, s, r) and modes at the end (J, r) of motions from z(0).
+
+        Parameters
+        ----------
+        forces : ndarray, shape (N, b, k, r)
+            Forces of r motions.
+        begun : ndarray of complex, shape (J, r)
+            z(0).
+        """
+        count, points, _, r = forces.shape
+        flat, size = forces.reshape(count, -1, r), len(self.modes.exponents)
+        if self.uniform:
+            ended = self.impulse[0].reshape(size, -1) @ flat.transpose(1, 0, 2).reshape(-1, count * r)
+            ended = np.ascontiguousarray(ended.reshape(size, count, r).transpose(1, 0, 2))
+        else:
+            ended = self.impulse.reshape(count, size, -1) @ flat
+        driven, grown = self._chain(ended)
+        at = np.concatenate([begun[None], driven + grown[:, :, None] * begun])
+        local = self.local.reshape(count, -1, flat.shape[1]) @ flat
+        return (local + self._seen(at[:-1])).reshape(count, points, -1, r), at[count]
+
+    def _seen(self, at: Complex) -> Array:
+        """States at the points by the modes at the left ends, (N, J, r): shape (N, a s, r)."""
+        count, size, r = at.shape
+        growth = np.swapaxes(self.table.growth[:1] if self.uniform else self.table.growth, 1, 2)
+        rows = (growth[:, :, None] * self.modes.outputs).reshape(len(growth), -1, size)
+        if self.uniform:
+            found = _real_product(rows[0], at.transpose(1, 0, 2).reshape(size, -1))
+            return np.asarray(found.reshape(-1, count, r).transpose(1, 0, 2))
+        return np.asarray((rows @ at).real)
 
     def closings(self, multiplier: complex) -> tuple[Complex, Complex]:
         """Return 1/(mu - exp(lambda T)) of the modes and of their conjugates, each (J,).

@@ -1,0 +1,114 @@
+"""The error estimate of a condensed orbit: what is missing on the halved mesh, answered on the orbit's own.
+
+Between its points the exact motion x of the forces f asks for other forces, e = F(x) - f.
+They are evaluated on the mesh with every interval halved. Of the forces' error d, (1 - F' G) d = e, the part
+e itself is rough; the rest g = d - e answers it smoothly,
+
+    (1 - F' G) g = F' G e,
+
+and is solved for on the orbit's own mesh: no matrix is ever made on the finer one (two grids: Atkinson,
+The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Multipliers likewise.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.condensed.floquet import Leading
+from periodic.condensed.linearised import Local, local_rows
+from periodic.condensed.operator import Condensed
+from periodic.condensed.response import Response
+from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.error import LEAST_SPAN, SMALL, UNKNOWN, ErrorEstimate
+from periodic.correction.outcome import FAILURES
+from periodic.correction.problem import Problem
+from periodic.linear.unknowns import Increment, size_of
+from periodic.orbit.construction import bisect
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
+
+
+def applies(operator: Condensed) -> bool:
+    """Return whether the estimate is for such an orbit: without own states and event nodes."""
+    return not len(operator.given.others) and not len(operator.orbit.phases)
+
+
+def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum: Spectrum) -> ErrorEstimate:
+    """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
+    orbit = operator.orbit
+    across = ArclengthConstraint(orbit, tangent, 0.0, problem.scale, problem.index, size_of(orbit))
+    try:
+        missing = _Missing(problem, operator)
+        rows = [c.linearise(problem.system, orbit, problem.free) for c in problem.side_conditions(orbit)]
+        rows.append(across.linearise(problem.system, orbit, problem.free))
+        states, answer = missing.states, operator.answered(rows, missing.on_own(missing.states))
+        multiplier = spectrum.apart(missing.monodromy(operator.leading))
+    except FAILURES:
+        return UNKNOWN
+    part = operator.given.part
+    smooth = answer.stages[:, :, list(part.states)] - missing.on_own(states)
+    between = np.abs(missing.gap + states + missing.on_fine(smooth))
+    heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
+    apart = max(between[:, :, heard].max(initial=0.0), float(np.abs(answer.nodes).max()))
+    largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
+    parameter = float(abs(answer.parameter) / largest)
+    return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+
+
+class _Missing:
+    """What an orbit misses on the halved mesh.
+
+    gap (N, a, s): the exact motion of its forces less the orbit between its points; states (N, a, s): what
+    the forces that are missing do to the places.
+    """
+
+    def __init__(self, problem: Problem, operator: Condensed) -> None:
+        given, fine = operator.given, bisect(operator.orbit)
+        self.given, self.places, forces = given, list(given.part.states), list(given.part.forces)
+        scheme = fine.mesh.scheme
+        self.response = Response(given.response.modes, scheme, fine.grid, fine.mesh.period)
+        exact = self.response.stages(np.ascontiguousarray(fine.algebraic[:, :, forces]))
+        self.gap = exact - fine.stages[:, :, self.places]
+        fine.stages[:, :, self.places] = exact
+        self.local: Local = local_rows(problem.system, given.part, fine, ())
+        missing = self.local.forces[:, :, 0].reshape(*exact.shape[:2], -1)
+        self.states = self.response.stages(np.ascontiguousarray(missing))
+        points = scheme.points
+        self.half = (points >= 0.5).astype(int)
+        self.later = scheme.basis(2 * points - self.half)
+        self.halves = scheme.basis(np.concatenate([points / 2, (1 + points) / 2]))
+        self.forces_at = scheme.algebraic_basis(np.concatenate([points / 2, (1 + points) / 2]))
+
+    def on_own(self, states: Array) -> Array:
+        """Return states on the halved mesh, periodic, at the orbit's own points."""
+        begun = np.concatenate([states[-1:, -1], states[:-1, -1]])[:, None]
+        knots = np.concatenate([begun, states], axis=1)
+        pairs = knots.reshape(len(knots) // 2, 2, *knots.shape[1:])[:, self.half]
+        return np.asarray(np.einsum("ak,nak...->na...", self.later, pairs))
+
+    def on_fine(self, states: Array) -> Array:
+        """Return states at the orbit's own points, periodic, on the halved mesh."""
+        begun = np.concatenate([states[-1:, -1], states[:-1, -1]])[:, None]
+        knots = np.concatenate([begun, states], axis=1)
+        found = np.einsum("ak,nk...->na...", self.halves, knots)
+        return np.asarray(found.reshape(2 * len(states), *states.shape[1:]))
+
+    def monodromy(self, leading: Leading) -> Array:
+        """Return M of the halved mesh in the subspace of the leading multipliers, (r, r)."""
+        floquet, basis = leading.floquet, leading.basis
+        begun = floquet.modes(basis)
+        own = floquet.forces(floquet.answers(basis))
+        forces = np.einsum("ab,nbkr->nakr", self.forces_at, own)
+        forces = np.ascontiguousarray(forces.reshape(2 * len(own), *own.shape[1:]))
+        shown, _ = self.response.motions(forces, begun)
+        count, points, _, r = shown.shape
+        n = self.given.orbit.nodes.shape[1]
+        by_place = self.local.forces[:, :, [1 + n + k for k in self.places]]
+        wanted = by_place @ shown.reshape(count * points, -1, r)
+        missing = wanted.reshape(forces.shape) - forces
+        states, modes = self.response.motions(missing, np.zeros_like(begun))
+        begun_at = np.zeros_like(states[:1, :1])
+        knots = np.concatenate([np.concatenate([begun_at, states[:-1, -1:]]), states], axis=1)
+        pairs = knots.reshape(count // 2, 2, *knots.shape[1:])[:, self.half]
+        at_own = np.einsum("ak,nak...->na...", self.later, pairs)
+        return np.asarray(leading.monodromy + basis.T @ floquet.left(at_own, modes))
