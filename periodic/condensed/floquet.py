@@ -142,7 +142,7 @@ class Floquet:
         flat = states.reshape(system.points, len(system.places), -1)
         forces = self.given.local.forces[:, system.active]
         places = [1 + system.n + k for k in system.places]
-        right = (forces[:, :, places] @ flat).reshape(system.count, -1)
+        right = (forces[:, :, places] @ flat).reshape(system.count, flat.shape[2])
         answer = scipy.linalg.lu_solve(self._factors, right, check_finite=False)
         return np.concatenate([modes.real, modes.imag])[self.kept] + self._left @ answer
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -31,6 +32,9 @@ class ModalDamping:
     ratio: float | tuple[float, ...] = 0.0
     mass: float = 0.0
     stiffness: float = 0.0
+    _known: dict[str, tuple[Any, Any, Array]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         given = (("damping", self.ratio), ("rayleigh", (self.mass, self.stiffness)))
@@ -55,6 +59,10 @@ class ModalDamping:
 
     def matrix(self, matrices: Matrices) -> Array:
         """Return the damping matrix C = M Phi diag(2 zeta omega) Phi' M, shape (n, n)."""
-        squares, shapes = modes(matrices.K, matrices.M, matrices.size)
-        weighted = dense(matrices.M) @ shapes
-        return (weighted * self.rates(np.sqrt(np.maximum(squares, 0.0)))) @ weighted.T
+        known = self._known.get("last")
+        if known is None or known[0] is not matrices.M or known[1] is not matrices.K:
+            squares, shapes = modes(matrices.K, matrices.M, matrices.size)
+            weighted = dense(matrices.M) @ shapes
+            found = (weighted * self.rates(np.sqrt(np.maximum(squares, 0.0)))) @ weighted.T
+            known = self._known["last"] = (matrices.M, matrices.K, found)
+        return known[2]
