@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from periodic import Label
+import numpy as np
+
+from periodic import Branch, DoublingCondition, Label, trace
+from reports.studies.machines.figures import Curve
 from reports.studies.machines.machine import Known, Machine, place, rpm, swing
 
 MICRO, KRPM = 1e-6, 1000 * rpm(1.0)
@@ -38,6 +41,22 @@ DRY = Machine(
     **COMMON,
 )
 
+
+def over_clearance(machine: Machine, found: Branch) -> Curve:
+    """Return the first doubling over the clearance, up to a preload of a micrometre."""
+    doubling = found.labelled(Label.DOUBLING)[0]
+    border = trace(
+        machine.system,
+        "clearance",
+        (-1e-6, 8e-6),
+        guess=doubling.orbit,
+        determined={"speed": DoublingCondition()},
+    )
+    clearance = np.array([p.parameter for p in border]) / MICRO
+    speed = border.column("speed") / KRPM
+    return Curve(speed, clearance, ("speed of the doubling (10³ rev/min)", "clearance (µm)"))
+
+
 OILED = Machine(
     key="ball-bearing-lubricated",
     title="Ball bearing with an oil film on each ball",
@@ -46,5 +65,6 @@ OILED = Machine(
     words="The same bearing with a film of 0.3 µm (at 100 N) between each ball and either race, in series "
     "with Hertz's contact: h = h0 (W/W0)^(-1/13.7), without squeeze. The film takes up clearance, softens "
     "the loss of contact, and leaves no kink.",
+    two=over_clearance,
     **COMMON,
 )

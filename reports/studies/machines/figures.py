@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from periodic import Branch
+from periodic import Branch, plot_waterfall
 from periodic.results.plots.curve import draw_curve
 from reports.studies.pages.figures import SECOND, TRUSTED, panels
 
@@ -51,6 +51,13 @@ def diagram(view: View, found: Branch, marched: Sequence[tuple[float, float | No
         axes.plot(*zip(*settled, strict=True), "v", color=SECOND, markersize=5, label="time integration")
     axes.set(xlabel=view.names[0], ylabel=view.names[1])
     axes.legend(frameon=False)
+    return figure
+
+
+def spectra(view: View, found: Branch) -> Figure:
+    """Draw the spectra of the orbits, each above its value of the parameter."""
+    figure, axes = panels(1, 1, height=3.8)
+    plot_waterfall(found, view.output, axes)
     return figure
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from periodic import Branch, Peak, PeakToPeak, trace
+from periodic import Branch, GrazingCondition, Label, Peak, PeakToPeak, trace
 from reports.studies.machines.figures import Curve
-from reports.studies.machines.machine import Machine
+from reports.studies.machines.machine import Known, Machine, place
+
+HZ = 2 * math.pi
 
 
 def over_limit(machine: Machine, found: Branch) -> Curve:
@@ -40,6 +44,54 @@ SLIDER = Machine(
     marched=(0.7, 1.0, 1.1, 1.2, 1.5),
     words="The friction acts through a spring: small motion sticks, and the damper is a spring; larger "
     "motion slips twice a cycle, from where each slip begins to where it ends.",
+)
+
+
+def grazing(machine: Machine, found: Branch) -> Curve:
+    """Return where the orbit just touches the wall, over frequency and force."""
+    touch = next(p for p in found.special_points if p.label is Label.GRAZING)
+    border = trace(
+        machine.system,
+        "Omega",
+        (0.5, 2.0),
+        guess=touch.orbit,
+        determined={"A": GrazingCondition("impact at x = gap")},
+    )
+    frequency = np.array([p.parameter for p in border])
+    return Curve(frequency, border.column("A"), ("frequency Ω", "force A at which it touches"))
+
+
+IMPACT = Machine(
+    key="impact-oscillator",
+    title="Oscillator that strikes a rigid wall",
+    parameter="A",
+    axis="force A",
+    range=(1.0, 0.01),
+    marched=(0.9, 0.6, 0.3, 0.05),
+    words="COCO's problem hspo: a linear oscillator with an impact of restitution 0.8 in each period, "
+    "followed from large forces down to grazing, where the impact has no speed left, and on without impacts. "
+    "The orbit touches at A = c Ω d = 0.1, and over the frequency at d |k - Ω² + i c Ω|; the fold just below "
+    "is known in closed form.",
+    known=(
+        Known(name="fold (closed form), A", value=0.0999707536, ours=place(Label.FOLD, 0)),
+        Known(name="grazing, A = c Ω d", value=0.1, ours=place(Label.GRAZING, 0)),
+    ),
+    two=grazing,
+)
+
+BEAM = Machine(
+    key="beam-stop",
+    title="Beam that strikes a stop",
+    parameter="Omega",
+    axis="frequency (Hz)",
+    range=(16.0, 26.0),
+    unit=HZ,
+    size=1e-3,
+    output="tip",
+    swing="tip peak to peak (mm)",
+    words="A clamped steel beam of ten elements, condensed exactly to its tip, with a stop there six times "
+    "as stiff as the tip: the resonance stiffens from where the tip touches (GR) to the fold, and parts "
+    "again beside the second one.",
 )
 
 STOP = Machine(

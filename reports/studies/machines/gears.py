@@ -30,10 +30,12 @@ GEAR = Machine(
     words="Teeth part within each mesh period on the upper sheets: the resonance leans to low frequencies, "
     "and again at half the resonance, where the second harmonic of the mesh excites. In the dimensionless "
     "form of Kahraman and Singh, x'' + 2ζ x' + K(τ) B(x) = F_m + Σ F_j (jΩ)² cos jτ with ζ = 0.05, "
-    "F_m = 0.1, F = (0.01, 0.004, 0.002), K = 1 - Σ k_j cos jτ, k = (0.2, 0.1, 0.05).",
+    "F_m = 0.1, F = (0.01, 0.004, 0.002), K = 1 - Σ k_j cos jτ, k = (0.2, 0.1, 0.05). Only the driving "
+    "flanks part here: the folds do not depend on the size of the backlash, but on the load.",
     known=(
         Known(name="LP of the main resonance, low end", value=0.598153117, ours=place(Label.FOLD, 0)),
         Known(name="LP of the main resonance, high end", value=0.835837679, ours=place(Label.FOLD, 1)),
     ),
     two=over_load,
+    waterfall=True,
 )

@@ -11,7 +11,7 @@ import numpy as np
 
 import symbolic as sym
 from periodic import Branch, Label, Point, trace
-from reports.studies.machines.figures import Curve, View, diagram, over_two
+from reports.studies.machines.figures import Curve, View, diagram, over_two, spectra
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from symbolic.scenes.axes import RPM
 
@@ -51,6 +51,7 @@ class Machine:
     words: str
     known: tuple[Known, ...] = ()
     two: Callable[[Machine, Branch], Curve] | None = None
+    waterfall: bool = False
 
     @property
     def section(self) -> Section:
@@ -82,6 +83,8 @@ class Machine:
         if self.two is not None:
             tell("a curve in two parameters")
             figures[f"{self.key}-two"] = over_two(self.two(self, found))
+        if self.waterfall:
+            figures[f"{self.key}-waterfall"] = spectra(view, found)
         return Found(numbers=self.numbers(found), rows=[self.row(p) for p in special(found)], figures=figures)
 
     def simulated(self, value: float) -> float | None:
@@ -121,6 +124,7 @@ class Machine:
             "known": table,
             "marched": bool(self.marched),
             "two": self.two is not None,
+            "waterfall": self.waterfall,
         }
 
 

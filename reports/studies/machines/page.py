@@ -21,6 +21,8 @@ MACHINES = {
         friction.SMOOTH,
         friction.SLIDER,
         friction.STOP,
+        friction.IMPACT,
+        friction.BEAM,
     )
 }
 
