@@ -11,7 +11,7 @@ from periodic.collocation.kinks import KinkSettings
 from periodic.collocation.method import Collocation
 from periodic.condensed.motion import motion
 from periodic.condensed.recovery import recovery
-from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
+from periodic.conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from periodic.conditions.extremes import Maximum, Minimum, PeakToPeak
 from periodic.conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
 from periodic.conditions.grazing import GrazingCondition
@@ -89,6 +89,7 @@ __all__ = [
     "GrazingCondition",
     "Grid",
     "HarmonicBalance",
+    "HopfCondition",
     "Highest",
     "Increment",
     "Interrupted",

@@ -17,7 +17,7 @@ from periodic.bifurcations.stationary import BRANCHING as CROSSING
 from periodic.bifurcations.stationary import HOPF
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import TORUS, complex_pair, nearest_pair, noise, torus_of
-from periodic.conditions.augmented import DoublingCondition, FoldCondition, TorusCondition
+from periodic.conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from periodic.correction.condition import Condition
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
@@ -96,6 +96,7 @@ CURVES: dict[type, tuple[TestFunction, ...]] = {
     FoldCondition: FOLDS,
     DoublingCondition: DOUBLINGS,
     TorusCondition: TORI,
+    HopfCondition: (),
 }
 HELD: dict[type, float] = {FoldCondition: 1.0, DoublingCondition: -1.0}
 
@@ -126,7 +127,7 @@ def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
     if condition is None:
         return PASSAGES[decides] + (() if turned else BESIDE_TURNS[decides])
     if type(condition) in CURVES:
-        return CURVES[type(condition)]
+        return CURVES[type(condition)] if decides is Stability.MULTIPLIERS else ()
     return (*PASSAGES[decides], TestFunction(label=Label.FOLD, value=branching))
 
 
@@ -137,7 +138,7 @@ def alignment(base: Solution, new: Solution) -> float:
     on a curve that holds no simple multiplier.
     """
     condition = picked(base.problem)
-    if type(condition) not in HELD:
+    if type(condition) not in HELD or base.discretisation.stability is Stability.EIGENVALUES:
         return 1.0
     held = HELD[type(condition)]
     a, b = (_critical(solution, held) for solution in (base, new))

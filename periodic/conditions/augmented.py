@@ -17,6 +17,7 @@ import numpy as np
 
 from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
+from periodic.equilibrium.held import oscillating_row, singular_row
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -55,6 +56,31 @@ class TorusCondition(Condition):
         return _Pair()
 
 
+@dataclass(frozen=True)
+class HopfCondition(Condition):
+    """The equilibrium is a Hopf point (HB): a pair of eigenvalues is on the imaginary axis."""
+
+    def at(self, origin: Orbit, given: Given) -> SideCondition:
+        """Return the side condition near an equilibrium. Raises ValueError for an orbit that is none."""
+        if not origin.equilibrium:
+            raise ValueError(
+                "determined has HopfCondition(), which holds equilibria; it must be left out of orbits"
+            )
+        return _Oscillating()
+
+
+@dataclass
+class _Oscillating:
+    """The real part of a pair of eigenvalues is 0, the one nearest the axis at first, then followed."""
+
+    near: complex | None = None
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return the real part and its gradient."""
+        row, self.near = oscillating_row(system, orbit, free, self.near)
+        return row
+
+
 @dataclass
 class _Border:
     """The columns b and rows c that border K, chosen at the first orbit and kept."""
@@ -86,6 +112,8 @@ class _Singular:
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return g and its gradient."""
+        if orbit.equilibrium:
+            return singular_row(system, orbit, free, self.border.around)
         closed = variations(system, orbit, self.given.free).repeating(self.multiplier)
         rows = [c.linearise(system, orbit, self.given.free) for c in self.given.conditions]
         top = closed.matrix

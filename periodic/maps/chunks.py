@@ -65,8 +65,7 @@ def _branch(task: Task, values: Mapping[str, float], near: Orbit | None) -> tupl
         branch = task.traced(values, near)
     except FAILURES as error:
         return None, _said(error)
-    stops = [stop for stop in (branch.stop_backwards, branch.stop) if stop is not None]
-    return branch, next((str(stop) for stop in stops if stop.reason.numerical), "")
+    return branch, next((str(stop) for stop in branch.stops if stop.reason.numerical), "")
 
 
 def _read(task: Task, branch: Branch) -> tuple[dict[str, Read], str]:

@@ -17,6 +17,7 @@ from periodic.results import frames, netcdf
 from periodic.results.overview import branch_html
 from periodic.results.point import Point
 from periodic.results.record import Record
+from periodic.results.stop import Stop
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +58,20 @@ class Branch(Record):
     """
 
     def __repr__(self) -> str:
-        return f"Branch({self.parameter}, {len(self)} points, {self.stop})"
+        return f"Branch({self.parameter}, {len(self)} points, {self.ending})"
+
+    @property
+    def stops(self) -> tuple[Stop, ...]:
+        """Why it ends, at both ends of a branch that was traced both ways, the first one first."""
+        return (self.stop,) if self.stop_backwards is None else (self.stop_backwards, self.stop)
+
+    @property
+    def ending(self) -> str:
+        """Why it ends in words, at both ends where the reasons are not the same."""
+        back = self.stop_backwards
+        if back is None or back.reason is self.stop.reason:
+            return str(self.stop)
+        return f"{self.stop}; the other way {back}"
 
     def _repr_html_(self) -> str:
         return branch_html(self, self.stable_between, (repr(self), *self.remarks))

@@ -20,6 +20,9 @@ from symbolic.system.compiled import CompiledSystem, with_values
 PERIOD = 2 * math.pi
 """Of the excitation, in tau = omega t."""
 
+DIVERGED = 1e8
+"""States so many times larger than their scales, and than where they began, have diverged."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Simulation:
@@ -133,7 +136,7 @@ def simulate(
     SimulationInterrupted
         A KeyboardInterrupt (Ctrl-C) with what goes on as `motion`.
     IntegrationError
-        Where both integrators fail; the message says how far the motion could be followed.
+        Where both integrators fail or the motion diverges; the message says how far it could be followed.
     """
     for name, number, least in (("settle", settle, 0), ("periods", periods, 1), ("samples", samples, 3)):
         whole(name, number, least)
@@ -143,12 +146,15 @@ def simulate(
     state, algebraic = _beginning(system, parameter, start)
     state = state + _knocked(system, parameter, {} if knock is None else knock)
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
-    done = 0
+    done, largest = 0, DIVERGED * max(1.0, float(np.abs(state).max(initial=0.0)))
     try:
         for _ in counted(settle, "settling", "periods"):
             end = flow.run(state, algebraic, parameter, ends)
             state, algebraic, done = end.state[-1], end.algebraic[-1], done + 1
+            _check_bounded(system, state, largest, 0.0)
         found = flow.run(state, algebraic, parameter, phase)
+        for row, tau in zip(found.state, found.phase, strict=True):
+            _check_bounded(system, row, largest, float(tau))
     except KeyboardInterrupt:
         still = {"phase": np.zeros(1), "state": state[None], "algebraic": algebraic[None]}
         raise SimulationInterrupted(Simulation(system=system, parameter=parameter, **still), done) from None
@@ -158,6 +164,15 @@ def simulate(
     return Simulation(
         system=system, parameter=parameter, phase=found.phase, state=found.state, algebraic=found.algebraic
     )
+
+
+def _check_bounded(system: CompiledSystem, state: Array, largest: float, phase: float) -> None:
+    """Raise IntegrationError for states that are larger than any motion at rest or knocked from it."""
+    k = int(np.abs(state).argmax())
+    if not abs(state[k]) <= largest:
+        raise IntegrationError(
+            f"it diverges: {system.states[k].name} is {state[k]:.3g} times its scale", phase
+        )
 
 
 def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | None) -> tuple[Array, Array]:

@@ -21,6 +21,7 @@ BORDERS = {
     "FoldCondition": "LP",
     "DoublingCondition": "PD",
     "TorusCondition": "NS",
+    "HopfCondition": "HB",
     "GrazingCondition": "GR",
     "Peak": "peak",
     "Level": "level",

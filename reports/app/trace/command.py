@@ -226,7 +226,7 @@ def _verdict(branch: Branch, folder: Path) -> int:
         return INTERRUPTED
     if branch.shortfall:
         say(f"tolerance missed at {branch.shortfall}")
-    if branch.stop.reason.numerical:
-        say(f"stopped early ({branch.stop}); {kept}")
+    if any(stop.reason.numerical for stop in branch.stops):
+        say(f"stopped early ({branch.ending}); {kept}")
         return STOPPED_EARLY
     return DONE

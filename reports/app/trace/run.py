@@ -141,7 +141,7 @@ def swept(task: Task, progress: Callable[[Settled], None] | None = None) -> Sett
 
 def place(branch: per.Branch, folder: Path) -> Path:
     """Return where a branch goes: one that is cut short in place of none but a shorter one cut short."""
-    cut = branch.stop.reason.numerical or branch.stop.reason is per.Reason.INTERRUPTED
+    cut = any(s.reason.numerical or s.reason is per.Reason.INTERRUPTED for s in branch.stops)
     if not cut or not (folder / BRANCH).exists():
         return folder
     others = (folder / f"{INCOMPLETE}-{number}" for number in count(2))

@@ -46,7 +46,7 @@ def show(scene: Scene, branch: Branch, files: Sequence[Path]) -> None:
     print(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
     for remark in branch.remarks:
         print(f"note: {remark}")
-    print(f"stop: {branch.stop}")
+    print(f"stop: {branch.ending}")
     print("written: " + ", ".join(str(file) for file in files))
 
 

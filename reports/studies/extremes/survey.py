@@ -167,7 +167,7 @@ def judged(branch: per.Branch) -> tuple[Outcome, str]:
     numbers = [v for p in branch for v in (p.parameter, *p.minimum.values(), *p.maximum.values())]
     if not all(map(math.isfinite, numbers)):
         return Outcome.WRONG, "a point has numbers that are not finite"
-    stops = [s for s in (branch.stop_backwards, branch.stop) if s is not None]
+    stops = branch.stops
     for stop in stops:
         if stop.reason in (per.Reason.MAX_POINTS, per.Reason.INTERRUPTED) and len(branch):
             used = "points" if stop.reason is per.Reason.MAX_POINTS else "time"

@@ -1,0 +1,62 @@
+"""Curves of folds and of Hopf points of equilibria in two parameters, against closed forms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from support.equations import brusselator, stuart_landau
+
+import periodic as per
+import symbolic as sym
+
+
+def cubic() -> sym.CompiledSystem:
+    """x' = a + b / 2 + b x - x^3 by way of an unknown z = x^3, with y' = x - y beside it."""
+
+    def rates(x: Any, p: Any) -> dict[str, Any]:
+        return {"x": p.a + p.b / 2 + p.b * x.x - x.z, "y": x.x - x.y, "z": x.z - x.x**3}
+
+    parameters, states = {"a": 0.0, "b": 1.0}, {"x": 0.0, "y": 0.0}
+    return sym.compile(sym.Equations(rates, states, parameters, unknowns={"z": 0.0}))
+
+
+def test_curve_of_folds_with_its_cusp() -> None:
+    """Assert 27 (a + b/2)^2 = 4 b^3 along the folds, through the cusp at a = b = 0, to 10 digits."""
+    system = cubic()
+    branch = per.equilibria(system, "a", (-2, 1), guess={"x": -1.5, "y": -1.5, "z": -3.4})
+    fold = branch.labelled("LP")[0]
+    held = {"b": per.FoldCondition()}
+    curve = per.equilibria(system, "a", (-1, 1), guess=fold.orbit, determined=held)
+    assert len(curve) > 10
+    a, b = curve.values, curve.column("b")
+    assert 27 * (a + b / 2) ** 2 == pytest.approx(4 * b**3, rel=1e-10, abs=1e-10)
+    assert all(np.abs(p.multipliers).min() < 1e-9 for p in curve)
+    other = per.equilibria(system, "b", (-0.5, 1.5), guess=fold.orbit, determined={"a": per.FoldCondition()})
+    (cusp,) = other.labelled("CP")
+    assert cusp.parameter == pytest.approx(0.0, abs=1e-9)
+    assert cusp.orbit.parameters["a"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_curve_of_hopf_points() -> None:
+    """Assert B = 1 + A^2 along the Hopf points of the Brusselator, whose frequency is A, to 10 digits."""
+    system = brusselator()
+    names = [p.name for p in system.parameters]
+    (hopf,) = per.equilibria(system, "B", (1, 4)).labelled("HB")
+    curve = per.equilibria(system, "A", (0.5, 2.0), guess=hopf.orbit, determined={"B": per.HopfCondition()})
+    assert {"A", "B"} <= set(names) and {curve[0].parameter, curve[-1].parameter} == {0.5, 2.0}
+    assert curve.column("B") == pytest.approx(1 + curve.values**2, rel=1e-10)
+    for point in curve:
+        assert np.abs(point.multipliers.real).max() < 1e-9
+        assert np.abs(point.multipliers.imag) == pytest.approx(point.parameter, rel=1e-9)
+        assert per.eigenvalues(system, point.orbit) == pytest.approx(point.multipliers)
+
+
+def test_hopf_condition_is_for_equilibria() -> None:
+    """Assert the sentence for orbits."""
+    system = stuart_landau()
+    (hopf,) = per.equilibria(system, "mu", (-1, 1)).labelled("HB")
+    orbit = per.hopf(system, hopf.orbit, "mu")
+    with pytest.raises(ValueError, match="HopfCondition.., which holds equilibria"):
+        per.trace(system, "mu", (-1, 1), guess=orbit, determined={"omega": per.HopfCondition()})
