@@ -111,9 +111,10 @@ LARGEST = 500
 def all_states(system: CompiledSystem) -> CompiledSystem:
     """Return a system with all states, where its linear part is condensed; else itself.
 
-    Raises ValueError for structures that are too large, or whose matrices are functions of the speed.
+    Raises ValueError for what is no compiled model, structures that are too large, and those whose matrices
+    are functions of the speed.
     """
-    if not system.held:
+    if not typed("system", system, CompiledSystem, "a CompiledSystem, as symbolic.compile returns it").held:
         return system.whole
     for structure in {id(place.structure): place.structure for place in system.held}.values():
         if structure.size > LARGEST:
