@@ -32,6 +32,8 @@ class ArclengthControl:
         Factors on the next step by the Newton iterations of this one: up to 3, 4, 5, 6.
     slow : float
         The factor after more iterations than these.
+    recovery : float
+        Factor on steps shorter than `ds`, as after a touch, as far as their strain allows it.
     patience : int
         Newton iterations that a step may take; one that takes more is too long.
     remesh_every : int
@@ -64,6 +66,7 @@ class ArclengthControl:
     aim: float = 0.8
     growth: tuple[tuple[int, float], ...] = ((3, 2.0), (4, 1.5), (5, 1.2), (6, 1.0))
     slow: float = 0.7
+    recovery: float = 4.0
     patience: int = 9
     remesh_every: int = 10
     remesh_above: float = 0.5
@@ -74,7 +77,7 @@ class ArclengthControl:
     max_newton: int = 1_000_000
 
     def __post_init__(self) -> None:
-        for name in ("ds_min", "ds", "ds_max", "bend", "slow", "remesh_above"):
+        for name in ("ds_min", "ds", "ds_max", "bend", "slow", "recovery", "remesh_above"):
             positive(name, getattr(self, name))
         if not self.ds_min <= self.ds <= self.ds_max:
             raise ValueError(
@@ -113,7 +116,9 @@ class ArclengthControl:
             Its length, from ds_min to ds_max.
         """
         factor = next((factor for most, factor in self.growth if iterations <= most), self.slow)
-        factor = min(factor, self.aim / max(strain, self.aim / 2))
+        if ds < self.ds and iterations <= self.growth[0][0]:
+            factor = max(factor, min(self.recovery, self.ds / ds))
+        factor = min(factor, self.aim / max(strain, self.aim / max(self.recovery, 2)))
         return float(np.clip(ds * rounded(factor), self.ds_min, self.ds_max))
 
     def shorter(self, strain: float) -> float:
