@@ -163,7 +163,7 @@ class Meeting:
     @property
     def final(self) -> bool:
         """Whether events are never looked at nearer to each other."""
-        return self.length == SHORT[-1]
+        return self.length <= SHORT[-1]
 
     @property
     def condition(self) -> Length:
@@ -286,9 +286,9 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
         same = first.switch == second.switch
         if first.switch not in own or second.switch not in own:
             continue
-        nearest = next((length for length in SHORT if length < VANISHING * now[i]), None)
-        left = max(VANISHING * now[i], nearest or 0.0) if same else nearest or 0.0
-        if nearest is None or then[i] > left:
+        half = VANISHING * float(now[i])
+        nearest = next((length for length in SHORT if length < half), half)
+        if then[i] > (max(half, nearest) if same else nearest):
             continue
         part = (now[i] ** 2 - nearest**2) / (2 * now[i] * (now[i] - then[i])) if same else 1.0
         if not same:

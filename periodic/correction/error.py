@@ -86,7 +86,7 @@ SMALL = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
 
-STEEP = 0.03
+STEEP = 0.1
 """Part of a branch's direction that the parameter is, below which it is about a fold."""
 
 

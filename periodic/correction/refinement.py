@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from periodic.correction.identity import same
+from periodic.correction.identity import distance, same
 from periodic.correction.outcome import Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -16,6 +16,10 @@ from periodic.orbit.scheme import Array
 
 ROUNDS = 8
 """How often the mesh is made anew for one orbit."""
+
+
+BESIDE = 1e-3
+"""How far, in peaks to peak, an orbit may be from what passed a kink unseen."""
 
 
 def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solution:
@@ -29,7 +33,8 @@ def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solut
             return solution
         new = remeshed(solver, solution, fixed=fixed)
         if not new.ok:
-            return solution if solution.error.curable <= solver.tolerance.orbit else new
+            right = solution.error.curable <= solver.tolerance.orbit and _sees(solver, solution)
+            return solution if right else new
         solution = new
     return solution
 
@@ -68,8 +73,17 @@ def carried(solver: Solver, solution: Solution, mesh: Mesh, phases: Array) -> So
 
 
 def _unmoved(solver: Solver, old: Solution, new: Solution) -> Solution:
-    """Return the new solution if it is the old orbit within its error."""
-    return new.failed(Outcome.MOVED) if new.ok and not same(solver, old, new) else new
+    """Return the new solution if it is the old orbit within its error, or near it where that is none."""
+    if not new.ok or same(solver, old, new):
+        return new
+    apart = distance(solver.problem, old.orbit, new.orbit)
+    near = apart <= BESIDE * old.orbit.span() and not _sees(solver, old) and _sees(solver, new)
+    return new if near else new.failed(Outcome.MOVED)
+
+
+def _sees(solver: Solver, solution: Solution) -> bool:
+    """Whether an orbit passes no kink unseen: else it is none of the system."""
+    return solver.discretisation.pattern(solver.problem.system, solution.orbit) is not None
 
 
 def _first_of(attempts: Iterable[Solution], otherwise: Solution) -> Solution:

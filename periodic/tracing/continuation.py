@@ -31,7 +31,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
-from periodic.tracing.passage import Reached, crossed, reached
+from periodic.tracing.passage import Reached, crossed, reached, standing
 from periodic.tracing.start import Start, collapsed
 from periodic.tracing.stepsize import ArclengthControl
 from periodic.tracing.strain import strains
@@ -78,7 +78,8 @@ class Attempt:
 class State:
     """Where a run stands: its last solution, the first, the next step's size, and what it has counted.
 
-    kept: how many of its points belong to steps that were completed.
+    kept: how many of its points belong to steps that were completed. least: the least step, beside a touch
+    less than elsewhere: a fold may lie that near.
     """
 
     begun: Solution
@@ -90,6 +91,7 @@ class State:
     left: bool
     met: dict[str, int]
     kept: int
+    least: float
     course: Course = field(default_factory=Course)
 
 
@@ -202,7 +204,8 @@ class Continuation:
         yield self._emitted(base, Label.END)
         if base.value in self.user:
             yield self._emitted(base, Label.USER)
-        self.state = State(base, base, self.sign, self.control.ds, 0, 0, False, {}, len(self.collected))
+        ds, least = self.control.ds, self.control.ds_min
+        self.state = State(base, base, self.sign, ds, 0, 0, False, {}, len(self.collected), least)
         yield from self._onward(base)
 
     def _again(self, state: State) -> Iterator[Point]:
@@ -242,8 +245,9 @@ class Continuation:
         # Newton has moved it by rounding; what follows shall be just what would have followed.
         correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
         again = replace(again, correction=correction, tangent=c.tangent)
+        least = min(self.control.ds_min, NEARLY * c.ds)
         self.state = State(
-            begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points), c.course
+            begun, again, c.sign, c.ds, c.steps, c.since_remesh, c.left, c.met, len(points), least, c.course
         )
         yield from self
 
@@ -290,9 +294,13 @@ class Continuation:
     def _taken(self, base: Solution) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
         assert self.state is not None
-        control, ds, begin = self.control, self.state.ds, self.state.begun.value
+        ds, begin = self.state.ds, self.state.begun.value
+        control = replace(self.control, ds_min=self.state.least)
         tests = self.watch.tests()
         sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
+        touching = standing(self.solver, base, ds) if self.state.steps == 0 else None
+        if touching is not None:
+            return Step(base, ds, [], Course(), touching)
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
@@ -370,9 +378,10 @@ class Continuation:
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
             if found.touches:
                 self._counted(Label.GRAZING)
-            ds = self.control.ds if found.touches else max(found.distance, self.control.ds_min)
+            ds = self.control.ds if found.touches else found.distance
             kept, last = len(self.collected), found.solution
-            self.state = replace(self.state, last=last, ds=ds, kept=kept, course=Course())
+            least = min(self.control.ds_min, NEARLY * ds)
+            self.state = replace(self.state, last=last, ds=ds, kept=kept, least=least, course=Course())
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
@@ -390,6 +399,7 @@ class Continuation:
             self.state,
             last=new,
             ds=step.further,
+            least=min(self.control.ds_min, max(self.state.least, NEARLY * step.further)),
             steps=self.state.steps + 1,
             since_remesh=self._since_remesh,
             left=self.state.left or not same(self.solver, self.state.begun, new),

@@ -23,6 +23,9 @@ CLOSE = 1e-8
 NEAR = 0.02
 """Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
 
+STANDING = 1e-8
+"""A change that is no farther than this part of a step is at its base."""
+
 ROUNDS = 4
 """How often the mesh of the orbit beyond a change is made anew."""
 
@@ -37,6 +40,15 @@ class Reached:
     end: Solution
     ds: float
     change: Change
+
+
+def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
+    """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
+    guess = tangent(solver.problem, base, ds)
+    change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
+    if change is None or not change.touches or change.part > STANDING:
+        return None
+    return Reached(base, 0.0, change)
 
 
 def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, change: Change) -> Reached | None:
