@@ -207,9 +207,8 @@ class Collocation(Discretisation):
             return found
         orbit, rows = correction.orbit, event_rows(problem.system, correction.orbit, ())
         missing = stick.shortfall(problem.system, orbit)
-        rounding = of_states(orbit, spectrum)
+        rounding = of_states(orbit, spectrum) + of_events(orbit, rows, spectrum)
         multiplier = max(found.multiplier, lost(problem.system, orbit), missing, rounding)
-        rounding += of_events(orbit, rows, spectrum)
         return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:

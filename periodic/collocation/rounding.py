@@ -15,14 +15,14 @@ from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
 
 EPSILON = float(np.finfo(float).eps)
-CANCELLED = 4 * EPSILON
-"""How far beside its level a switch may be, as a part of the terms that cancel in it."""
+TERMS = 4
+"""How many times the rounding of the terms that cancel in it a switch may be off its level at the most."""
 
 
 def aside(orbit: Orbit, rows: list[Row]) -> Array:
     """Return how far from their levels rounding leaves the switches of event nodes, shape (k,)."""
     sizes = [float(np.abs(row.nodes * orbit.nodes).sum()) for row in rows]
-    return CANCELLED * np.array(sizes)
+    return TERMS * EPSILON * np.array(sizes)
 
 
 def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
@@ -37,12 +37,12 @@ def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
 
 
 def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
-    """Return by how much they are off at the most as contacts begin and end where rounding has it."""
+    """Return about by how much they are off as contacts begin and end where rounding has it."""
     late, off = 0.0, aside(orbit, rows)
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
         slope = abs(float(row.nodes[start] @ orbit.node_rates[start]) + float(row.outer[i]))
         late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
-    return _fastest(orbit, spectrum) * late / spectrum.radius if late else 0.0
+    return _fastest(orbit, spectrum) * late / TERMS / spectrum.radius if late else 0.0
 
 
 def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:
