@@ -87,6 +87,20 @@ def test_each_format_holds_the_branch(
         assert motion == pytest.approx(point.orbit["x"](exact), rel=1e-11, abs=1e-12)
 
 
+def test_multipliers_of_csv(tmp_path: Path) -> None:
+    """Assert that real and imaginary parts of all multipliers and the stability stand in named columns."""
+    per.export(duffing(), tmp_path / "branch.csv", samples=4)
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "branch.csv").read_text("utf-8"))))
+    names = [f"multiplier {k + 1}" for k in range(2)]
+    assert [name for name in rows[0] if name.startswith("multiplier ")] == [
+        f"{name} {part}" for name in names for part in ("re", "im")
+    ]
+    for point, row in zip(duffing(), rows, strict=True):
+        found = [complex(float(row[f"{name} re"]), float(row[f"{name} im"])) for name in names]
+        assert found == pytest.approx(point.multipliers, rel=1e-15)
+        assert row["stable"] == str(point.stable).lower()
+
+
 def test_amplitudes_of_uff(tmp_path: Path) -> None:
     """Assert that UFF58 has the peak to peak over the parameter, and the kinds of its quantities."""
     pyuff = pytest.importorskip("pyuff")
