@@ -54,7 +54,7 @@ def test_backbone_of_duffing(linear: float, cubic: float, end: float, tol: float
         assert 2 * np.pi / point.parameter == pytest.approx(duffing_period(size, linear, cubic), rel=digits)
         energy = linear * size**2 / 2 + cubic * size**4 / 4
         assert [point.minimum["energy"], point.maximum["energy"]] == pytest.approx([energy] * 2, rel=1e-6)
-        assert abs(point.orbit.parameter[0]) < 1e-9
+        assert abs(point.orbit.parameter[0]) < 1e-11
         assert point.conservative and point.trivial is not None and point.trivial < 1e-8
         assert len(point.nontrivial) == 0
 

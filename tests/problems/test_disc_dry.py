@@ -81,7 +81,7 @@ def test_folds_by_integration(case: Case) -> None:
     for point in branch_of(case).labelled(per.Label.FOLD):
         start = point.orbit.state(np.zeros(1))[0]
         period = motion(problem(case, point.parameter / RPM), start, rtol=1e-11)
-        assert np.abs(period.end - period.start).max() < 1e-6
+        assert np.abs(period.end - period.start).max() < 1e-8
         assert np.abs(period.multipliers - 1).min() < 1e-4
 
 

@@ -155,6 +155,9 @@ def _called(
     del kept
     if outcome is None:
         return None
+    if most and outcome is not Outcome.CONVERGED:  # what C has left there, if anything, is no change
+        for array in (*parts[0], *parts[1]):
+            array.fill(0.0)
     increment, kernel = (_change(orbit, part) for part in parts)
     return _Solved(call, outcome, orbit, increment, kernel, maps[:, :, 1 : 1 + call.n])
 

@@ -126,7 +126,7 @@ def test_hand_written_system_is_traced() -> None:
     assert branch.stop.reason is per.Reason.BOUND
     for point, value in zip(branch.labelled(per.Label.USER), values, strict=True):
         exact = LinearOscillator(Omega=value)
-        assert np.abs(point.orbit.state(PHASES) - exact.exact_state(PHASES)).max() < 1e-6
+        assert np.abs(point.orbit.state(PHASES) - exact.exact_state(PHASES)).max() < 1e-7
         assert sorted(point.multipliers, key=np.imag) == pytest.approx(
             sorted(exact.exact_multipliers(), key=np.imag), abs=1e-8
         )

@@ -101,14 +101,14 @@ def test_orbit_agrees_with_shooting(Omega: float, kinks: int) -> None:
 def test_multipliers_agree_with_shooting(Omega: float, kinks: int) -> None:
     """Assert that both multipliers agree with shooting."""
     found = in_order(standard(Omega).multipliers)
-    assert np.abs(found - reference(Omega).multipliers).max() < 1e-6
+    assert np.abs(found - reference(Omega).multipliers).max() < 1e-7
 
 
 @each_case
 def test_product_of_multipliers(Omega: float, kinks: int) -> None:
     """Assert that the product of the multipliers is exp of the integral of the trace."""
     exact = np.exp(-2 * DAMPING * 2 * np.pi / Omega)
-    assert np.prod(standard(Omega).multipliers) == pytest.approx(exact, abs=1e-7)
+    assert np.prod(standard(Omega).multipliers) == pytest.approx(exact, abs=1e-8)
 
 
 @pytest.mark.parametrize("family", per.Family)
@@ -221,4 +221,4 @@ def test_meissner(family: per.Family) -> None:
     )
     for point, value in zip(branch.labelled(per.Label.USER), values, strict=True):
         exact = in_order(MeissnerOscillator(Omega=value).exact_multipliers())
-        assert np.abs(in_order(point.multipliers) - exact).max() < 1e-8
+        assert np.abs(in_order(point.multipliers) - exact).max() < 1e-9

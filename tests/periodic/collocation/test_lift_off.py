@@ -80,7 +80,7 @@ def test_preloaded_stop(way: tuple[float, float]) -> None:
         if point is not touch:
             gap, apart = errors(exact, point)
             assert gap < 1e-9
-            assert apart < 1e-6
+            assert apart < 1e-7
             assert len(point.orbit.mesh.events) == (0 if point.parameter > touch.parameter else 2)
 
 

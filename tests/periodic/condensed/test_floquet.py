@@ -28,5 +28,5 @@ def test_leading_multipliers_are_the_largest(elements: int, states: int) -> None
     found = np.linalg.eigvals(leading.fundamental[-1])
     assert (np.abs(found) > 1).sum() == (np.abs(every) > 1).sum() == 1
     apart = np.abs(found[:, None] - every).min(axis=1)
-    assert apart.max() < 1e-10
+    assert apart.max() < 1e-12
     assert np.sort(np.abs(found))[2:] == pytest.approx(np.sort(np.abs(every))[-6:], abs=1e-10)

@@ -114,7 +114,7 @@ def test_unstable_orbits_of_lorenz() -> None:
 
     start = 10 * end.orbit.state(np.zeros(1))[0]
     after = path(rates, start, 2 * np.pi / omega, rtol=1e-13, atol=1e-13)[:, -1]
-    assert after == pytest.approx(start, rel=1e-8)
+    assert after == pytest.approx(start, rel=1e-11)
 
 
 def test_feedback_control_from_rest_to_its_doubling() -> None:

@@ -30,7 +30,7 @@ def test_multipliers_over_55_decades() -> None:
     found = multipliers(steps())
     wanted = 10.0**DECADES * np.exp(1j * ANGLE * np.array([0, 0, 1, -1, 0]))
     order = np.lexsort([-found.imag, -np.round(np.log10(np.abs(found)))])
-    assert np.abs(found[order] / wanted - 1).max() < 1e-9
+    assert np.abs(found[order] / wanted - 1).max() < 1e-12
 
 
 @pytest.mark.parametrize("count", [1, 2, 7, 60])
@@ -49,7 +49,7 @@ def test_reduction_solves_the_chain(count: int) -> None:
     whole = np.linalg.solve(matrix, right).reshape(count + 1, 5)
     both = np.concatenate([[1.0], whole[0], whole[-1], outer])
     size = np.abs(whole).max()
-    assert np.abs(reduced.ends @ both).max() < 1e-11 * size
+    assert np.abs(reduced.ends @ both).max() < 1e-12 * size
     assert np.abs(reduced.maps @ both - whole).max() < 1e-11 * size
 
 
