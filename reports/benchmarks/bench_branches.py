@@ -7,14 +7,10 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import periodic as per
 import symbolic as sym
-from reports.benchmarks.work import chain_model, fold_error
+from reports.benchmarks.work import AUTO, calibration, chain_model, fold_error, stopped_model
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
 from symbolic.scenes.files import load
-
-AUTO = {1: (219, 0.034), 2: (305, 0.10), 5: (341, 0.59), 10: (341, 3.7), 25: (341, 37.6)}
-"""Points and processor seconds of AUTO-07p (its own executable, NTST 20, multipliers) on the branch
-of a chain, by the number of oscillators; measured once, on two cores like those of CI."""
 
 
 def at_each_accuracy(what: str) -> pytest.MarkDecorator:
@@ -48,10 +44,18 @@ def test_duffing(benchmark: BenchmarkFixture, accuracy: per.Accuracy) -> None:
 @pytest.mark.benchmark(group="chain branch")
 @pytest.mark.parametrize("count", AUTO, ids="{} oscillators".format)
 def test_chain(benchmark: BenchmarkFixture, count: int) -> None:
-    """Chains of oscillators from 1.6 down to 0.5 rad/s through their folds."""
-    branch = benchmark.pedantic(per.trace, (sym.compile(chain_model(count)), "Omega", (1.6, 0.5)), rounds=2)
-    points, seconds = AUTO[count]
-    benchmark.extra_info |= told(branch) | {"AUTO points": points, "AUTO s": seconds}
+    """Chains of oscillators from 1.6 down to 0.5 rad/s through their folds; AUTO's time as once recorded."""
+    branch = benchmark.pedantic(per.trace, (sym.compile(chain_model(count)), "Omega", (1.6, 0.5)), rounds=3)
+    points, loops = AUTO[count]
+    benchmark.extra_info |= told(branch) | {"AUTO points": points, "AUTO s": loops * calibration()}
+
+
+@pytest.mark.benchmark(group="chain branch")
+@pytest.mark.parametrize("count", [2, 20], ids="{} with clearances".format)
+def test_clearances(benchmark: BenchmarkFixture, count: int) -> None:
+    """Chains of oscillators with clearances, from 1.6 rad/s through the resonance, in 60 steps at most."""
+    given, few = (sym.compile(stopped_model(count)), "Omega", (1.6, 0.5)), per.ArclengthControl(max_points=60)
+    benchmark.extra_info |= told(benchmark.pedantic(per.trace, given, {"control": few}, rounds=1))
 
 
 @pytest.mark.benchmark(group="large motion")

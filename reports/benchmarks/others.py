@@ -19,8 +19,8 @@ from reports.benchmarks.work import fold_error
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
 """Environment of the processes that are measured."""
 
-PACKAGES = {"auto": "bifpy", "harm": "pyHarm-os", "difference": "bice"}
-"""What the modules of `reports.benchmarks.peers` need."""
+PACKAGES = {"auto": "bifpy", "harm": "pyHarm-os", "difference": "bice", "xpp": "xpplab"}
+"""What the modules of `reports.benchmarks.peers` need; `executable` needs AUTO_DIR."""
 
 PYTHON = "ORBITRACE_PEERS"
 """The environment variable."""
@@ -62,7 +62,7 @@ def traced(case: Case) -> Branch:
     done = _run(code)
     if done.returncode:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-        package = PACKAGES[case.module]
+        package = PACKAGES.get(case.module, "AUTO-07p")
         if reason.startswith("ModuleNotFoundError"):
             raise MissingError(f"{package} is not installed (pip install 'orbitrace[peers]')")
         raise MissingError(f"{package} failed: {reason}")

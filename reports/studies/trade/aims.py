@@ -27,6 +27,7 @@ from reports.studies.trade.words import seconds
 AUTO = "AUTO-07p by bifpy, ntst 50"
 DISC, CHAIN = "disc iteration", "chain iteration"
 STANDARD, DUFFING = "disc branch, standard", "Duffing A branch"
+ITSELF, CHAINS = "AUTO-07p itself, ", ("oscillators", "with clearances")
 ALIKE = 1e-10
 """Error of the folds up to which Duffing A counts as accurate as AUTO has it."""
 
@@ -126,7 +127,7 @@ def by_name(rows: Sequence[Result]) -> dict[str, Numbers]:
 
 def aims(n: Mapping[str, Numbers]) -> list[Aim]:
     """Return the aims with what was found."""
-    auto = n.get(AUTO, STATED)
+    auto = n.get(f"{ITSELF}ntst 50", n.get(AUTO, STATED))
     own = alike(n)
     disc, chain, start = n[DISC], n[CHAIN], n["start"]
     return [
@@ -175,6 +176,20 @@ def compared(rows: Sequence[Result]) -> dict[str, Numbers]:
     return {name: numbers for name, numbers in by_name(rows).items() if name.startswith(TOOLS)}
 
 
+def chains(n: Mapping[str, Numbers]) -> list[tuple[str, ...]]:
+    """Return a row for each chain: points and times of AUTO, measured or as recorded, and of ours."""
+    found: list[tuple[str, ...]] = []
+    for name, own in n.items():
+        if not name.endswith(CHAINS) or name.startswith(ITSELF):
+            continue
+        auto = n.get(f"{ITSELF}{name}", {key: own.get(f"AUTO {key}", np.nan) for key in ("points", "s")})
+        known = not np.isnan(auto["s"])
+        theirs = f"{auto['points']:.0f}, {seconds(auto['s'])}" if known else "not run"
+        ratio = f"{own['s'] / auto['s']:.2f}" if known else "-"
+        found.append((name, theirs, f"{own['points']:.0f}, {seconds(own['s'])}", ratio))
+    return found
+
+
 def context(kept: Kept) -> Mapping[str, Any]:
     """Return what the template is given."""
     rows = [Result(**row) for row in kept.rows]
@@ -182,6 +197,7 @@ def context(kept: Kept) -> Mapping[str, Any]:
     return {
         "aims": [aim.cells for aim in aims(numbers)],
         "memory": numbers["memory"],
+        "chains": chains(numbers),
         "machine": said.get(MACHINE, "not known"),
         "beside": [_cells(name, own, said) for name, own in compared(rows).items()],
         "missing": {name: why for name, why in said.items() if name.startswith(TOOLS)},
@@ -193,7 +209,7 @@ def _cells(name: str, n: Numbers, said: Mapping[str, str]) -> tuple[str, ...]:
     version = said.get(f"version of {package}", "not known")
     label = name.replace(DUFFING, "orbitrace") if package is None else f"{name} ({package} {version})"
     error = power(n["fold error"]) if "fold error" in n else "not reached"
-    multipliers = "yes" if package in (None, "bifpy") else "no"
+    multipliers = "no" if package in ("pyHarm-os", "bice") else "yes"
     whole = seconds(n["s"]) if "fold error" in n else "-"
     return label, f"{n['points']:.0f}", whole, _ms(n["per point ms"]), error, multipliers
 

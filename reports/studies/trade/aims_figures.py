@@ -14,7 +14,7 @@ from reports.studies.pages.figures import TRUSTED, panels
 Numbers = dict[str, float]
 """Results by name; a name ends with its unit."""
 
-TOOLS = ("Duffing A branch", "AUTO-07p by bifpy", "pyHarm", "bice")
+TOOLS = ("Duffing A branch", "AUTO-07p itself, ntst", "AUTO-07p by bifpy", "xpplab", "pyHarm", "bice")
 """How the names of the benchmarks begin."""
 
 
@@ -60,7 +60,7 @@ def _ticks(axis: Any) -> None:
 def peers(found: Mapping[str, Numbers]) -> Figure:
     """Return the error of the folds over the time of the branch, a curve for each tool."""
     figure, axes = panels(1, 1, width=7.0, height=3.8)
-    for tool, marker in zip(TOOLS, "osv^", strict=True):
+    for tool, marker in zip(TOOLS, "osvDx^", strict=True):
         own = {k: n for k, n in found.items() if k.startswith(tool) and "fold error" in n}
         time, error = [n["s"] for n in own.values()], [n["fold error"] for n in own.values()]
         axes.loglog(time, error, marker + "-", label=tool.replace(TOOLS[0], "orbitrace"))

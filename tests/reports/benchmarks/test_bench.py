@@ -30,7 +30,7 @@ def test_record_tells_what_is_missing(tmp_path: Path) -> None:
     bare.write_text(f'#!/bin/sh\nexec "{sys.executable}" -I -S "$@"\n', "utf-8")
     bare.chmod(0o755)
     files = [f"{Path(benchmarks.__file__).parent}/bench_{name}.py" for name in ("calibration", "peers")]
-    chosen = ["-k", "calibration or (peer and 20)", "-rs", "-p", "no:cacheprovider"]
+    chosen = ["-k", "calibration or (bifpy and 20)", "-rs", "-p", "no:cacheprovider"]
     run = [sys.executable, "-m", "pytest", *files, *chosen, f"--benchmark-json={record}"]
     # pytest-benchmark measures nothing in a worker of pytest-xdist, or what takes itself for one.
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
