@@ -27,7 +27,7 @@ from symbolic.structures.rowspart import RowsPart
 from symbolic.system.overview import overview
 from symbolic.tables import told
 
-SMALL = 16
+SMALL = 31
 """Number of states up to which the engine iterates in C."""
 
 

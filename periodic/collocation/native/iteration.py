@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from periodic.collocation.native.elimination import ELIMINATION
+from periodic.collocation.native.elimination import ELIMINATION, LARGE
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
 from periodic.correction.newton import Correction, Linearised, NewtonSettings
@@ -29,8 +29,8 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling, jumps_of, resets_of
 
-MOST = 16
-"""Number of states up to which it is worth its while."""
+MOST = LARGE - 1
+"""Number of states up to which it is worth its while, whatever the matrices: see `LARGE`."""
 
 _SIZES = ("count", "ncol", "n", "m", "k", "parameters", "switches", "exact", "free", "most")
 _MARKS = ("segment", "starts", "switch_of", "ends")
