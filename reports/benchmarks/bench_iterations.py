@@ -32,5 +32,5 @@ def test_chain(benchmark: BenchmarkFixture, count: int) -> None:
 
 def corrected(benchmark: BenchmarkFixture, system: sym.CompiledSystem, orbit: per.Orbit) -> None:
     """Measure the correction of an orbit; a record tells how many linearisations that is."""
-    benchmark(correct, system, orbit)
+    benchmark(correct, per.Collocation().linearise, system, orbit)
     benchmark.extra_info["linearised"] = linearisations(system, orbit)
