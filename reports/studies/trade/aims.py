@@ -27,7 +27,8 @@ from reports.studies.trade.words import seconds
 AUTO = "AUTO-07p by bifpy, ntst 50"
 DISC, CHAIN = "disc iteration", "chain iteration"
 STANDARD, DUFFING = "disc branch, standard", "Duffing A branch"
-ITSELF, CHAINS = "AUTO-07p itself, ", ("oscillators", "with clearances")
+ITSELF, WHOLE = "AUTO-07p itself, ", "oscillators"
+CHAINS = (WHOLE, "with clearances")
 ALIKE = 1e-10
 """Error of the folds up to which Duffing A counts as accurate as AUTO has it."""
 
@@ -114,7 +115,7 @@ def _numbers(benchmark: Mapping[str, Any]) -> tuple[str, Numbers]:
     group, what, told = benchmark["group"], benchmark["param"], benchmark["extra_info"]
     time = benchmark["stats"]["median"]
     if "points" in told:
-        return what, {"s": time, **told, "per point ms": 1e3 * time / told["points"]}
+        return what or group, {"s": time, **told, "per point ms": 1e3 * time / told["points"]}
     if "linearised" in told:
         return group, {f"{what} ms": 1e3 * time / told["linearised"]}
     return group, told or {f"{what} s": time}
@@ -185,7 +186,7 @@ def chains(n: Mapping[str, Numbers]) -> list[tuple[str, ...]]:
         auto = n.get(f"{ITSELF}{name}", {key: own.get(f"AUTO {key}", np.nan) for key in ("points", "s")})
         known = not np.isnan(auto["s"])
         theirs = f"{auto['points']:.0f}, {seconds(auto['s'])}" if known else "not run"
-        ratio = f"{own['s'] / auto['s']:.2f}" if known else "-"
+        ratio = f"{own['s'] / auto['s']:.2f}" if known and name.endswith(WHOLE) else "-"
         found.append((name, theirs, f"{own['points']:.0f}, {seconds(own['s'])}", ratio))
     return found
 

@@ -128,6 +128,17 @@ def test_results_of_a_record() -> None:
     assert {r.name: r.skipped for r in found if r.skipped}["bice, 50 steps"] == "not here"
 
 
+def test_who_is_quicker_where() -> None:
+    """Assert what the page says of AUTO: quicker on one or two oscillators, slower from five on."""
+    numbers = aims.by_name([aims.Result(**row) for row in REPORT.kept(FOLDER)["aims"].rows])
+    ratios = {row[0]: float(row[3]) for row in aims.chains(numbers) if row[3] != "-"}
+    assert min(ratios[f"{n} oscillators"] for n in (1, 2)) > 1 > ratios["5 oscillators"]
+    assert max(ratios[f"{n} oscillators"] for n in (10, 25)) < 0.6
+    auto, own = numbers["AUTO-07p itself, ntst 20"], numbers["Duffing A branch, standard"]
+    assert auto["s"] < own["s"] and own["fold error"] < 1e-10 < auto["fold error"]
+    assert numbers["memory"]["peak MB"] < 400
+
+
 def test_page_is_that_of_its_sections() -> None:
     """Assert that text and numbers on the page are those of the code, that nothing is missing or too much."""
     page = (FOLDER / PAGE).read_text("utf-8")
