@@ -19,7 +19,7 @@ from symbolic.system.compiled import with_values
 LOOPS = 40
 """How often the calibration loop is run."""
 
-AUTO = {1: (223, 9.8), 2: (309, 27.5), 5: (345, 161.0), 10: (345, 920.0), 25: (341, 8500.0)}
+AUTO = {1: (223, 9.8), 2: (309, 27.5), 5: (345, 161.0), 10: (345, 1000.0), 25: (345, 9200.0)}
 """Points of AUTO-07p's own executable (NTST 20, with multipliers) on the branch of a chain, and its time over
 that of the calibration loop, by the number of oscillators: see `reports.benchmarks.peers.executable`."""
 
