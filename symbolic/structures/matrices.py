@@ -93,7 +93,9 @@ class Matrices:
         return self.at[place]
 
     def __repr__(self) -> str:
-        places = ", ".join(self.at) or "no named places"
+        names = list(self.at)
+        shown = names if len(names) <= 8 else [*names[:4], "...", names[-1]]
+        places = ", ".join(shown) or "no named places"
         first = f"first natural frequency {self.first_frequency:.6g} Hz"
         return f"<Matrices: {self.size} degrees of freedom, {first}; {places}>"
 

@@ -1,0 +1,17 @@
+"""The report on structures: size, accuracy, three nonlinear tips, a rotor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports.studies.pages.page import Page
+from reports.studies.structures.accuracy import ACCURACY
+from reports.studies.structures.rotor import ROTOR
+from reports.studies.structures.size import SIZE
+from reports.studies.structures.tips import TIPS
+
+REPORT = Page(
+    name="structures",
+    folder=Path(__file__).parent,
+    sections={"size": SIZE, "accuracy": ACCURACY, "tips": TIPS, "rotor": ROTOR},
+)
