@@ -220,13 +220,16 @@ class Dense:
 
     def nearest(self, switch: int, side: int, phase: float) -> Extremum:
         """Return the minimum of side * s that is nearest to a phase, the lowest where the orbit's polynomials
-        have several of one: they join with a small kink.
+        have several of one: they join with a small kink. Raises FloatingPointError where there is none.
         """
 
         def far(e: Extremum, place: float) -> float:
             return abs(_wrapped(e.phase - place, self.orbit.mesh.period))
 
         every = self.minima(switch, side)
+        if not every:
+            name = self.system.switches[switch].name
+            raise FloatingPointError(f"{name} comes nearest to its level nowhere but at its impacts")
         first = min(every, key=lambda e: far(e, phase))
         width = self.orbit.grid.width[first.interval]
         return min((e for e in every if far(e, first.phase) <= width), key=lambda e: side * e.value)

@@ -151,7 +151,8 @@ def _first(system: System, before: Orbit, after: Orbit, shortest: float) -> Firs
     for k in resets_of(system):
         side = -system.switches[k].direction
         for low in dense.unseen(k, side):
-            clear = abs(base.nearest(k, side, low.phase).value)
+            # The orbit before may come near its level nowhere but at its impacts: then this is a new turn.
+            clear = abs(base.nearest(k, side, low.phase).value) if base.minima(k, side) else 0.0
             found.append(FirstImpact(system, low, clear / (clear + abs(low.value)), shortest))
     return min(found, key=lambda first: first.part, default=None)
 
