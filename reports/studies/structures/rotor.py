@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import symbolic as sym
-from periodic import Branch, Label, trace
+from periodic import Branch, Label, Point, trace
 from periodic.results.plots.curve import draw_curve
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.pages.figures import PAPER, TRUSTED, panels
@@ -28,7 +28,7 @@ HARDENING = 3e15
 UNBALANCE = (32.6, 3e-6)
 """Mass (kg) and eccentricity (m) at the first disc."""
 
-KEPT = 12
+KEPT = 16
 """Modes of the reduced rotor."""
 
 SPEEDS = (60.0, 550.0)
@@ -60,7 +60,9 @@ def system(reduction: sym.Reduction) -> sym.CompiledSystem:
     names = {"disc": DISCS[0], "bearing": ELEMENTS}
     places = {name: (at[f"x{node}"], at[f"y{node}"]) for name, node in names.items()}
     rotor = sym.Structure(reduction.matrices, at=places, scale=1e-4)
-    model = rotor + sym.Unbalance(*rotor["disc"], *UNBALANCE)
+    x, y = rotor["disc"]
+    mass, eccentricity = UNBALANCE
+    model = rotor + sym.Unbalance(x, y, mass, eccentricity)
     for place in rotor["bearing"]:
         model = model + sym.CubicSpring(place, HARDENING)
     return sym.compile(model)
@@ -69,6 +71,11 @@ def system(reduction: sym.Reduction) -> sym.CompiledSystem:
 def branch(rotor: sym.CompiledSystem) -> Branch:
     """Return the branch over the first two critical speeds."""
     return trace(rotor, "speed", SPEEDS, start=SPEEDS[0])
+
+
+def revolutions(point: Point) -> float:
+    """Return the speed of a point in rev/min."""
+    return point.parameter / RPM
 
 
 def compute(tell: Tell) -> Found:
@@ -86,13 +93,13 @@ def compute(tell: Tell) -> Found:
     left.plot(speeds / RPM, speeds / (2 * np.pi), "--", color=PAPER, label="once a revolution")
     left.set(xlabel="speed (rev/min)", ylabel="natural frequency (Hz)", ylim=(0, 130))
     left.legend(frameon=False)
-    across = np.array([point.parameter for point in found]) / RPM
+    across = np.array([revolutions(point) for point in found])
     swing = found.peak_to_peak("disc 1") * 1e6
     draw_curve(right, across, swing, found.stable_between, color=TRUSTED)
     right.set(xlabel="speed (rev/min)", ylabel="disc, x peak to peak (µm)", yscale="log")
     folds = found.labelled(Label.FOLD)
     numbers = {f"critical speed {k} (rev/min)": value / RPM for k, value in enumerate(diagram.critical(), 1)}
-    numbers |= {f"fold {k} (rev/min)": point.parameter / RPM for k, point in enumerate(folds, 1)}
+    numbers |= {f"fold {k} (rev/min)": revolutions(point) for k, point in enumerate(folds, 1)}
     numbers |= {"points": float(len(found)), "seconds": took, "error": reduction.error(*SPEEDS)}
     return Found(numbers=numbers, figures={"rotor": figure})
 

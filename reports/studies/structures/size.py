@@ -51,7 +51,7 @@ def row(method: str, elements: int) -> dict[str, Any]:
         "ms": 1e3 * took / len(found),
         "made": made,
         "folds": [point.parameter for point in found.labelled(Label.FOLD)],
-        "stop": found.stop,
+        "stop": str(found.stop),
     }
 
 
