@@ -30,6 +30,7 @@ def write(template: str, file: Path, title: str, data: Mapping[str, Any]) -> Pat
     page = _resource(template)
     for key, value in filled.items():
         page = page.replace(f"@@{key}@@", value)
+    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(page, "utf-8")
     return file
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from periodic.orbit.layout import layout_of
 from periodic.results.branch import Branch
 from periodic.results.interactive.content import content
 from periodic.results.interactive.library import write
@@ -52,8 +53,8 @@ def page(
     Raises
     ------
     ValueError
-        For a branch without points, a map of more parameters, a name that does not end in .html, and units of
-        what the branch has not.
+        For a branch without points or of another system, a map of more parameters, a name that does not end
+        in .html, and units of what the branch has not.
     ModuleNotFoundError
         Without plotly: ``pip install 'orbitrace[html]'``.
     OSError
@@ -68,6 +69,8 @@ def page(
         check_system(system)
     if not len(branch):
         raise ValueError(f"the branch has no points to show; it ended with: {branch.stop}")
+    if system is not None:
+        branch[0].orbit.expressed_in(layout_of(system), "branch")
     return write(
         "page.html", file, title or f"Branch over {branch.parameter}", content(branch, units or {}, system)
     )

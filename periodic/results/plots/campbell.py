@@ -61,7 +61,14 @@ def plot_campbell(
     -------
     matplotlib.axes.Axes
         The axes. Crosses mark where a mode is unstable.
+
+    Raises
+    ------
+    ValueError
+        For what is no diagram.
     """
+    if not hasattr(diagram, "critical"):
+        raise ValueError(f"diagram is {diagram!r}; it must be what symbolic.campbell returns")
     usual = {"speed": "rev/min", "frequency": "Hz"}
     shown = Shown(dict.fromkeys(usual, "rad/s"), {**usual, **(units or {})})
     across, up = shown.unit("speed"), shown.unit("frequency")

@@ -17,10 +17,15 @@ KEPT = 0.85
 
 
 def fresh(axes: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes:
-    """Return the axes given, or new ones in a figure of their own."""
+    """Return the axes given, or new ones in a figure of their own. Raises ValueError for what are no axes."""
     import matplotlib.pyplot as plt
+    from matplotlib.axes import Axes
 
-    return plt.subplots(figsize=size, layout="constrained")[1] if axes is None else axes
+    if axes is None:
+        return plt.subplots(figsize=size, layout="constrained")[1]
+    if not isinstance(axes, Axes):
+        raise ValueError(f"axes is a {type(axes).__name__}; it must be one Axes of matplotlib")
+    return axes
 
 
 def dressed(axes: Axes, across: str, up: str, *, least: int = 1) -> Axes:

@@ -154,7 +154,7 @@ def plot_spectrum(
     Raises
     ------
     ValueError
-        For an equilibrium, and a name that the orbit has not.
+        For an equilibrium, a name that the orbit has not, and no harmonics.
     """
     found = moving(orbit)
     shown = shown_of(found, units)
@@ -165,6 +165,7 @@ def plot_spectrum(
     floor = max(heights.max(initial=0.0) * 1e-9, np.finfo(float).tiny)
     axes.vlines(orders, floor, np.maximum(heights, floor), color="C0", linewidth=2.5)
     axes.plot(orders, np.maximum(heights, floor), "o", color="C0", markersize=4)
+    axes.locator_params("x", integer=True)
     axes.set_yscale("log")
     axes.set_ylim(floor, None)
     return dressed(
@@ -174,6 +175,8 @@ def plot_spectrum(
 
 def spectrum(orbit: Orbit, name: str, harmonics: int) -> tuple[Array, Array]:
     """Return multiples of the excitation's frequency up to `harmonics`, and the amplitudes there (SI)."""
+    if not isinstance(harmonics, int | np.integer) or harmonics < 1:
+        raise ValueError(f"harmonics is {harmonics!r}; it must be a whole number of at least 1")
     periods = max(orbit.periods, 1)
     count = harmonics * periods
     samples = max(SAMPLES, 8 * count)

@@ -60,6 +60,8 @@ def plot_regions(
         For branches in one parameter, and curves in different parameters.
     """
     chosen = [curves] if isinstance(curves, Branch) else list(curves)
+    if not chosen:
+        raise ValueError("curves is empty; it must have a branch that is traced with determined=")
     planes = {(curve.parameter, other_of(curve)) for curve in chosen}
     if len(planes) != 1:
         raise ValueError(f"curves are in the planes of {sorted(planes)}; they must share one plane")

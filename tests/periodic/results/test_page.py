@@ -90,6 +90,13 @@ def test_what_is_no_page_is_refused(branch: per.Branch, tmp_path: Path) -> None:
         per.page(nothing, tmp_path / "a.html")
     with pytest.raises(ValueError, match="^units is 3; it must give units by their names$"):
         per.page(branch, tmp_path / "a.html", units=nothing)
+    with pytest.raises(ValueError, match="^branch has 6 parameters; it must have the 12 of the system$"):
+        per.page(branch, tmp_path / "a.html", system=sym.scene("gear-pair"))
+
+
+def test_folders_are_made(branch: per.Branch, tmp_path: Path) -> None:
+    """Assert that a page goes where it is asked to, as other files do."""
+    assert per.page(branch, tmp_path / "pages" / "a.html").exists()
 
 
 def test_loads_and_drawing_of_a_disc(tmp_path: Path) -> None:

@@ -158,6 +158,21 @@ def test_spectrum(axes: Axes) -> None:
     assert orders.tolist() == list(range(1, 21))
     x = orbit["x"](np.arange(4096) / 4096 * orbit.period)
     assert np.sum(heights**2) / 2 == pytest.approx(np.var(x), rel=1e-9)
+    assert all(tick == round(tick) for tick in axes.get_xticks())
+
+
+def test_what_cannot_be_drawn_is_refused(axes: Axes) -> None:
+    """Assert one sentence for counts of harmonics, diagrams, curves and axes that are none."""
+    with pytest.raises(ValueError, match="^harmonics is -3; it must be a whole number of at least 1$"):
+        per.plot_spectrum(duffing()[5], axes=axes, harmonics=-3)
+    with pytest.raises(ValueError, match="^harmonics is 0; it must be a whole number of at least 1$"):
+        per.plot_waterfall(duffing(), axes=axes, harmonics=0)
+    with pytest.raises(ValueError, match="^diagram is Branch.*; it must be what symbolic.campbell returns$"):
+        per.plot_campbell(duffing(), axes)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="^curves is empty; it must have a branch that is traced with"):
+        per.plot_regions([], axes)
+    with pytest.raises(ValueError, match="^axes is a Figure; it must be one Axes of matplotlib$"):
+        per.plot(duffing(), axes=axes.figure)  # type: ignore[arg-type]
 
 
 def test_multipliers(axes: Axes) -> None:
