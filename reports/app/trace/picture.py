@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from periodic.results.plots.curve import draw_curve
+from periodic.results.plots.labels import placed
 from reports.app.drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
 from reports.app.view import View, view_of
 from symbolic.scenes.schema import Scene
@@ -65,21 +66,10 @@ def _asked_for(axes: Axes, view: View, branch: Branch) -> None:
 
 
 def _marks(axes: Axes, view: View, branch: Branch) -> None:
-    """Mark and name special points and where a trace failed, on the side away from the branch."""
-    across, up = _values(view, branch)
-    for k, point in enumerate(branch):
+    """Mark and name special points and where a trace failed, each name where it covers nothing."""
+    for point, *at in zip(branch, *_values(view, branch), strict=True):
         if point.label.value in ("", "EP", "UZ"):
             continue
-        neighbours = across[max(k - 1, 0) : k + 2]
-        side = 1 if across[k] >= neighbours.mean() else -1
-        axes.plot(across[k], up[k], "o", color=INK, markersize=5, zorder=5)
-        axes.annotate(
-            f"{point.label.value}\n{across[k]:.5g}",
-            (across[k], up[k]),
-            xytext=(7 * side, 0),
-            textcoords="offset points",
-            horizontalalignment="left" if side > 0 else "right",
-            verticalalignment="top",
-            fontsize="small",
-            color=INK,
-        )
+        x, y = map(float, at)
+        axes.plot(x, y, "o", color=INK, markersize=5, zorder=5)
+        placed(axes).add(f"{point.label.value}\n{x:.5g}", (x, y))
