@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import casadi as ca
 
@@ -78,6 +79,15 @@ class RollingBearing(Part):
     Fukata, Gad, Kondou, Ayabe & Tamura, Bull. JSME 28 (1985) 899-904; Sunnersjo, J. Sound Vib. 58 (1978)
     363-373.
     """
+
+    EXAMPLE: ClassVar[Mapping[str, object]] = {
+        "elements": 8,
+        "law": {"kind": "HertzLaw", "stiffness": 1.3e10},
+        "clearance": 6e-6,
+        "speed": 700.0,
+        "inner": 0.04,
+        "outer": 0.064,
+    }
 
     x: Coordinate
     y: Coordinate

@@ -227,13 +227,25 @@ def _reader(annotation: Any, within: tuple[Any, ...]) -> Reader:
 def _inline(kind: type, within: tuple[Any, ...]) -> Reader | None:
     """The tables for a class, or for all classes that follow a protocol."""
     if getattr(kind, "_is_protocol", False):
-        wanted = {name for name, value in vars(kind).items() if inspect.isfunction(value) and name[0] != "_"}
-        owners = [owner for owner in _objects() if all(hasattr(owner, name) for name in wanted)]
+        wanted = {n: v for n, v in vars(kind).items() if inspect.isfunction(v) and n[0] != "_"}
+        owners = [owner for owner in _objects() if all(_takes(owner, n, v) for n, v in wanted.items())]
     else:
         owners = [owner for owner in _objects() if issubclass(owner, kind)]
     found = [_entry(owner, within) for owner in owners if owner not in within]
     entries = [entry for entry in found if entry is not None]
     return Inline(tuple(entries)) if entries else None
+
+
+def _takes(owner: type, name: str, wanted: Callable[..., Any]) -> bool:
+    """Whether a class has the method of a protocol, for as many arguments."""
+    method = getattr(owner, name, None)
+    if not callable(method):
+        return False
+    try:
+        inspect.signature(method).bind(*inspect.signature(wanted).parameters)
+    except TypeError:
+        return False
+    return True
 
 
 @cache

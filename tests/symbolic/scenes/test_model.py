@@ -269,6 +269,28 @@ def test_catalogue(name: str) -> None:
     assert type(model.parts[0]).__name__ == name
 
 
+@pytest.mark.parametrize("name", ["RollingBearing", "GearMesh", "JournalBearing", "Rub", "Jenkins", "Gap"])
+def test_example_compiles(name: str) -> None:
+    """Assert that the example of a part is no mistake: it moves its coordinates."""
+    coordinates = [sym.coordinate(q) for q in "xy"]
+    masses = [{"kind": kind, "q": ["x", "y"], key: 1.0} for kind, key in (("Mass", "m"), ("Spring", "k"))]
+    model = composed(coordinates, [], [*masses, {"kind": name, **catalogue()[name].example}])
+    assert {"x", "y"} <= {state.name for state in sym.compile(model).states}
+
+
+@pytest.mark.parametrize(
+    ("part", "law", "other"),
+    [("SqueezeFilm", "GivenThickness", "PowerFilm"), ("LubricantFilm", "PowerFilm", "GivenThickness")],
+)
+def test_law_of_another_protocol_is_refused(part: str, law: str, other: str) -> None:
+    """Assert that a film takes only laws whose `thickness` has the arguments that it gives."""
+    key = next(key for key in catalogue()[part].keys if key.name == "law")
+    assert law in key.reader.allowed and other not in key.reader.allowed
+    table = {"kind": part, **catalogue()[part].example, "law": {"kind": other}}
+    with pytest.raises(sym.InputError, match=f'law kind is "{other}"'):
+        composed([sym.coordinate("x")], [], [table])
+
+
 def test_every_part_of_symbolic_is_in_the_catalogue() -> None:
     """Assert that text can give all parts but those that hold functions, models or matrices."""
     parts = {n for n in sym.__all__ if isinstance(v := getattr(sym, n), type) and issubclass(v, sym.Part)}
