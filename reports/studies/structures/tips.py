@@ -46,9 +46,7 @@ HERTZ = 2 * np.pi
 
 TIPS_OF: Mapping[str, Tip] = {
     "cubic spring": Tip(made=lambda: cantilever(10, cubic), output="tip", range=(2.0, 8.0), at=5.0),
-    "stop": Tip(
-        made=lambda: sym.scene(STOP), output="tip", range=(16 * HERTZ, 26 * HERTZ), at=19.5 * HERTZ
-    ),
+    "stop": Tip(made=lambda: sym.scene(STOP), output="tip", range=(16 * HERTZ, 26 * HERTZ), at=19.5 * HERTZ),
     "friction": Tip(
         made=lambda: cantilever(10, friction, force=0.05), output="tip", range=(2.5, 4.5), at=3.5
     ),

@@ -27,6 +27,7 @@ from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Family, Scheme
+from periodic.system import linear_of
 from symbolic.kernels import native
 from symbolic.scenes.building import build
 from symbolic.scenes.files import load
@@ -224,6 +225,8 @@ def test_orbits_of_scenes(name: str) -> None:
         close(found.orbit.knots, expected.orbit.knots, 1e-9)
         close(found.monodromy, expected.monodromy, 1e-8)
         assert found.iterations == expected.iterations
+    if linear_of(by_numpy) is not None:
+        return  # the equations of a structure's places are not those of intervals
     orbit = transfer(expected.orbit, mesh, guess.phases)
     compare(condense(by_c, orbit, FREE), condense(by_numpy, orbit, FREE), 1e-8)
 
