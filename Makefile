@@ -17,7 +17,7 @@ SEED ?= 0
 SINCE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long mutants bench report-paper report-trade report-extremes report-machines docs lint types layers wheel clean
+.PHONY: help run test kernels long mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -42,7 +42,7 @@ mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
 
-report-paper report-trade report-extremes report-machines: $(VENV)/.installed-dev ## Compute the page of a study anew
+report-paper report-trade report-extremes report-machines report-structures: $(VENV)/.installed-dev ## Compute the page of a study anew
 	$(BIN)/python -m reports.studies.$(@:report-%=%)
 
 docs: $(VENV)/.installed-docs ## Build the site into docs/_build

@@ -71,7 +71,7 @@ def compute(tell: Tell) -> Found:
         draw_curve(left, across, found.peak_to_peak(tip.output), found.stable_between, color=TRUSTED)
         point = largest(found, tip)
         left.plot(point.parameter, point.peak_to_peak(tip.output), "o", color="k", markersize=4)
-        left.set(xlabel="Ω (rad/s)", ylabel=f"{name}: tip, peak to peak (m)")
+        left.set(xlabel="Ω (rad/s)", ylabel="tip, peak to peak (m)", title=name)
         time = np.linspace(0.0, point.orbit.period, HISTORY)
         right.plot(time, point.orbit[tip.output](time), color=TRUSTED)
         right.set(xlabel="time (s)", ylabel="tip (m)")

@@ -1,0 +1,56 @@
+"""The report on structures: its numbers are those of the code, its methods agree, its cost does not grow."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from periodic import Label
+from reports.studies.pages.page import PAGE
+from reports.studies.pages.text import FIGURES
+from reports.studies.structures import accuracy, rotor, size
+from reports.studies.structures.page import REPORT
+
+FOLDER = REPORT.folder
+
+
+def test_methods_agree() -> None:
+    """Assert that the peaks kept of each method are one number to 9 digits."""
+    rows = REPORT.kept(FOLDER)["accuracy"].rows
+    assert [row["method"] for row in rows] == list(accuracy.METHODS)
+    for row in rows[1:]:
+        assert row["swings"] == pytest.approx(rows[0]["swings"], rel=1e-9)
+
+
+def test_accuracy_is_fresh() -> None:
+    """Assert that harmonic balance traced anew has the peaks of the page, to 9 digits."""
+    kept = next(r for r in REPORT.kept(FOLDER)["accuracy"].rows if r["method"].endswith("balance, condensed"))
+    assert accuracy.swings("harmonic balance, condensed") == pytest.approx(kept["swings"], rel=1e-9)
+
+
+def test_size_is_fresh() -> None:
+    """Assert the folds of 20 degrees of freedom anew to 1e-8, and that no size needs more points."""
+    rows = [row for row in REPORT.kept(FOLDER)["size"].rows if row["method"] == size.CONDENSED]
+    kept = next(row for row in rows if row["freedoms"] == 20)
+    assert size.row(size.CONDENSED, 10)["folds"] == pytest.approx(kept["folds"], rel=1e-8)
+    assert max(row["points"] for row in rows) < 1.4 * min(row["points"] for row in rows)
+    assert {row["unknown"] for row in rows} == {2}
+
+
+@pytest.mark.long
+def test_rotor_is_fresh() -> None:
+    """Assert the folds of the rotor anew to 1e-7."""
+    numbers = REPORT.kept(FOLDER)["rotor"].numbers
+    found = rotor.branch(rotor.system(rotor.reduced())).labelled(Label.FOLD)
+    kept = [value for name, value in numbers.items() if name.startswith("fold")]
+    assert [rotor.revolutions(point) for point in found] == pytest.approx(kept, rel=1e-7)
+
+
+def test_page_is_that_of_its_sections() -> None:
+    """Assert that text and numbers on the page are those of the code, that nothing is missing or too much."""
+    page = (FOLDER / PAGE).read_text("utf-8")
+    assert page == REPORT.text(FOLDER)
+    assert tuple(REPORT.kept(FOLDER)) == tuple(REPORT.sections)
+    shown = re.findall(rf"\]\({FIGURES}/([\w-]+\.png)\)", page)
+    assert sorted(shown) == sorted(file.name for file in (FOLDER / FIGURES).iterdir())
