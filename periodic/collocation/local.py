@@ -73,10 +73,12 @@ def _iterate(system: System, orbit: Orbit, pieces: _Pieces) -> Array:
     scheme, (count, ncol, n) = orbit.mesh.scheme, pieces.stages.shape
     m = pieces.algebraic.shape[2]
     knots = np.concatenate([pieces.start[:, None, :], pieces.stages], axis=1)
-    weights = scheme.stage_rates / pieces.width[:, None, None]
+    with np.errstate(all="ignore"):  # intervals without length: what is not finite is refused below
+        weights = scheme.stage_rates / pieces.width[:, None, None]
+        rates = (weights @ knots).reshape(-1, n)
     line = linearise(
         system,
-        (weights @ knots).reshape(-1, n),
+        rates,
         pieces.stages.reshape(-1, n),
         pieces.algebraic.reshape(count * ncol, m),
         pieces.tau.ravel(),
@@ -87,8 +89,8 @@ def _iterate(system: System, orbit: Orbit, pieces: _Pieces) -> Array:
     reduced, map_z = eliminate(finite(Rows(columns, line.d_algebraic)), n)
     local = reduced.reshape(count, ncol, n, -1)
     change = solve_stages(local, local[..., :1], weights)[..., 0]
-    rates = weights[:, :, 1:] @ change
-    inner = np.concatenate([np.ones((count, ncol, 1)), rates, change], axis=2)
+    along = weights[:, :, 1:] @ change
+    inner = np.concatenate([np.ones((count, ncol, 1)), along, change], axis=2)
     dz = -np.einsum("plmw,plw->plm", map_z.reshape(count, ncol, m, 1 + 2 * n), inner)
     moved = pieces.algebraic
     if m:
