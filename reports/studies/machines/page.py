@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.studies.machines import bearings, friction, gears, rotors
+from reports.studies.machines.cylinder import CYLINDER
 from reports.studies.machines.films import FILMS
 from reports.studies.pages.page import Page
 
@@ -23,6 +24,7 @@ MACHINES = {
         friction.STOP,
         friction.IMPACT,
         friction.BEAM,
+        CYLINDER,
     )
 }
 
