@@ -15,6 +15,9 @@ VARIABLE = "ORBITRACE_PROGRESS"
 DELAY = 1.0
 """Seconds before anything is shown."""
 
+EVERY = 0.1
+"""Seconds from one showing to the next."""
+
 _SHOWN = ContextVar("shown", default=False)
 """Whether a bar is shown already: what goes on within it has none."""
 
@@ -53,7 +56,7 @@ def meter(what: str, unit: str, total: int | None = None) -> Iterator[Advance]:
         warnings.simplefilter("ignore")  # a notebook without widgets gets a bar of text
         from tqdm.auto import tqdm
     shown = _SHOWN.set(True)
-    with tqdm(total=total, desc=what, unit=f" {unit}", delay=DELAY, leave=False) as bar:
+    with tqdm(total=total, desc=what, unit=f" {unit}", delay=DELAY, mininterval=EVERY, leave=False) as bar:
 
         def advance(steps: int, said: str) -> None:
             bar.set_postfix_str(said, refresh=False)

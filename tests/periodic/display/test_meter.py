@@ -17,9 +17,10 @@ Patch = pytest.MonkeyPatch
 
 @pytest.fixture
 def at_once(monkeypatch: Patch) -> None:
-    """Somebody looks on, and bars are shown at once."""
+    """Somebody looks on, and bars are shown at once and at every step."""
     monkeypatch.setenv("ORBITRACE_PROGRESS", "1")
     monkeypatch.setattr(display, "DELAY", 0.0)
+    monkeypatch.setattr(display, "EVERY", 0.0)
 
 
 @pytest.mark.parametrize(("told", "expected"), [("1", True), ("0", False), ("", False)])

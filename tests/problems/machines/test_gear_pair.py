@@ -39,8 +39,9 @@ def rates(w: float) -> Rates:
 
 
 def confirmed(point: per.Point) -> Shot:
-    """The orbit of a point by shooting, begun a little beside it."""
-    return shot(rates(point.parameter), point.orbit.state(np.zeros(1))[0] * (1 + 1e-6), (1.0, 1.0))
+    """The orbit of a point by shooting, begun a little beside it; tight, for its differences cross kinks."""
+    beside = point.orbit.state(np.zeros(1))[0] * (1 + 1e-6)
+    return shot(rates(point.parameter), beside, (1.0, 1.0), rtol=1e-13)
 
 
 def test_folds() -> None:
@@ -52,14 +53,14 @@ def test_folds() -> None:
 
 @pytest.mark.parametrize("place", PLACES)
 def test_orbits(place: float) -> None:
-    """Assert orbits and multipliers of every sheet at five frequencies by shooting, to 1e-7 and 3e-5."""
+    """Assert orbits and multipliers of every sheet at five frequencies by shooting, to 1e-7 and 1e-5."""
     points = [p for p in branch().labelled(per.Label.USER) if p.parameter == place]
     assert points
     for point in points:
         own = confirmed(point)
         assert point.orbit.state(np.zeros(1))[0] == pytest.approx(own.start, abs=1e-7)
         assert point.peak_to_peak("x") == pytest.approx(own.peak_to_peak(0), rel=1e-6)
-        assert abs(point.multipliers[0]) == pytest.approx(abs(own.multipliers[0]), rel=3e-5)
+        assert abs(point.multipliers[0]) == pytest.approx(abs(own.multipliers[0]), rel=1e-5)
 
 
 def test_liouville() -> None:
