@@ -95,6 +95,10 @@ class Row:
         return asdict(self)
 
 
+class _TimeUpError(KeyboardInterrupt):
+    """The time of a cell is up; a trace takes it for Ctrl-C."""
+
+
 def survey(case: Case) -> Row:
     """Trace a cell and confirm its orbits. Whatever is not a branch or a refusal is recorded as wrong."""
     if case.instead is not None:
@@ -106,6 +110,9 @@ def survey(case: Case) -> Row:
             warnings.simplefilter("error")
             system = case.system()
             branch = _as_far(case, system, control)
+    except _TimeUpError:
+        told = "its time used up before there was a branch"
+        return Row(value=case.value, way=case.way, name=case.name, outcome=Outcome.CUT.value, detail=told)
     except (InputError, ValueError) as error:
         return Row(
             value=case.value, way=case.way, name=case.name, outcome=Outcome.REFUSED.value, detail=str(error)
@@ -195,7 +202,7 @@ def within(seconds: float) -> Iterator[None]:
     """Interrupt a trace, as Ctrl-C does, when its processor time is up."""
 
     def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
+        raise _TimeUpError
 
     before = signal.signal(signal.SIGPROF, interrupt)
     signal.setitimer(signal.ITIMER_PROF, seconds)

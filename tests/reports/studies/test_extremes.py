@@ -12,6 +12,7 @@ from reference.piecewise import periodic
 from support.stops import exactly
 
 import periodic as per
+import symbolic as sym
 from reports.studies.extremes import multipliers, piecewise, vanderpol
 from reports.studies.extremes.confirm import CVODES, FINE, Checked, check, compared, finer, near
 from reports.studies.extremes.page import REPORT, STUDIES
@@ -147,6 +148,10 @@ def test_outcomes() -> None:
     """Assert how refusals, warnings, short budgets and orbits that are not confirmed are recorded."""
     (case,) = [c for c in STUDIES["damping"].cases() if c.value == 0.1]
 
+    def slow() -> sym.CompiledSystem:
+        while True:
+            pass
+
     def warned(*_: object) -> per.Branch:
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
         raise AssertionError
@@ -166,6 +171,7 @@ def test_outcomes() -> None:
     assert survey(replace(case, trace=warned)).outcome == "wrong"
     assert survey(replace(case, points=5)).outcome == "cut short"
     assert survey(replace(case, seconds=0.02)).outcome in ("cut short", "stopped")
+    assert survey(replace(case, system=slow, seconds=0.02)).outcome == "cut short"
     assert survey(replace(case, confirm=lost)).outcome == "unconfirmed"
     assert survey(replace(case, confirm=off)).outcome == "wrong"
 
