@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -19,16 +18,17 @@ from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
-from symbolic.kernels.choice import ChosenKernel, Kernels, shared
-from symbolic.kernels.kernel import Argument, batch, build, points, vector
+from symbolic.kernels.choice import Kernels
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
+from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
+from symbolic.system.turning import Turning
 from symbolic.tables import told
 
-SMALL = 31
-"""Number of states up to which the engine iterates in C."""
+MANY, PLACES = 40, 20
+"""A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
 
 @dataclass(frozen=True)
@@ -88,15 +88,6 @@ class CompiledSystem:
     splitting: Callable[[CompiledSystem], CompiledSystem] | None = field(default=None, repr=False)
     recipe: Callable[[], CompiledSystem] | None = field(default=None, repr=False)
     sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
-    _jacobians: dict[tuple[int, ...], Callable[..., None]] = field(
-        default_factory=dict, init=False, repr=False
-    )
-    _gradients: dict[tuple[int, ...], Callable[..., None]] = field(
-        default_factory=dict, init=False, repr=False
-    )
-    _besides: dict[tuple[int, ...], Callable[..., None]] = field(default_factory=dict, init=False, repr=False)
-    _addresses: dict[tuple[str, tuple[int, ...]], int] = field(default_factory=dict, init=False, repr=False)
-    _libraries: dict[str, ctypes.CDLL | None] = field(default_factory=dict, init=False, repr=False)
 
     def __repr__(self) -> str:
         groups = {name: told(v.name for v in some) for name, some in self._groups.items() if some}
@@ -127,40 +118,24 @@ class CompiledSystem:
             )
         return self.recipe, ()
 
+    @cached_property
+    def _turning(self) -> Turning:
+        return Turning(self.expressions, self.parameters)
+
     @property
     def frequency(self) -> tuple[str, ...]:
         """Names of the parameters whose product is omega (rad/s) but for a factor; () if it is none."""
-        return self._product[0]
+        return self._turning.product[0]
 
     @property
     def frequency_factor(self) -> float:
         """What the product of the parameters `frequency` is multiplied by to be omega."""
-        return self._product[1]
+        return self._turning.product[1]
 
     @property
     def frequency_held(self) -> dict[str, float]:
         """Values of other parameters that this factor depends on, by name."""
-        return self._product[2]
-
-    @cached_property
-    def _product(self) -> tuple[tuple[str, ...], float, dict[str, float]]:
-        """Parameters that omega is proportional to, the factor, and the nominal values of all others."""
-        e = self.expressions
-        used = ca.jacobian(e.frequency, e.parameter).sparsity().get_col()
-        there = np.linspace(0.7, 2.3, len(self.parameters))
-        names = []
-        for k in used:
-            twice = np.where(np.arange(len(there)) == k, 2.0, 1.0) * there
-            if math.isclose(self.omega(twice), 2 * self.omega(there), rel_tol=1e-13):
-                names.append(k)
-        unit = np.array([1.0 if k in names else value for k, value in enumerate(self.nominal)])
-        held = {self.parameters[k].name: float(self.nominal[k]) for k in used if k not in names}
-        factor = self.omega(unit) if names else 1.0
-        return tuple(self.parameters[k].name for k in names), factor, held
-
-    @cached_property
-    def _omega(self) -> ca.Function:
-        return ca.Function("frequency", [self.expressions.parameter], [self.expressions.frequency])
+        return self._turning.product[2]
 
     def omega(self, parameter: Array) -> float:
         """Return the frequency of the excitation.
@@ -175,20 +150,14 @@ class CompiledSystem:
         float
             omega in rad/s.
         """
-        return float(self._omega(parameter))
+        return self._turning.omega(parameter)
 
     @cached_property
     def linear(self) -> LinearPart | RowsPart | None:
         """The linear part of a system that is split: condensed structures, or what was found."""
         if self.part is not None:
             return self.part
-        e = self.expressions
-        slope = ca.Function("slope", [e.parameter], [ca.jacobian(e.frequency, e.parameter)])
-
-        def gradient(parameter: Array) -> Array:
-            return np.array(ca.DM(slope(parameter)).full()).ravel()
-
-        return LinearPart(self.held, self.omega, gradient) if self.held else None
+        return LinearPart(self.held, self.omega, self._turning.gradient) if self.held else None
 
     @property
     def whole(self) -> CompiledSystem:
@@ -256,7 +225,7 @@ class CompiledSystem:
         """
         result = np.zeros((len(phase), len(self.states) + len(self.algebraics)))
         with np.errstate(all="ignore"):
-            self._residual_kernel(rate, state, algebraic, phase, parameter, result)
+            self._generated.residual(rate, state, algebraic, phase, parameter, result)
         return result
 
     def linearise(
@@ -269,7 +238,7 @@ class CompiledSystem:
         free: tuple[int, ...] = (),
     ) -> Linearisation:
         """Return residual and derivatives; `free` are the indices of the parameters to differentiate in."""
-        kernel = self._derivatives(self._jacobians, self.expressions.residual, free)
+        kernel = self._generated.derivatives("residual", free)
         rows = len(self.states) + len(self.algebraics)
         return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter))
 
@@ -296,9 +265,7 @@ class CompiledSystem:
         free: tuple[int, ...] = (),
     ) -> Linearisation:
         """Return residual and derivatives on given sides (N, jumps) of the jumps: 1, -1, or 0 as it is."""
-        sided = self.expressions.sided
-        arguments = [*self._arguments, batch(sided.side, "side")]
-        kernel = self._derivatives(self._besides, sided.residual, free, arguments)
+        kernel = self._generated.derivatives("beside", free)
         rows = len(self.states) + len(self.algebraics)
         return self._linearised(kernel, rows, free, (rate, state, algebraic, phase, parameter, side))
 
@@ -312,7 +279,7 @@ class CompiledSystem:
         free: tuple[int, ...] = (),
     ) -> Linearisation:
         """Return the outputs (SI) as `residual`, and their derivatives."""
-        kernel = self._derivatives(self._gradients, self.expressions.outputs, free)
+        kernel = self._generated.derivatives("outputs", free)
         return self._linearised(kernel, len(self.outputs), free, (rate, state, algebraic, phase, parameter))
 
     @cached_property
@@ -327,21 +294,21 @@ class CompiledSystem:
         """Return where Newton increments take the unknowns, both of shape (N, m)."""
         result = np.zeros_like(algebraic)
         with np.errstate(all="ignore"):
-            self._move_kernel(algebraic, increment, result)
+            self._generated.move(algebraic, increment, result)
         return result
 
     def output(self, rate: Array, state: Array, algebraic: Array, phase: Array, parameter: Array) -> Array:
         """Return the outputs in SI units, shape (N, outputs)."""
         result = np.zeros((len(phase), len(self.outputs)))
         with np.errstate(all="ignore"):
-            self._output_kernel(rate, state, algebraic, phase, parameter, result)
+            self._generated.output(rate, state, algebraic, phase, parameter, result)
         return result
 
     def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
         """Return the switch functions, shape (N, switches)."""
         result = np.zeros((len(phase), len(self.switches)))
         with np.errstate(all="ignore"):
-            self._switch_kernel(state, phase, parameter, result)
+            self._generated.switch(state, phase, parameter, result)
         return result
 
     def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
@@ -351,7 +318,7 @@ class CompiledSystem:
         d_phase = np.zeros((count, k))
         d_parameter = np.zeros((count, k, len(self.parameters)))
         with np.errstate(all="ignore"):
-            self._switch_gradient_kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+            self._generated.switch_gradient(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
 
     @property
@@ -363,7 +330,7 @@ class CompiledSystem:
         """Return the states after the event of a switch, shape (N, n), from those before it."""
         result = np.zeros_like(state)
         with np.errstate(all="ignore"):
-            self._reset_kernels[switch][0](state, phase, parameter, result)
+            self._generated.resets[switch](state, phase, parameter, result)
         return result
 
     def reset_gradient(
@@ -373,8 +340,9 @@ class CompiledSystem:
         count, n = state.shape
         d_state, d_phase = np.zeros((count, n, n)), np.zeros((count, n))
         d_parameter = np.zeros((count, n, len(self.parameters)))
+        kernel = self._generated.reset_gradients[switch]
         with np.errstate(all="ignore"):
-            self._reset_kernels[switch][1](state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+            kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
 
     def flow(
@@ -406,103 +374,16 @@ class CompiledSystem:
         return np.array(state).ravel(), np.array(algebraic).ravel()
 
     @cached_property
-    def _arguments(self) -> list[Argument]:
-        e = self.expressions
-        return [
-            batch(e.rate, "rate"),
-            batch(e.state, "state"),
-            batch(e.algebraic, "algebraic"),
-            points(e.phase, "phase"),
-            vector(e.parameter, "parameter"),
-        ]
+    def _generated(self) -> Generated:
+        return Generated(self.expressions, self.kernels)
 
     def library(self, source: str) -> ctypes.CDLL | None:
         """Return the loaded library of a C source that serves every system, or None: NumPy is to do."""
-        if source not in self._libraries:
-            self._libraries[source] = shared(source, self.kernels)
-        return self._libraries[source]
+        return self._generated.library(source)
 
     def address(self, kernel: str, free: tuple[int, ...] = ()) -> int | None:
-        """Return where a compiled kernel is: see `periodic.system.Compiling`.
-
-        Where derivatives are compiled the others are too, when they are asked for.
-        """
-        if (kernel, free) not in self._addresses:
-            wanted = any(isinstance(k, ChosenKernel) and k.compiled for k in self._jacobians.values())
-            found = self._kernel(kernel, free)
-            where = found.address(wanted) if isinstance(found, ChosenKernel) else None
-            if where is None:
-                return None
-            self._addresses[kernel, free] = where
-        return self._addresses[kernel, free]
-
-    def _kernel(self, name: str, free: tuple[int, ...]) -> Callable[..., None]:
-        if name == "linearise":
-            return self._derivatives(self._jacobians, self.expressions.residual, free)
-        kernels = {
-            "move": lambda: self._move_kernel,
-            "switch": lambda: self._switch_kernel,
-            "switch_gradient": lambda: self._switch_gradient_kernel,
-            "output": lambda: self._output_kernel,
-        }
-        return kernels[name]()
-
-    def _build(self, arguments: list[Argument], results: list[ca.SX]) -> Callable[..., None]:
-        return build(arguments, results, self.kernels)
-
-    @cached_property
-    def _residual_kernel(self) -> Callable[..., None]:
-        return self._build(self._arguments, [self.expressions.residual])
-
-    @cached_property
-    def _move_kernel(self) -> Callable[..., None]:
-        e = self.expressions
-        return self._build([batch(e.algebraic, "algebraic"), batch(e.increment, "increment")], [e.moved])
-
-    @cached_property
-    def _output_kernel(self) -> Callable[..., None]:
-        return self._build(self._arguments, [self.expressions.outputs])
-
-    @cached_property
-    def _switch_kernel(self) -> Callable[..., None]:
-        _, state, _, phase, parameter = self._arguments
-        return self._build([state, phase, parameter], [self.expressions.switches])
-
-    @cached_property
-    def _switch_gradient_kernel(self) -> Callable[..., None]:
-        _, state, _, phase, parameter = self._arguments
-        e = self.expressions
-        gradients = [ca.jacobian(e.switches, v) for v in (e.state, e.phase, e.parameter)]
-        return self._build([state, phase, parameter], gradients)
-
-    @cached_property
-    def _reset_kernels(self) -> dict[int, tuple[Callable[..., None], Callable[..., None]]]:
-        _, state, _, phase, parameter = self._arguments
-        at, e = [state, phase, parameter], self.expressions
-        return {
-            k: (
-                self._build(at, [after]),
-                self._build(at, [ca.jacobian(after, v) for v in (e.state, e.phase, e.parameter)]),
-            )
-            for k, after in e.resets.items()
-        }
-
-    def _derivatives(
-        self,
-        known: dict[tuple[int, ...], Callable[..., None]],
-        rows: ca.SX,
-        free: tuple[int, ...],
-        arguments: list[Argument] | None = None,
-    ) -> Callable[..., None]:
-        """The kernel of some rows and their derivatives, made once for each choice of free parameters."""
-        if free not in known:
-            e = self.expressions
-            chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
-            variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
-            results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            iterated = known is self._jacobians and len(self.states) <= SMALL
-            known[free] = build(arguments or self._arguments, results, self.kernels, iterated)
-        return known[free]
+        """Return where a compiled kernel is: see `periodic.system.Compiling`."""
+        return self._generated.address(kernel, free)
 
     def _linearised(
         self, kernel: Callable[..., None], rows: int, free: tuple[int, ...], at: tuple[Array, ...]
@@ -518,10 +399,6 @@ class CompiledSystem:
 def _columns(*arrays: Array) -> list[Array]:
     """The arrays as a kernel writes them: it takes a last axis of one for a column."""
     return [a[:, :, 0] if a.ndim == 3 and a.shape[2] == 1 else a for a in arrays]
-
-
-MANY, PLACES = 40, 20
-"""A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
 
 def with_values(system: CompiledSystem, values: Mapping[str, float]) -> Array:

@@ -1,0 +1,66 @@
+"""The whole boundary between the engine and a model: what `periodic` asks of a system.
+
+    R(x', x, z, tau, p) = 0,   ' = d/dtau
+
+n differential rows and m algebraic rows, n states x and m unknowns z, N points at a time; x and z are
+scaled to order one. A forced system has period 2 pi in tau. Any object with these members will do; a
+hand-written NumPy class is as good as a compiled model.
+
+Every system has what stands in `equations`; what a system may have besides is one file each.
+"""
+
+from periodic.system.arrays import Array, Complex
+from periodic.system.compiler import Compiling, address_of, compiling
+from periodic.system.derivatives import Differentiable, GradientLike, differentiable
+from periodic.system.equations import (
+    Checked,
+    LinearisationLike,
+    SwitchLike,
+    System,
+    VariableLike,
+    check_system,
+    check_value,
+    index_of,
+)
+from periodic.system.events import Jumping, Resetting, jumps_of, resets_of, slides_of
+from periodic.system.motion import Flowing, FlowLike, Moving, TrajectoryLike
+from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
+from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
+
+__all__ = [
+    "Array",
+    "Checked",
+    "Compiling",
+    "Complex",
+    "Condensable",
+    "Differentiable",
+    "FlowLike",
+    "Flowing",
+    "GradientLike",
+    "Jumping",
+    "LinearPart",
+    "LinearisationLike",
+    "ModesLike",
+    "Moving",
+    "Resetting",
+    "Split",
+    "SwitchLike",
+    "System",
+    "Timed",
+    "TrajectoryLike",
+    "VariableLike",
+    "Within",
+    "address_of",
+    "check_system",
+    "check_value",
+    "compiling",
+    "differentiable",
+    "frequency_factor_of",
+    "frequency_held_of",
+    "frequency_of",
+    "index_of",
+    "jumps_of",
+    "linear_of",
+    "resets_of",
+    "slides_of",
+]

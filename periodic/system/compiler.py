@@ -1,0 +1,33 @@
+"""A C compiler, which serves the engine too."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Protocol, cast
+
+from periodic.system.equations import System
+
+
+class Compiling(System, Protocol):
+    """A system with a C compiler, which then serves the engine too: its small systems are solved in C."""
+
+    def library(self, source: str) -> ctypes.CDLL | None:
+        """The loaded library of a C source, the same one each time; None where NumPy is to do."""
+
+    def address(self, kernel: str, free: tuple[int, ...] = ()) -> int | None:
+        """The address of linearise (in the parameters `free`), move, switch, switch_gradient or output in C.
+
+        Each is a function of the number of points, then of arguments and results in order, as contiguous
+        arrays; of the results structural nonzeros alone are written. None where NumPy is to do. A system
+        that has `library` may be without it.
+        """
+
+
+def compiling(system: System) -> Compiling | None:
+    """Return the system as one with a compiler, if it has one."""
+    return cast(Compiling, system) if hasattr(system, "library") else None
+
+
+def address_of(system: System, kernel: str, free: tuple[int, ...] = ()) -> int | None:
+    """Return where a system's compiled kernel is, see `Compiling`; None where NumPy is to do."""
+    return cast(Compiling, system).address(kernel, free) if hasattr(system, "address") else None

@@ -1,0 +1,67 @@
+"""Integration in time, which shooting and simulated starts ask for."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from periodic.system.arrays import Array
+from periodic.system.equations import System
+
+
+class FlowLike(Protocol):
+    """A trajectory at K phases: state (K, n), algebraic (K, m), and their derivatives in the first state and
+    then in the free parameters, state_gradient (K, n, n+q), algebraic_gradient (K, m, n+q).
+    """
+
+    @property
+    def state(self) -> Array: ...
+    @property
+    def algebraic(self) -> Array: ...
+    @property
+    def state_gradient(self) -> Array: ...
+    @property
+    def algebraic_gradient(self) -> Array: ...
+
+
+class Flowing(System, Protocol):
+    """A system that can also integrate itself in time, which shooting needs."""
+
+    def flow(
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        free: tuple[int, ...],
+        tolerance: float,
+    ) -> FlowLike:
+        """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
+
+        algebraic (m,) is a guess of the unknowns at phase[0]; `free` are the parameters to differentiate in;
+        tolerance is relative and absolute. Raises ArithmeticError where the integration fails.
+        """
+
+
+class TrajectoryLike(Protocol):
+    """A trajectory at K phases, phase (K,): state (K, n), algebraic (K, m)."""
+
+    @property
+    def phase(self) -> Array: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def algebraic(self) -> Array: ...
+
+
+class Moving(System, Protocol):
+    """A system that can be followed in time, through impacts too."""
+
+    def motion(
+        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+    ) -> TrajectoryLike:
+        """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
+
+        algebraic (m,) is a guess of the unknowns at phase[0]; tolerance is relative and absolute. The
+        trajectory has two points of one phase at each impact, with the states before and after it. Raises
+        ArithmeticError where the integration fails.
+        """
