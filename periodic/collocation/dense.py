@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from periodic.collocation.sides import STUCK, group, sides
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
@@ -37,6 +38,12 @@ def exact(system: System) -> list[int]:
     jumping = {*resets_of(system), *jumps_of(system), *slides, *releases}
     each = ((k, s) for k, s in enumerate(system.switches) if k not in jumping)
     return [k for k, switch in each if tuple(switch.levels) == (0.0,) and switch.direction == 0]
+
+
+def sliding(system: System, switch: int) -> int | None:
+    """Return the jump along which motions slide that a switch belongs to, its own or that of a release."""
+    pairs = slides_of(system).items()
+    return next((jump for jump, pair in pairs if switch in (jump, *pair)), None)
 
 
 @dataclass(frozen=True)
@@ -160,9 +167,13 @@ class Dense:
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
         """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any.
 
-        Of a switch with impacts it is the side that they lead back to.
+        Of a switch with impacts it is the side that they lead back to. Where the motion slides on a jump its
+        switch has none, 0, and elsewhere those of the releases have none.
         """
         mesh = self.orbit.mesh
+        jump = sliding(self.system, switch)
+        if jump is not None:
+            return self._sliding(switch, jump, otherwise)
         if switch in resets_of(self.system):
             return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
@@ -170,6 +181,15 @@ class Dense:
         for start, direction in own:
             sides[start:] = direction
         return sides
+
+    def _sliding(self, switch: int, jump: int, otherwise: int) -> NDArray[np.int_]:
+        mesh = self.orbit.mesh
+        mode = sides(self.system, mesh)[:, jumps_of(self.system).index(jump)].astype(int)
+        if switch == jump:
+            own = np.where(mode == STUCK, 0, mode)
+            return own if group(self.system, mesh, jump) else np.full(mesh.ntst, otherwise)
+        up, _ = slides_of(self.system)[jump]
+        return np.where(mode == STUCK, -1 if switch == up else 1, 0)
 
     def size(self, switch: int) -> float:
         """How far the states take a switch: the largest s_x . x along the orbit."""
@@ -198,7 +218,7 @@ class Dense:
         if not wrong.any():
             return []
         at_nodes = np.zeros(len(wrong), dtype=bool)
-        for j in self._tied(switch):
+        for j in self._ends(switch):
             first = int(np.searchsorted(along.interval, j))
             at_nodes[[first, first - 1]] = True
         if switch in resets_of(self.system):
@@ -211,6 +231,13 @@ class Dense:
         found = [along.extremum(switch, int(i)) for i in farthest]
         noise = NOISE * float(np.abs(along.value).max())
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
+
+    def _ends(self, switch: int) -> list[int]:
+        """The intervals at whose begin a switch has an event node, or one of the jump that it belongs to."""
+        jump = sliding(self.system, switch)
+        if jump is None:
+            return list(self._tied(switch))
+        return [int(self.orbit.mesh.starts[i]) for i in group(self.system, self.orbit.mesh, jump)]
 
     def value(self, at: Extremum) -> float:
         """Return the switch itself at a point, not the polynomial through its values at the knots."""
@@ -235,7 +262,7 @@ class Dense:
         return min((e for e in every if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
-        """Return all minima of side * s, its impacts left out."""
+        """Return all minima of side * s, its impacts left out, of a sliding jump where it is on that side."""
         along = self.along(switch, everywhere=True)
         points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
         value = side * along.value[points]
@@ -248,6 +275,10 @@ class Dense:
                 if e.switch == switch
             ]
             low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
+        if sliding(self.system, switch) is not None:
+            at_node = np.isin(along.interval[low], self._ends(switch)) & (along.theta[low] == 0.0)
+            there = self.expected(switch, side)[along.interval[low]] == side
+            low = low[there & ~at_node]
         return [along.extremum(switch, int(i)) for i in low]
 
 

@@ -9,10 +9,10 @@ from functools import cached_property, partial
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import kinks, stick, touch
+from periodic.collocation import kinks, touch
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
-from periodic.collocation.jumping import graze, impacts
+from periodic.collocation.jumping import graze, impacts, slide
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration
@@ -206,19 +206,19 @@ class Collocation(Discretisation):
         if found is UNKNOWN:
             return found
         orbit, rows = correction.orbit, event_rows(problem.system, correction.orbit, ())
-        missing = stick.shortfall(problem.system, orbit)
+        missing = np.inf if slide.wrong(problem.system, orbit) else 0.0
         rounding = of_states(orbit, spectrum) + of_events(orbit, rows, spectrum)
         multiplier = max(found.multiplier, lost(problem.system, orbit), missing, rounding)
         return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
-        found = [part.change(system, before, after, self.shortest) for part in (touch, graze)]
+        found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide)]
         return min((c for c in found if c is not None), key=lambda c: c.part, default=None)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""
-        return touch.pattern(system, orbit)
+        return None if slide.wrong(system, orbit) else touch.pattern(system, orbit)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
@@ -260,7 +260,7 @@ class CollocationRefinement(Refinement):
     @cached_property
     def _misplaced(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return stick.shortfall(self.system, self.orbit) > self.method.tolerance
+        return bool(slide.wrong(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from periodic.collocation.jumping.saltation import rate_before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -40,7 +41,7 @@ def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
     """Return about by how much they are off as contacts begin and end where rounding has it."""
     late, off = 0.0, aside(orbit, rows)
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
-        slope = abs(float(row.nodes[start] @ orbit.node_rates[start]) + float(row.outer[i]))
+        slope = abs(float(row.nodes[start] @ rate_before(orbit, i)) + float(row.outer[i]))
         late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
     return _fastest(orbit, spectrum) * late / TERMS / spectrum.radius if late else 0.0
 

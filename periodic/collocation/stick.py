@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from periodic.collocation.jumping.slide import wrong
 from periodic.collocation.rates import rate_at
 from periodic.collocation.sides import STUCK, group, sides, sticks
 from periodic.orbit.mesh import EventNode
@@ -36,7 +37,14 @@ def passages(system: System, orbit: Orbit, least: float) -> list[Passage]:
 
     least: change of a switch by which a stretch of sticking matters.
     """
-    return [passage for k in slides_of(system) for passage in _passages(system, orbit, k, least)]
+    slides = slides_of(system)
+    if slides and orbit.mesh.events and not wrong(system, orbit):
+        return [
+            (orbit.mesh.events[j], float(orbit.phases[j]), 1.0)
+            for k in slides
+            for j in group(system, orbit.mesh, k)
+        ]
+    return [passage for k in slides for passage in _passages(system, orbit, k, least)]
 
 
 def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[Passage]:
@@ -220,17 +228,3 @@ def _speeds(system: System, orbit: Orbit, switch: int, node: int) -> tuple[float
     """|ds/dtau| on either side of the jump at an event node."""
     phase = float(orbit.phases[node])
     return _Motion(system, orbit, switch, phase).speeds(orbit.nodes[orbit.mesh.starts[node]], phase)
-
-
-def shortfall(system: System, orbit: Orbit) -> float:
-    """Return by how much, in s, an orbit is wrong that slips where it should stick, or the reverse."""
-    worst = [0.0]
-    for k in slides_of(system):
-        values, side = _values(system, orbit, k)
-        worst.append(float(np.where(np.abs(side) == 1, -side * values, 0.0).max()))
-        for j in (j for j in group(system, orbit.mesh, k) if orbit.mesh.events[j].switch == k):
-            state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
-            stuck = sticks(system, orbit.mesh, k, j) is not None
-            missing = _slip(system, orbit, k, j) if stuck else _stretch(system, orbit, k, state, phase)
-            worst.append(missing.size)
-    return max(worst)

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.dense import Dense, Extremum, exact
+from periodic.collocation.dense import Dense, Extremum, exact, sliding
 from periodic.correction.change import Beyond, Change
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.mesh import EventNode
@@ -26,7 +26,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System, resets_of
+from periodic.system import System, resets_of, slides_of
 
 SHORT = (1e-2, 1e-3, 1e-4)
 """Lengths (rad) of the excursions at which patterns are exchanged, tried in turn."""
@@ -115,6 +115,7 @@ class Birth:
     ripple: float = 0.0
 
     touches = True
+    strict = True
     final = True
 
     @property
@@ -159,6 +160,7 @@ class Meeting:
     shortest: float
 
     touches = False
+    strict = False
 
     @property
     def final(self) -> bool:
@@ -263,6 +265,8 @@ def pattern(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
     dense, own = Dense(system, orbit), [*exact(system), *resets_of(system)]
     if any(dense.unseen(k, dense.side(k)) for k in own):
         return None
+    for jump, pair in slides_of(system).items():
+        own += [jump, *pair]
     tied = [event for event in orbit.mesh.events if event.switch in own]
     return tuple(sorted(tied, key=lambda event: (event.switch, event.direction)))
 
@@ -276,7 +280,7 @@ def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Chan
 
 
 def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Meeting | None:
-    own = exact(system)
+    own = [*exact(system), *(k for pair in slides_of(system).items() for k in (pair[0], *pair[1]))]
     if not before.mesh.events:
         return None
     now, then = before.mesh.segment_lengths(before.phases), after.mesh.segment_lengths(after.phases)
@@ -284,7 +288,7 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
     for i, first in enumerate(before.mesh.events):
         second = before.mesh.events[(i + 1) % len(now)]
         same = first.switch == second.switch
-        if first.switch not in own or second.switch not in own:
+        if first.switch not in own or second.switch not in own or _slide(system, first, second):
             continue
         half = VANISHING * float(now[i])
         nearest = next((length for length in SHORT if length < half), half)
@@ -295,6 +299,12 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
             part = (now[i] - nearest) / (now[i] - then[i])
         found.append(Meeting(system, i, (first, second), nearest, min(float(part), 1.0), shortest))
     return min(found, key=lambda meeting: meeting.part, default=None)
+
+
+def _slide(system: System, first: EventNode, second: EventNode) -> bool:
+    """Whether two event nodes are those of one jump: see `periodic.collocation.jumping.slide`."""
+    jump = sliding(system, first.switch)
+    return jump is not None and sliding(system, second.switch) == jump
 
 
 def _birth(system: System, before: Orbit, after: Orbit, shortest: float) -> Birth | None:

@@ -45,6 +45,10 @@ class Change(Protocol):
         """Whether a switch just touches its level where the step ends."""
 
     @property
+    def strict(self) -> bool:
+        """Whether orbits past it on the same mesh are none of the system."""
+
+    @property
     def final(self) -> bool:
         """Whether the branch cannot be followed nearer to the change than where the step ends."""
 

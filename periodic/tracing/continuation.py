@@ -385,7 +385,7 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
-        elif at.change.touches or (at.change.final and codim2.picked(self.solver.problem) is not None):
+        elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
 
     def _completed(self, step: Step) -> None:
@@ -465,7 +465,7 @@ class Continuation:
         if not new.ok:
             raise RejectedError(new.outcome.value)
         found = method.change(system, base.orbit, new.orbit)
-        if found is None or not found.touches:
+        if found is None or not found.strict:
             return new, None
         at = reached(solver, base, new.orbit, ds, found)
         if at is None:

@@ -46,7 +46,7 @@ def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
     """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
     guess = tangent(solver.problem, base, ds)
     change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
-    if change is None or not change.touches or change.part > STANDING:
+    if change is None or not change.strict or change.part > STANDING:
         return None
     return Reached(base, 0.0, change)
 
@@ -63,7 +63,7 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not 0 < along <= LONGER * ds:
             return None
         earlier = method.change(system, base.orbit, found.orbit)
-        if earlier is None or (not change.touches and not earlier.touches):
+        if earlier is None or (not change.strict and not earlier.strict):
             return Reached(found, along, change)
         change, near = earlier, found.orbit
     return None

@@ -26,7 +26,10 @@ from reference.integration import TWO_PI, Array
 from reference.shooting import in_order
 
 SAMPLES = 200
-"""Pieces of a period within which a row has at most one extremum."""
+"""Pieces of a period."""
+
+PARTS = 8
+"""Parts of a piece in each of which a row has at most one extremum: it may begin at rest, on its zero."""
 
 EVENTS = 400
 """Most events in a period."""
@@ -195,7 +198,10 @@ def period(system: Contact, Omega: float, start: ArrayLike, phase: float = 0.0) 
             mode, R = system.passed(Omega, mode, i, z)
             row, after = piece.rows[hit[0]], system.piece(Omega, mode).generator
             jump = after @ R @ z - R @ piece.generator @ z
-            perturbed = (R + np.outer(jump, row) / (row @ piece.generator @ z)) @ perturbed
+            speed = float(row @ piece.generator @ z)
+            if speed == 0:
+                raise ArithmeticError("an event at rest")
+            perturbed = (R + np.outer(jump, row) / speed) @ perturbed
             z = R @ z
             events.append((i, phase + Omega * t))
             if len(events) > EVENTS:
@@ -225,9 +231,13 @@ def _zero(piece: Piece, z: Array, k: int, length: float) -> float | None:
     def rate(t: float) -> float:
         return float(slope @ piece.after(z, t))
 
-    ends = [0.0, length]
-    if rate(0.0) * rate(length) < 0:
-        ends.insert(1, float(brentq(rate, 0.0, length, xtol=1e-15)))
+    places = np.linspace(0.0, length, PARTS + 1)
+    turns = [
+        float(brentq(rate, a, b, xtol=1e-15))
+        for a, b in zip(places[:-1], places[1:], strict=True)
+        if rate(a) * rate(b) < 0
+    ]
+    ends = [0.0, *turns, length]
     for a, b in zip(ends[:-1], ends[1:], strict=True):
         if value(b) < (0.0 if b == length else -ROUNDING):
             return float(brentq(value, a, b, xtol=1e-16, rtol=1e-15)) if value(a) > 0 else a

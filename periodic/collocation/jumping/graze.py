@@ -69,6 +69,7 @@ class FirstImpact:
     shortest: float
 
     touches = True
+    strict = True
     final = True
 
     @property
@@ -108,6 +109,7 @@ class LastImpact:
     shortest: float
 
     touches = False
+    strict = False
 
     @property
     def final(self) -> bool:

@@ -54,6 +54,26 @@ def test_some(kind: str, seed: int) -> None:
     assert wrong(case, branch, seed) == []
 
 
+SHORT_STOPS = [(4, 0.7730, 0.7690, 1), (106, 0.6830, 0.6815, 1), (133, 0.7, 0.6, 0)]
+"""Seeds, stretches of the branch in which a stop begins or ends, and how often one touches there (GR)."""
+
+
+@pytest.mark.parametrize(("seed", "begin", "end", "touches"), SHORT_STOPS)
+def test_stops_however_short(seed: int, begin: float, end: float, touches: int) -> None:
+    """Assert multipliers where sliding just stops: they jump there, and no stop is too short to be seen.
+
+    At a touch itself they have two values.
+    """
+    case = drawn("friction", seed)
+    bounds = (min(begin, end), max(begin, end))
+    branch = per.trace(case.system, "Omega", bounds, start=begin, tol=TOL, control=CONTROL)
+    assert branch.stop.reason is Reason.BOUND
+    assert len(branch.labelled(per.Label.GRAZING)) == touches
+    for point in branch:
+        if point.label is not per.Label.GRAZING:
+            assert judged(case.exact, point, case.names).wrong(point, TOL) == ""
+
+
 @pytest.mark.long
 @pytest.mark.unaccounted
 @pytest.mark.parametrize(
