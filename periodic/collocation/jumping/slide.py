@@ -43,7 +43,7 @@ ALIKE = 1e-3
 """Stretches whose lengths differ by this part end at once."""
 
 SHORT_OF = 1e-9
-"""How far from the end of a stretch the orbit without it is held, in the same part: there rounding decides."""
+"""How far from the end of a stretch the orbit without it is held, in the same part: rounding decides."""
 
 SHORT = (1e-2, 1e-3, 1e-4)
 """Lengths (rad) of stretches of sticking at which patterns are exchanged, tried in turn."""
