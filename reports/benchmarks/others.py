@@ -44,10 +44,17 @@ class Case:
 
 @dataclass(frozen=True)
 class Branch:
-    """What a peer says of its branch: processor time in s; number of points and error of the folds."""
+    """What a peer says of its branch: processor time in s, number of points, folds."""
 
     seconds: float
-    numbers: dict[str, float]
+    points: int
+    folds: tuple[float, ...]
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Number of points and, where it has two folds, their error as those of Duffing A."""
+        error = {"fold error": fold_error(self.folds)} if len(self.folds) == 2 else {}
+        return {"points": float(self.points)} | error
 
 
 Measured = Callable[[Case], Branch]
@@ -67,8 +74,7 @@ def traced(case: Case) -> Branch:
             raise MissingError(f"{package} is not installed (pip install 'orbitrace[peers]')")
         raise MissingError(f"{package} failed: {reason}")
     told = json.loads(done.stdout.strip().splitlines()[-1])
-    error = {"fold error": fold_error(told["folds"])} if len(told["folds"]) == 2 else {}
-    return Branch(told["s"], {"points": float(told["points"])} | error)
+    return Branch(told["s"], told["points"], tuple(told["folds"]))
 
 
 @cache
@@ -97,5 +103,7 @@ def _run(code: str) -> subprocess.CompletedProcess[str]:
             check=False,
             timeout=PATIENCE,
         )
-    except (OSError, subprocess.TimeoutExpired) as error:
+    except subprocess.TimeoutExpired as error:
+        raise MissingError(f"not at its end in {PATIENCE} s") from error
+    except OSError as error:
         raise MissingError(f"{python} does not run it ({type(error).__name__})") from error

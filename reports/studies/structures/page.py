@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reports.studies.pages.page import Page
 from reports.studies.structures.accuracy import ACCURACY
+from reports.studies.structures.peer import BESIDE
 from reports.studies.structures.rotor import ROTOR
 from reports.studies.structures.size import SIZE
 from reports.studies.structures.tips import TIPS
@@ -13,5 +14,5 @@ from reports.studies.structures.tips import TIPS
 REPORT = Page(
     name="structures",
     folder=Path(__file__).parent,
-    sections={"size": SIZE, "accuracy": ACCURACY, "tips": TIPS, "rotor": ROTOR},
+    sections={"size": SIZE, "accuracy": ACCURACY, "peer": BESIDE, "tips": TIPS, "rotor": ROTOR},
 )

@@ -9,7 +9,7 @@ import pytest
 from periodic import Label
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
-from reports.studies.structures import accuracy, rotor, size
+from reports.studies.structures import accuracy, peer, rotor, size
 from reports.studies.structures.page import REPORT
 
 FOLDER = REPORT.folder
@@ -36,6 +36,18 @@ def test_size_is_fresh() -> None:
     assert size.row(size.CONDENSED, 10)["folds"] == pytest.approx(kept["folds"], rel=1e-8)
     assert max(row["points"] for row in rows) < 1.4 * min(row["points"] for row in rows)
     assert {row["unknown"] for row in rows} == {2}
+
+
+def test_peer_is_fresh() -> None:
+    """Assert our folds anew to 1e-8, that pyHarm has them to 3e-4, and who is quicker."""
+    rows = [row for row in REPORT.kept(FOLDER)["peer"].rows if row["method"] != "version"]
+    for row in rows:
+        first = next(r for r in rows if r["freedoms"] == row["freedoms"])
+        assert row["folds"] == pytest.approx(first["folds"], rel=3e-4)
+    ours, _, its = rows[-3:]
+    kept = next(r for r in rows if r["freedoms"] == 20)
+    assert peer.own(10, ours["method"])["folds"] == pytest.approx(kept["folds"], rel=1e-8)
+    assert rows[2]["s"] < rows[0]["s"] and its["s"] > 30 * ours["s"]
 
 
 @pytest.mark.long
