@@ -16,6 +16,7 @@ from periodic.collocation.jumping import graze, impacts, slide
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration
+from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.collocation.unresolved import lost
@@ -162,15 +163,13 @@ class Collocation(Discretisation):
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
     ) -> Linearised:
-        """Return the equations at an orbit linearised and solved, likewise. Raises FAILURES.
+        """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
         Event nodes are as far beside their levels as rounding may leave them: it is nothing to the orbit, but
         to the multipliers where a contact is shallow.
         """
-        given = (system, orbit, free, conditions, settings)
         off = aside(orbit, event_rows(system, orbit, free))
-        found = iteration.linearised(*given, off) if self._plain else None
-        return linearised(partial(self._equations, off=off), *given) if found is None else found
+        return linearised(partial(self._equations, off=off), system, orbit, free, conditions, settings)
 
     @property
     def _plain(self) -> bool:
@@ -201,15 +200,26 @@ class Collocation(Discretisation):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by a Newton step on the halved mesh."""
-        found = deferred(self.linearise, problem, correction.orbit, tangent, spectrum, solved=self._beside)
-        if found is UNKNOWN:
-            return found
-        orbit, rows = correction.orbit, event_rows(problem.system, correction.orbit, ())
-        missing = np.inf if slide.wrong(problem.system, orbit) else 0.0
-        rounding = of_states(orbit, spectrum) + of_events(orbit, rows, spectrum)
-        multiplier = max(found.multiplier, lost(problem.system, orbit), missing, rounding)
-        return replace(found, orbit=max(found.orbit, missing), multiplier=multiplier, rounding=rounding)
+        """Estimate the errors by a Newton step on the halved mesh, where it can be in one call of C."""
+        system, orbit = problem.system, correction.orbit
+        found = estimated(problem, orbit, tangent, spectrum) if self._plain else None
+        if found is None:
+            error = deferred(self.linearise, problem, orbit, tangent, spectrum, solved=self._beside)
+            found = Estimated(error, error is not UNKNOWN)
+        error = found.error
+        if error is UNKNOWN:
+            return error
+        missing = np.inf if slide.wrong(system, orbit) else 0.0
+        rounding = self._rounding(system, orbit, spectrum)
+        unseen = lost(system, orbit) if found.unresolved else 0.0
+        multiplier = max(error.multiplier, unseen, missing, rounding)
+        return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
+
+    def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
+        """What of the multipliers' error is rounding."""
+        if len(orbit.mesh.exact_ends) == 0:
+            return 0.0
+        return of_states(orbit, spectrum) + of_events(orbit, event_rows(system, orbit, ()), spectrum)
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""

@@ -128,10 +128,14 @@ def deferred(
     at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
     at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0
-    apart = max(at_nodes.max(), between.max())
+    apart = float(max(at_nodes.max(), between.max()))
+    return relative(problem, orbit, apart, abs(change.parameter), multiplier)
+
+
+def relative(problem: Problem, orbit: Orbit, apart: float, shift: float, multiplier: float) -> ErrorEstimate:
+    """Return the estimate of errors `apart` of the states and `shift` of the parameter, relative to them."""
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
-    parameter = float(abs(change.parameter) / largest)
-    return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+    return ErrorEstimate(apart / max(orbit.span(), LEAST_SPAN), multiplier, shift / largest)
 
 
 def _along(found: Linearised, problem: Problem, size: float) -> Increment:

@@ -112,6 +112,12 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
     if orbit.equilibrium:
         values = outputs(system, orbit, np.zeros(1))[0]
         return Extremes(values, values, np.zeros_like(values), np.zeros_like(values))
+    compiled = native.extremes(system, orbit)
+    return _searched(system, orbit) if compiled is None else Extremes(*compiled)
+
+
+def _searched(system: System, orbit: Orbit) -> Extremes:
+    """The extremes of an orbit that is no equilibrium."""
     tau = orbit.stage_phases.ravel()
     flat = (len(tau), -1)
     values = system.output(

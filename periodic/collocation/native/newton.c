@@ -23,7 +23,7 @@ struct change {
     double *nodes, *stages, *algebraic, *outer;
 };
 
-/* As `periodic.collocation.iteration.Call` fills it. */
+/* As `periodic.collocation.native.call.Call` is filled. */
 struct call {
     whole count, ncol, n, m, k, parameters, switches, exact;        /* sizes; exact: intervals before kinks */
     whole free, most;                                               /* the free parameter, iterations allowed */
@@ -418,7 +418,7 @@ static void move(struct call *c, struct room *r, double part)
 static int iterate(struct call *c, struct room *r)
 {
     double before = INFINITY, factor = 1;
-    int found = c->most == 0;
+    int found = 0;
     for (c->iterations = 0; !found && c->iterations < c->most; c->iterations++) {
         const int code = linearised(c, r), worse = code != DONE || c->length > 2 * before;
         if (worse && before < INFINITY && factor > c->shortest) {
@@ -442,11 +442,11 @@ static int iterate(struct call *c, struct room *r)
 static int closer(struct call *c, struct room *r)
 {
     const double close = c->close * c->tolerance;
-    if (c->most && c->length <= close && c->stretch <= close)
+    if (c->length <= close && c->stretch <= close)
         return DONE;
     double last = c->stretch;
     int code = linearised(c, r);
-    while (code == DONE && c->most && close < c->stretch && c->stretch < last / 4) {
+    while (code == DONE && close < c->stretch && c->stretch < last / 4) {
         last = c->stretch;
         keep(c, r);
         move(c, r, 1);
@@ -463,14 +463,13 @@ static int solved(struct call *c, struct room *r)
         code = closer(c, r);
     if (code != DONE)
         return code;
-    if (c->most)
-        c->size = size;
+    c->size = size;
     const whole last = c->n + c->k + 1;
     spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
     return unfold(c, r);
 }
 
-/* Iterate to convergence, at most `most` times; 0 times is one linearisation at the orbit as it is. */
+/* Iterate to convergence, at most `most` times. */
 int newton(struct call *c)
 {
     struct room room;

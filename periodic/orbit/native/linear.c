@@ -1,4 +1,4 @@
-/* What every C source begins with: sizes, outcomes, linear equations. */
+/* What every C source begins with: sizes, outcomes, linear combinations and equations. */
 
 #include <float.h>
 #include <math.h>
@@ -62,4 +62,13 @@ static int finite_all(whole count, const double *values)
         if (!(fabs(values[i]) <= DBL_MAX))
             return 0;
     return 1;
+}
+
+/* The sum of rows (few, n) with weights (few). */
+static void combine(whole few, whole n, const double *weights, const double *values, double *restrict sum)
+{
+    memset(sum, 0, n * sizeof(double));
+    for (whole l = 0; l < few; l++)
+        for (whole s = 0; s < n; s++)
+            sum[s] += weights[l] * values[l * n + s];
 }

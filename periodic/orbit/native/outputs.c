@@ -33,66 +33,83 @@ static void lagrange(whole knots, const double *places, const double *weights, d
     }
 }
 
-static void combine(whole knots, whole n, const double *basis, const double *values, double *restrict sum)
+/* The interval of a phase, and the place within it. */
+static whole locate(const struct call *c, double tau, double *theta)
 {
-    memset(sum, 0, n * sizeof(double));
-    for (whole l = 0; l < knots; l++)
-        for (whole s = 0; s < n; s++)
-            sum[s] += basis[l] * values[l * n + s];
+    const double begin = c->left[0], wrapped = fmod(tau - begin, c->period);
+    const double place = begin + (wrapped < 0 ? wrapped + c->period : wrapped);
+    whole low = 0, high = c->count; /* left[low] <= place < left[high] */
+    while (high - low > 1) {
+        const whole middle = (low + high) / 2;
+        if (c->left[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    *theta = fmin(1, fmax(0, (place - c->left[low]) / c->width[low]));
+    return low;
+}
+
+/* Room for what is known at some points; the kernels write structural nonzeros only, so that derivatives begin as
+   0. */
+struct room {
+    double *rate, *state, *algebraic, *derivatives, *both;
+};
+
+/* Lay it out in one piece of memory, which is returned; NULL where there is none. */
+static double *lay_out(const struct call *c, whole points, struct room *r)
+{
+    const whole n = c->n, m = c->m, derived = m ? points * (n + m) * (2 + 2 * n + m) : 0;
+    double *all = calloc(points * (2 * n + m) + derived + m * (m + 1) + 1, sizeof(double));
+    r->rate = all;
+    r->state = r->rate + points * n;
+    r->algebraic = r->state + points * n;
+    r->derivatives = r->algebraic + points * m;
+    r->both = r->derivatives + derived;
+    return all;
 }
 
 /* States, rates and a guess for the unknowns. */
-static void interpolate(const struct call *c, double *rate, double *state, double *algebraic)
+static void interpolate(const struct call *c, const struct room *r, whole points, const double *tau)
 {
     const whole knots = c->ncol + 1;
     double basis[16];
-    for (whole i = 0; i < c->points; i++) {
-        const double begin = c->left[0];
-        double place = fmod(c->tau[i] - begin, c->period);
-        place = begin + (place < 0 ? place + c->period : place);
-        whole low = 0, high = c->count; /* left[low] <= place < left[high] */
-        while (high - low > 1) {
-            const whole middle = (low + high) / 2;
-            if (c->left[middle] <= place)
-                low = middle;
-            else
-                high = middle;
-        }
-        const double theta = fmin(1, fmax(0, (place - c->left[low]) / c->width[low]));
+    for (whole i = 0; i < points; i++) {
+        double theta;
+        const whole at = locate(c, tau[i], &theta);
         lagrange(knots, c->places, c->weights, theta, basis);
-        combine(knots, c->n, basis, c->knots + low * knots * c->n, state + i * c->n);
-        combine(knots, c->n, basis, c->knot_rates + low * knots * c->n, rate + i * c->n);
+        combine(knots, c->n, basis, c->knots + at * knots * c->n, r->state + i * c->n);
+        combine(knots, c->n, basis, c->knot_rates + at * knots * c->n, r->rate + i * c->n);
         if (c->m) {
             lagrange(c->ncol, c->places + 1, c->inner_weights, theta, basis);
-            combine(c->ncol, c->m, basis, c->algebraic + low * c->ncol * c->m, algebraic + i * c->m);
+            combine(c->ncol, c->m, basis, c->algebraic + at * c->ncol * c->m, r->algebraic + i * c->m);
         }
     }
 }
 
-/* Solve for the unknowns; derivatives hold room for the kernel's results, `both` for m (m + 1) numbers. */
-static int solve_unknowns(const struct call *c, const double *rate, const double *state, double *algebraic,
-                          double *derivatives, double *both)
+/* Solve for the unknowns. */
+static int solve_unknowns(const struct call *c, const struct room *r, whole points, const double *tau)
 {
     const whole n = c->n, m = c->m, rows = n + m;
-    double *residual = derivatives, *d_rate = residual + c->points * rows, *d_state = d_rate + c->points * rows * n;
-    double *d_algebraic = d_state + c->points * rows * n, *d_phase = d_algebraic + c->points * rows * m;
+    double *residual = r->derivatives, *d_rate = residual + points * rows, *d_state = d_rate + points * rows * n;
+    double *d_algebraic = d_state + points * rows * n, *d_phase = d_algebraic + points * rows * m, *both = r->both;
     for (whole iteration = 0; iteration < ITERATIONS; iteration++) {
         double largest = 0;
-        c->rows(c->points, rate, state, algebraic, c->tau, c->parameter, residual, d_rate, d_state, d_algebraic,
+        c->rows(points, r->rate, r->state, r->algebraic, tau, c->parameter, residual, d_rate, d_state, d_algebraic,
                 d_phase, NULL);
-        for (whole i = 0; i < c->points; i++) {
+        for (whole i = 0; i < points; i++) {
             if (!finite_all(rows, residual + i * rows) || !finite_all(rows * m, d_algebraic + i * rows * m))
                 continue;
-            for (whole r = 0; r < m; r++) {
-                memcpy(both + r * (m + 1), d_algebraic + (i * rows + n + r) * m, m * sizeof(double));
-                both[r * (m + 1) + m] = residual[i * rows + n + r];
+            for (whole row = 0; row < m; row++) {
+                memcpy(both + row * (m + 1), d_algebraic + (i * rows + n + row) * m, m * sizeof(double));
+                both[row * (m + 1) + m] = residual[i * rows + n + row];
             }
             if (solve(m, 1, both) != DONE)
                 return SINGULAR;
-            for (whole r = 0; r < m; r++) {
-                const double change = both[r * (m + 1) + m];
+            for (whole row = 0; row < m; row++) {
+                const double change = both[row * (m + 1) + m];
                 largest = fmax(largest, fabs(change));
-                algebraic[i * m + r] -= fmin(LONGEST, fmax(-LONGEST, change));
+                r->algebraic[i * m + row] -= fmin(LONGEST, fmax(-LONGEST, change));
             }
         }
         if (largest < CLOSE)
@@ -101,18 +118,21 @@ static int solve_unknowns(const struct call *c, const double *rate, const double
     return DONE;
 }
 
+/* Outputs at some phases, (points, outputs). */
+static int read_at(const struct call *c, const struct room *r, whole points, const double *tau, double *values)
+{
+    interpolate(c, r, points, tau);
+    const int code = c->m ? solve_unknowns(c, r, points, tau) : DONE;
+    if (code == DONE)
+        c->values_at(points, r->rate, r->state, r->algebraic, tau, c->parameter, values);
+    return code;
+}
+
 int outputs(const struct call *c)
 {
-    const whole n = c->n, m = c->m, rows = n + m, derived = m ? c->points * rows * (2 + 2 * n + m) : 0;
-    double *all = calloc(c->points * (2 * n + m) + derived + m * (m + 1) + 1, sizeof(double));
-    if (!all)
-        return SINGULAR;
-    double *rate = all, *state = rate + c->points * n, *algebraic = state + c->points * n;
-    double *derivatives = algebraic + c->points * m;
-    interpolate(c, rate, state, algebraic);
-    const int code = m ? solve_unknowns(c, rate, state, algebraic, derivatives, derivatives + derived) : DONE;
-    if (code == DONE)
-        c->values_at(c->points, rate, state, algebraic, c->tau, c->parameter, c->values);
+    struct room room;
+    double *all = lay_out(c, c->points, &room);
+    const int code = all ? read_at(c, &room, c->points, c->tau, c->values) : SINGULAR;
     free(all);
     return code;
 }

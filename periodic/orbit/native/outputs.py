@@ -1,4 +1,4 @@
-"""Outputs at phases of an orbit in one call of C (`outputs.c`), where a system's kernels are compiled."""
+"""Outputs of an orbit, and their extremes, in one call of C (`outputs.c`, `extremes.c`) where kernels are compiled."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling
 
+_SOURCES = ("periodic.orbit.native:outputs.c", "periodic.orbit.native:extremes.c")
 _SIZES = ("count", "ncol", "n", "m", "outputs", "points")
 _ORBIT = ("left", "width", "knots", "knot_rates", "algebraic", "parameter", "tau")
 _SCHEME = ("places", "weights", "inner_weights")
@@ -29,7 +30,17 @@ class Call(ctypes.Structure):
 
 
 def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
-    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do.
+    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do."""
+    return _called("outputs", system, orbit, tau, np.zeros((len(tau), len(system.outputs))))
+
+
+def extremes(system: System, orbit: Orbit) -> Array | None:
+    """Return minima and maxima of the outputs and the phases of both, (4, outputs), or None likewise."""
+    return _called("extremes", system, orbit, np.zeros(0), np.zeros((4, len(system.outputs))))
+
+
+def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) -> Array | None:
+    """Return the values that a function of C writes, or None where NumPy is to do.
 
     Only piecewise polynomials are read in C: what a Fourier series is between its samples, it knows itself.
     """
@@ -40,21 +51,21 @@ def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
         return None
     (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
     rows = address_of(system, "linearise") if m else 0
-    library = with_compiler.library(source("periodic.orbit.native:outputs.c"))
+    library = with_compiler.library(source(*_SOURCES))
     if rows is None or library is None:
         return None
-    scheme, grid, values = orbit.mesh.scheme, orbit.grid, np.zeros((len(tau), len(system.outputs)))
+    scheme, grid = orbit.mesh.scheme, orbit.grid
     own = grid.left, grid.width, orbit.knots, orbit.knot_rates, orbit.algebraic, orbit.parameter, tau
     fixed = scheme.knots, scheme.barycentric, scheme.inner_barycentric
     kept = [plain(array) for array in (*own, *fixed)]
-    sizes, found = (count, ncol, n, m, values.shape[1], len(tau)), address(values)
+    sizes, found = (count, ncol, n, m, len(system.outputs), len(tau)), address(values)
     call = Call(*sizes, *map(address, kept), rows, values_at, found, orbit.mesh.period)
-    return values if _routine(library)(ctypes.addressof(call)) == 0 else None
+    return values if _routine(library, what)(ctypes.addressof(call)) == 0 else None
 
 
 @cache
-def _routine(library: ctypes.CDLL) -> Callable[[int], int]:
-    function = library.outputs
+def _routine(library: ctypes.CDLL, name: str) -> Callable[[int], int]:
+    function = getattr(library, name)
     function.argtypes, function.restype = [ctypes.c_void_p], ctypes.c_int
     run: Callable[[int], int] = function
     return run

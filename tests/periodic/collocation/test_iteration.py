@@ -13,10 +13,12 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.native import iteration
+from periodic.collocation.native import call, iteration
+from periodic.collocation.native.estimate import estimated
+from periodic.collocation.unresolved import lost
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import deferred
-from periodic.correction.newton import NewtonSettings, correct, linearised
+from periodic.correction.newton import NewtonSettings, correct
 from periodic.linear.unknowns import parameter_only, size_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
@@ -91,28 +93,40 @@ def test_corrections_are_the_same(name: str, close_to: float) -> None:
     assert found.residual < 10 * expected.residual + 1e-9 and found.increment < NEWTON.tolerance
 
 
+@pytest.mark.parametrize("along", [0.1, 1e-6])
 @pytest.mark.parametrize("name", CASES)
-def test_error_estimates_are_the_same(name: str) -> None:
-    """Assert the increment on a halved mesh, and what the error estimate makes of it."""
+def test_error_estimates_are_the_same(name: str, along: float) -> None:
+    """Assert errors of orbit, multipliers and parameter of both, on branches that turn and that do not."""
     system, (parameter, orbit_of) = compiled(name), CASES[name]
     constraint, guess = beside(system, orbit_of(), parameter)
-    given = (system, guess, (constraint.index,), [constraint], NEWTON)
-    found, expected = iteration.linearised(*given), linearised(METHOD.linearise, *given)
-    assert found is not None
-    close(found.increment.nodes, expected.increment.nodes, 1e-7)
-    close(found.increment.parameters, expected.increment.parameters, 1e-7)
-    close(found.fundamental, expected.fundamental, 1e-7)
-
+    solution = correct(METHOD.linearise, system, guess, (constraint.index,), [constraint], NEWTON)
     problem = per.Problem(system, parameter, (0.3, 100.0))
-    solution = correct(METHOD.linearise, *given)
-    spectrum = METHOD.spectrum(solution, 0)
-    both = (iteration.linearised, None)
-    one, two = (
-        deferred(METHOD.linearise, problem, solution.orbit, constraint.direction, spectrum, solved=solved)
-        for solved in both
-    )
-    assert [one.orbit, one.parameter] == pytest.approx([two.orbit, two.parameter], rel=1e-2, abs=1e-9)
-    assert one.multiplier == pytest.approx(two.multiplier, rel=1e-2, abs=1e-9)
+    direction = replace(constraint.direction, parameters=np.array([along]))
+    given = (problem, solution.orbit, direction, METHOD.spectrum(solution, 0))
+    found = estimated(*given)
+    expected = deferred(METHOD.linearise, *given, solved=METHOD._beside)
+    assert found is not None and min(expected.orbit, expected.multiplier, expected.parameter) > 0
+    assert found.error.orbit == pytest.approx(expected.orbit, rel=1e-4)
+    assert found.error.parameter == pytest.approx(expected.parameter, rel=1e-4)
+    assert found.error.multiplier == pytest.approx(expected.multiplier, rel=1e-3, abs=1e-11)
+
+
+@pytest.mark.parametrize(("stiffness", "fast"), [(1.0, False), (1e6, True)])
+def test_vibrations_too_fast_for_the_mesh_are_noticed(stiffness: float, fast: bool) -> None:
+    """Assert that C tells of them where NumPy finds that multipliers lose something."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    springs = [sym.Spring(x, 1.0), sym.Spring(y, sym.parameter("k", stiffness))]
+    parts = [sym.Mass(x, 1.0), sym.Mass(y, 1.0), *springs, sym.Damper(x, 0.1), sym.Damper(y, 0.1)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ORBITRACE_KERNELS", "c")
+        system = sym.compile(sym.combine([*parts, sym.HarmonicForce(x, 1.0)]))
+    point = per.trace(system, "Omega", (0.7, 0.8), control=per.ArclengthControl(max_points=1))[0]
+    constraint, guess = beside(system, point.orbit, "Omega")
+    solution = correct(METHOD.linearise, system, guess, (constraint.index,), [constraint], NEWTON)
+    problem = per.Problem(system, "Omega", (0.7, 0.8))
+    found = estimated(problem, point.orbit, constraint.direction, METHOD.spectrum(solution, 0))
+    assert found is not None and found.unresolved is fast
+    assert (lost(system, point.orbit) > 0) is fast
 
 
 def test_who_is_left_to_numpy() -> None:
@@ -127,7 +141,7 @@ def test_who_is_left_to_numpy() -> None:
     assert not chosen(compiled("duffing", "numpy"))
     assert not chosen(compiled("duffing"), free=()) and not chosen(compiled("duffing"), count=2)
     assert not chosen(LinearOscillator())
-    many = replace(guess, nodes=np.zeros((len(guess.nodes), iteration.MOST + 1)))
+    many = replace(guess, nodes=np.zeros((len(guess.nodes), call.MOST + 1)))
     assert iteration.corrected(compiled("duffing"), many, (constraint.index,), [constraint], NEWTON) is None
 
 

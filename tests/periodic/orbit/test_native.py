@@ -1,13 +1,17 @@
-"""Outputs along an orbit in C against NumPy."""
+"""Outputs along an orbit and their extremes in C against NumPy."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from support import traces
 
 import periodic as per
 import symbolic as sym
+from periodic.orbit import extrema
 from symbolic.kernels import native
+from symbolic.scenes.building import build
+from symbolic.scenes.files import load
 
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)
@@ -25,3 +29,20 @@ def test_outputs_in_c_are_those_in_numpy(method: per.Discretisation) -> None:
     found, expected = (per.outputs(system, orbit, tau) for system in (compiled, plain))
     assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
     assert found[:, 0] == pytest.approx(orbit.state(tau)[:, 0], abs=1e-13)
+
+
+def test_extremes_in_c_are_those_in_numpy() -> None:
+    """Assert extremes and their phases with contact lost and kept, unknowns and event nodes included."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ORBITRACE_KERNELS", "c")
+        system = build(load("vitrea79-810N"))
+    points = traces.disc().points
+    assert max(len(p.orbit.phases) for p in points) > 0 and len(system.algebraics) > 0
+    for point in points:
+        compiled = extrema.native.extremes(system, point.orbit)
+        expected = extrema._searched(system, point.orbit)
+        assert compiled is not None
+        for found, value in zip(compiled[:2], (expected.minimum, expected.maximum), strict=True):
+            assert found == pytest.approx(value, rel=1e-12)
+        for found, value in zip(compiled[2:], (expected.minimum_phase, expected.maximum_phase), strict=True):
+            assert found == pytest.approx(value, abs=1e-6)

@@ -1,0 +1,154 @@
+"""What C takes of an orbit's equations (`struct call` of newton.c), and who may be left to it."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from periodic.collocation.native.elimination import ELIMINATION, LARGE
+from periodic.correction.newton import NewtonSettings
+from periodic.linear.bordering import GROWTH
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, address_of, compiling, jumps_of, resets_of
+
+MOST = LARGE - 1
+"""Number of states up to which it is worth its while, whatever the matrices: see `LARGE`."""
+
+_SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
+
+_SIZES = ("count", "ncol", "n", "m", "k", "parameters", "switches", "exact", "free", "most")
+_MARKS = ("segment", "starts", "switch_of", "ends")
+_MESH = ("left", "width", "left_gradient", "width_gradient", "levels")
+_SCHEME = ("points", "differentiation", "end", "weights")
+_SYSTEM = ("rows", "move", "switch_values", "switch_slopes")
+_CONSTRAINT = ("weighted", "origin_nodes")
+ORIGIN = ("node_rates", "knots", "knot_rates", "phases", "left", "width")
+FOUND = ("nodes", "stages", "algebraic", "phases", "parameter")
+SOLVED = ("maps", *(f"{of}_{part}" for of in ("step", "kernel") for part in (*FOUND[:3], "outer")))
+_SETTINGS = (
+    "period",
+    "nominal",
+    "tolerance",
+    "close",
+    "max_change",
+    "shortest",
+    "narrow",
+    "negligible",
+    "growth",
+)
+_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length", "stretch")
+
+_GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
+_ADDRESSES = (*_GIVEN, *FOUND, *SOLVED)
+
+Routine = Callable[..., int]
+"""A function of the library, of the addresses of what it takes."""
+
+
+class Call(ctypes.Structure):
+    """`struct call` of newton.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in _ADDRESSES),
+        *((name, ctypes.c_double) for name in _NUMBERS),
+        ("iterations", ctypes.c_ssize_t),
+    )
+
+
+def prepared(
+    system: System, orbit: Orbit, mesh: Mesh, free: tuple[int, ...], settings: NewtonSettings
+) -> tuple[Call, ctypes.CDLL] | None:
+    """A call for an orbit on a mesh, with what belongs to mesh, system and settings, and the library.
+
+    None where NumPy is to do: it takes small systems without impacts and sliding whose kernels are compiled,
+    in one free parameter.
+    """
+    n = orbit.nodes.shape[1]
+    if n > MOST or orbit.equilibrium or len(free) != 1 or resets_of(system) or jumps_of(system):
+        return None
+    with_compiler, functions = compiling(system), _functions(system, free)
+    if with_compiler is None or functions is None:
+        return None
+    library = with_compiler.library(source(*_SOURCES))
+    if library is None:
+        return None
+    call = Call.from_buffer_copy(_of_mesh(mesh)[0])
+    call.n, call.m, call.parameters = n, orbit.algebraic.shape[2], len(orbit.parameter)
+    call.switches, call.free = len(system.switches), free[0]
+    call.nominal = max(abs(system.nominal[free[0]]), settings.tiny)
+    call.tolerance, call.close, call.max_change = settings.tolerance, settings.close, settings.max_change
+    call.shortest = 0.5**settings.max_halvings
+    call.narrow, call.negligible = settings.short, settings.negligible
+    for name, where in zip(_SYSTEM, functions, strict=True):
+        setattr(call, name, where)
+    return call, library
+
+
+def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:
+    """Where the kernels are that are needed, 0 for others; None where some of them are not compiled."""
+    rows = address_of(system, "linearise", free)
+    needed = {"move": bool(system.algebraics), "switch": bool(system.switches)}
+    needed["switch_gradient"] = needed["switch"]
+    found = [address_of(system, name) if there else 0 for name, there in needed.items()]
+    functions = tuple(where for where in (rows, *found) if where is not None)
+    return functions if len(functions) == len(_SYSTEM) else None
+
+
+def given(call: ctypes.Structure, names: Sequence[str], arrays: Sequence[Array]) -> list[Array]:
+    """Give arrays to a call; return those that are to be kept meanwhile."""
+    kept = [plain(array) for array in arrays]
+    for name, array in zip(names, kept, strict=True):
+        setattr(call, name, address(array))
+    return kept
+
+
+def laid_out(call: Call, names: Sequence[str], shapes: Sequence[tuple[int, ...]]) -> list[Array]:
+    """Arrays of some shapes, one after the other in memory, for a call to write into."""
+    sizes = [math.prod(shape) for shape in shapes]
+    block = np.empty(sum(sizes))
+    begin, arrays, first = address(block), [], 0
+    for name, shape, size in zip(names, shapes, sizes, strict=True):
+        setattr(call, name, begin + 8 * first)
+        arrays.append(block[first : first + size].reshape(shape))
+        first += size
+    return arrays
+
+
+_meshes: WeakKeyDictionary[Mesh, tuple[Call, Sequence[Any]]] = WeakKeyDictionary()
+
+
+def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
+    """A call with what belongs to a mesh and its scheme, and the arrays that it has addresses of."""
+    if mesh not in _meshes:
+        segment, left, width = mesh.segments
+        marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends)
+        numbers = (left, width, *mesh.gradients, np.array([event.level for event in mesh.events]))
+        scheme = mesh.scheme
+        of_scheme = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
+        kept: list[Any] = [np.array(mark, dtype=np.intp) for mark in marks]
+        kept += map(plain, (*numbers, *of_scheme))
+        call = Call(count=mesh.ntst, ncol=scheme.ncol, k=len(mesh.events), exact=len(mesh.exact_ends))
+        for name, array in zip((*_MARKS, *_MESH, *_SCHEME), kept, strict=True):
+            setattr(call, name, address(array))
+        call.period, call.growth = mesh.period, GROWTH
+        _meshes[mesh] = call, kept
+    return _meshes[mesh]
+
+
+@cache
+def routine(library: ctypes.CDLL, name: str, arguments: int = 1) -> Routine:
+    """Return a function of the library by its name."""
+    function = getattr(library, name)
+    function.argtypes, function.restype = [ctypes.c_void_p] * arguments, ctypes.c_int
+    run: Routine = function
+    return run

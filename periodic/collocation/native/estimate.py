@@ -1,0 +1,67 @@
+"""The error estimate of small systems in one call of C (`estimate.c`), where their kernels are compiled."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.collocation.native.call import FOUND, given, prepared, routine
+from periodic.collocation.rounding import EPSILON, TERMS
+from periodic.collocation.unresolved import FAST
+from periodic.correction.error import STEEP, ErrorEstimate, relative
+from periodic.correction.newton import NewtonSettings
+from periodic.correction.problem import Problem
+from periodic.linear.unknowns import STEEP as STEEP_RATE
+from periodic.linear.unknowns import Increment, size_of
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Spectrum
+
+_HALVES = ("stages_of", "unknowns_of", "middle")
+_ADDRESSES = (*FOUND, "profile", *_HALVES, "monodromy")
+_NUMBERS = ("along", "scale", "unit", "fold", "steep", "rounding", "fast", "apart", "shift")
+
+
+class Estimate(ctypes.Structure):
+    """`struct estimate` of estimate.c.
+
+    Limits: `fold` is the part of the branch's direction that the parameter is about a fold, `steep` the rate
+    beside kinks that counts half, `rounding` what of a switch's terms it may be off by, `fast` the turn of a
+    vibration in an interval.
+    """
+
+    _fields_ = (
+        *((name, ctypes.c_void_p) for name in _ADDRESSES),
+        *((name, ctypes.c_double) for name in _NUMBERS),
+        ("unresolved", ctypes.c_ssize_t),
+    )
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """What `periodic.correction.error.deferred` returns, and whether a vibration may be too fast."""
+
+    error: ErrorEstimate
+    unresolved: bool
+
+
+def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spectrum) -> Estimated | None:
+    """Return the errors of an orbit that the parameter alone determines, or None where NumPy is to do."""
+    ready = prepared(problem.system, orbit, orbit.mesh.bisected(), problem.free, NewtonSettings())
+    if ready is None:
+        return None
+    call, library = ready
+    n, own = orbit.nodes.shape[1], Estimate()
+    parts = [orbit.nodes, orbit.stages, orbit.algebraic, orbit.phases, orbit.parameter, tangent.profile]
+    monodromy: Array = np.empty((n, n))
+    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, monodromy])
+    own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
+    own.fold, own.steep, own.rounding, own.fast = STEEP, STEEP_RATE, TERMS * EPSILON, FAST
+    code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
+    del kept
+    if code:
+        return None
+    error = relative(problem, orbit, own.apart, own.shift, spectrum.apart(monodromy))
+    return Estimated(error, bool(own.unresolved))
