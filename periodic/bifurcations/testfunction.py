@@ -7,10 +7,9 @@ A new kind of point is one file: a label, a `TestFunction`, and where there are 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.correction.solution import Solution
@@ -100,18 +99,18 @@ class Course:
         As from `margins`.
     """
 
-    gone: float = np.inf
+    gone: float = math.inf
     margins: Mapping[str, float] = field(default_factory=dict)
 
     def returns(self, test: TestFunction, base: Solution, new: Solution, ds: float) -> bool:
         """Whether a margin of one sign may come to 0 and go back between two solutions `ds` apart."""
-        before = self.margins.get(test.key, np.nan)
-        ends = test.margin(base), test.margin(new)
-        if not (np.isfinite([before, *ends]).all() and ends[0] * ends[1] > 0):
+        before, begin, end = self.margins.get(test.key, math.nan), test.margin(base), test.margin(new)
+        if not (all(map(math.isfinite, (before, begin, end))) and begin * end > 0):
             return False
-        begin, end = np.abs(ends)
+        before = math.copysign(1.0, begin) * before
+        begin, end = abs(begin), abs(end)
         rise = (end - begin) / ds
-        bend = (rise - (begin - np.sign(ends[0]) * before) / self.gone) / (ds + self.gone)
-        place = (ds - rise / bend) / 2 if bend > 0 else np.inf
-        least = begin + place * (rise + bend * (place - ds)) if 0 < place < ds else np.inf
-        return bool(least < LEFT * min(begin, end))
+        bend = (rise - (begin - before) / self.gone) / (ds + self.gone)
+        place = (ds - rise / bend) / 2 if bend > 0 else math.inf
+        least = begin + place * (rise + bend * (place - ds)) if 0 < place < ds else math.inf
+        return least < LEFT * min(begin, end)

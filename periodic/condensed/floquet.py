@@ -9,7 +9,7 @@ a diagonal and a product as thin as the unknowns of the places are few.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -250,13 +250,10 @@ class LeadingSpectrum(Spectrum):
         """The pairs that are damped so little that they matter to the course of the branch."""
         return [pair for pair in super().pairs if pair.modulus > LIGHT]
 
-    def _pair(self, k: int) -> Pair:
-        pair = super()._pair(k)
-        if self.leading is None or pair.left is None:
-            return pair
-        size = np.abs(self.leading.states @ self.vectors[:, k]).max()
-        own = np.abs(self.fundamental @ self.vectors[:, k]).max()
-        return replace(pair, left=pair.left * (size / own))
+    def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
+        if self.leading is None:
+            return super()._sizes(solutions, chosen)
+        return np.asarray(np.abs(self.leading.states @ self.vectors[:, chosen]).max(axis=(0, 1), initial=0.0))
 
     def apart(self, monodromy: Array) -> float:
         """Distance from another spectrum of those that are not damped strongly.

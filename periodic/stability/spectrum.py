@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -58,18 +60,18 @@ class Pair:
     def turn(self, other: Pair) -> float:
         """Return by how much the multiplier turns to that of another orbit, whole turns included."""
         least = other.argument - self.argument
-        whole = round((other.turned - self.turned - least) / (2 * np.pi))
-        return least + 2 * np.pi * whole
+        return least + math.tau * round((other.turned - self.turned - least) / math.tau)
+
+    def _apart(self, other: Pair, sign: int) -> float:
+        """How far another orbit's multiplier, its conjugate for -1, and its solution turn from here."""
+        least, along = sign * other.argument - self.argument, sign * other.turned - self.turned
+        return abs(least + math.tau * round((along - least) / math.tau)) + abs(along)
 
     def nearest(self, others: Sequence[Pair]) -> Pair:
         """Return the member of another orbit's pairs to which this one leads."""
-        angles = np.array([(other.argument, other.turned) for other in others])
-        argument, turned = np.concatenate([angles, -angles]).T
-        least, along = argument - self.argument, turned - self.turned
-        turn = least + 2 * np.pi * np.round((along - least) / (2 * np.pi))
-        chosen = int((np.abs(turn) + np.abs(along)).argmin())
-        found = others[chosen % len(others)]
-        if chosen < len(others):
+        both = ((other, sign) for sign in (1, -1) for other in others)
+        found, sign = min(both, key=lambda choice: self._apart(*choice))
+        if sign > 0:
             return found
         left = None if found.left is None else found.left.conj()
         return replace(found, argument=-found.argument, turned=-found.turned, left=left)
@@ -127,15 +129,20 @@ class Spectrum:
         """A member of each complex pair of multipliers that is not 1 whatever the parameters."""
         multipliers = self.multipliers
         unit = np.abs(multipliers - 1).argsort()[: self.trivial]
-        chosen = np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit)
-        return [self._pair(k) for k in chosen]
+        chosen = np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit).astype(int)
+        solutions = self.fundamental @ self.vectors[:, chosen]
+        turns = np.angle((solutions[:-1].conj() * solutions[1:]).sum(axis=1)).sum(axis=0)
+        both = zip(map(int, chosen), turns, self._sizes(solutions, chosen), strict=True)
+        return [self._pair(k, float(turn), size) for k, turn, size in both]
 
-    def _pair(self, k: int) -> Pair:
-        mu, solution = complex(self.multipliers[k]), self.fundamental @ self.vectors[:, k]
-        turned = float(np.angle((solution[:-1].conj() * solution[1:]).sum(axis=1)).sum())
-        left = self._left(k)
-        left = None if left is None else left * np.abs(solution).max()
-        return Pair(float(np.angle(mu)), float(abs(mu)), float(abs(1 - mu)), turned, left, k)
+    def _pair(self, k: int, turned: float, size: float) -> Pair:
+        mu, left = complex(self.multipliers[k]), self._left(k)
+        left = None if left is None else left * size
+        return Pair(cmath.phase(mu), abs(mu), abs(1 - mu), turned, left, k)
+
+    def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
+        """The most that solutions (N+1, n, k), begun with the chosen eigenvectors, are within the period."""
+        return np.asarray(np.abs(solutions).max(axis=(0, 1), initial=0.0))
 
     @cached_property
     def _inverse(self) -> Complex | None:

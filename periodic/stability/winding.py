@@ -11,6 +11,7 @@ followed over the whole period, so that full turns count.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -19,7 +20,7 @@ import numpy as np
 
 from periodic.checks import positive
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Pair, Spectrum
+from periodic.stability.spectrum import Complex, Pair, Spectrum
 
 ORDER = 4
 """What a cubic does not show goes with this power of the step."""
@@ -27,8 +28,8 @@ ORDER = 4
 TINY = 1e-9
 """Least distance of a multiplier from +1."""
 
-PLACES = 9
-"""Places in a step at which it is looked at, and those where the multiplier is nearest +1."""
+INSIDE = np.array([0.0, 1.0, *np.linspace(0, 1, 9)[1:-1]])
+"""Places in a step at which it is looked at, both ends first; also those where it is nearest +1."""
 
 
 COUPLED = 0.2
@@ -83,15 +84,20 @@ def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
 
     Those that the motion excites the less the nearer they are to +1, and none so far that it is lost.
     """
-    strain = ahead = turn = 0.0
+    excited, begins, ways, turn = [], [], [], 0.0
     for a, b in _matched(before.spectrum, after.spectrum):
-        way = complex(np.log(b.modulus / a.modulus), a.turn(b))
+        way = complex(math.log(b.modulus / a.modulus), a.turn(b))
         if min(a.modulus, b.modulus) > limits.light and abs(way.imag) > limits.least:
             excitation = min(_excitation(a, way, before.change), _excitation(b, way, after.change))
-            strain = max(strain, excitation * _unseen(complex(np.log(a.modulus), a.argument), way))
-            ahead = max(ahead, excitation * _unseen(complex(np.log(b.modulus), b.argument), way))
+            excited.append((excitation, excitation))
+            begins.append([complex(math.log(pair.modulus), pair.argument) for pair in (a, b)])
+            ways.append((way, way))
             turn = max(turn, abs(way.imag) / limits.most)
-    return Turn(*(max(turn, (unseen / limits.visible) ** (1 / ORDER)) for unseen in (strain, ahead)))
+    if not ways:
+        return Turn(0.0, 0.0)
+    unseen = np.array(excited) * _unseen(np.array(begins), np.array(ways)) / limits.visible
+    strain, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
+    return Turn(strain, ahead)
 
 
 def _excitation(pair: Pair, way: complex, change: Array) -> float:
@@ -101,29 +107,40 @@ def _excitation(pair: Pair, way: complex, change: Array) -> float:
     return 2 * abs(complex(pair.left @ change)) * pair.distance**2 / (pair.modulus * abs(way))
 
 
-def _unseen(begin: complex, way: complex) -> float:
-    """The largest distance of 1/(1 - mu) from the cubic through its ends while log mu goes from `begin`."""
-    angles = np.sort([begin.imag, begin.imag + way.imag])
-    nearest = 2 * np.pi * np.arange(*np.ceil(angles / (2 * np.pi)))
-    place = np.concatenate([[0.0, 1.0], np.linspace(0, 1, PLACES)[1:-1], (nearest - begin.imag) / way.imag])
+def _unseen(begin: Complex, way: Complex) -> Array:
+    """The largest distance of 1/(1 - mu) from the cubic through its ends while log mu goes from `begin`.
+
+    Of each of many, in arrays of one shape.
+    """
+    begin, way = begin[..., None], way[..., None]
+    inside = np.broadcast_to(INSIDE, (*begin.shape[:-1], len(INSIDE)))
+    place = np.concatenate([inside, _nearest(begin.imag, way.imag)], axis=-1)
     mu = np.exp(begin + way * place)
     value = 1 / np.where(np.abs(1 - mu) > TINY, 1 - mu, TINY)
-    (first, last), (out, back) = value[:2], (way * mu * value**2)[:2]
+    first, last, out, back = (f[..., k : k + 1] for f in (value, way * mu * value**2) for k in (0, 1))
     rest = 1 - place
     cubic = (1 + 2 * place) * rest**2 * first + place**2 * (3 - 2 * place) * last
     cubic = cubic + place * rest * (rest * out - place * back)
-    return float(np.abs(value - cubic).max())
+    return np.asarray(np.abs(value - cubic).max(axis=-1))
+
+
+def _nearest(argument: Array, turn: Array) -> Array:
+    """Where multipliers that turn are nearest +1, as parts of the way; 0 for what is missing."""
+    ends = argument, argument + turn
+    first, last = (np.ceil(end / math.tau) for end in (np.minimum(*ends), np.maximum(*ends)))
+    past = first + np.arange(int((last - first).max()))
+    return np.asarray(np.where(past < last, (math.tau * past - argument) / turn, 0.0))
 
 
 def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
     """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli."""
-    offset, found = 0.0 if sign > 0 else np.pi, []
+    offset, found = 0.0 if sign > 0 else math.pi, []
     for a, b in _matched(before, after):
         turn = a.turn(b)
         low, high = sorted((a.argument, a.argument + turn))
-        past = np.arange(np.floor((low - offset) / (2 * np.pi)), np.floor((high - offset) / (2 * np.pi))) + 1
-        places = (offset + 2 * np.pi * past - a.argument) / turn
-        found += [(float(p), float(a.modulus ** (1 - p) * b.modulus**p)) for p in places]
+        first, last = (math.floor((end - offset) / math.tau) for end in (low, high))
+        places = ((offset + math.tau * past - a.argument) / turn for past in range(first + 1, last + 1))
+        found += [(p, a.modulus ** (1 - p) * b.modulus**p) for p in places]
     return found
 
 
@@ -142,24 +159,27 @@ def meetings(before: Spectrum, after: Spectrum) -> list[Meeting]:
     """Return where pairs that are coupled enough to leave the unit circle meet between two orbits."""
     if len(after.pairs) < len(before.pairs):
         return [Meeting(1 - m.place, m.growth) for m in meetings(after, before)]
-    coupling, found = _coupling(before, after), []
-    for (i, (a, b)), (j, (c, d)) in combinations(enumerate(_matched(before, after)), 2):
+    found, ways = [], [(a, b, a.turn(b)) for a, b in _matched(before, after)]
+    for (i, (a, b, turn)), (j, (c, d, other)) in combinations(enumerate(ways), 2):
         if a.place == c.place or b.place == d.place:  # one pair that is the nearest of two
             continue
         for sign in (1, -1):
-            gap, closing = a.argument - sign * c.argument, a.turn(b) - sign * c.turn(d)
+            gap, closing = a.argument - sign * c.argument, turn - sign * other
             low, high = sorted((gap, gap + closing))
-            for past in 2 * np.pi * np.arange(np.ceil(low / (2 * np.pi)), np.ceil(high / (2 * np.pi))):
-                place = float((past - gap) / closing)
-                sizes = [
-                    np.log(p.modulus) * (1 - place) + np.log(q.modulus) * place for p, q in ((a, b), (c, d))
-                ]
-                growth = float(min(sizes, key=abs))
-                if coupling[i, j] > COUPLED * abs(growth):
+            for past in range(math.ceil(low / math.tau), math.ceil(high / math.tau)):
+                place = (math.tau * past - gap) / closing
+                growth = min((_growth(*pairs, place) for pairs in ((a, b), (c, d))), key=abs)
+                if _coupling(before, after)[i, j] > COUPLED * abs(growth):
                     found.append(Meeting(place, growth))
     return found
 
 
+def _growth(before: Pair, after: Pair, place: float) -> float:
+    """log |mu| of a pair at a part of its way."""
+    return (1 - place) * math.log(before.modulus) + place * math.log(after.modulus)
+
+
+@lru_cache(maxsize=4)
 def _coupling(own: Spectrum, other: Spectrum) -> Array:
     """How much each two pairs of an orbit mix in the monodromy matrix of another, (pairs, pairs).
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib import metadata
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
@@ -186,7 +187,7 @@ def _collected(
     journal, clock = ready.method.watch.journal, time.perf_counter()
     keeping = nullcontext() if journal is None else Journal(Path(journal), empty)
     interrupted = False
-    with keeping as kept, threadpool_limits(limits=1, user_api="blas"), _shown(ready, empty) as show:
+    with keeping as kept, _one_thread(), _shown(ready, empty) as show:
         for run, points in zip(runs, generators, strict=True):
             interrupted = _exhaust(run, _each(points, show), kept)
             if interrupted or (run.stop is not None and run.stop.reason in ENDS_ALL):
@@ -195,6 +196,17 @@ def _collected(
     if interrupted:
         raise Interrupted(branch)
     return branch
+
+
+def _one_thread() -> AbstractContextManager[object]:
+    """BLAS in one thread: others cost more than they save."""
+    return _libraries(len(sys.modules)).limit(limits=1, user_api="blas")
+
+
+@lru_cache(maxsize=1)
+def _libraries(modules: int) -> ThreadpoolController:
+    """What has threads, looked for again where modules have been imported."""
+    return ThreadpoolController()
 
 
 def _shown(ready: Setup, empty: Branch) -> AbstractContextManager[Advance]:

@@ -1,4 +1,4 @@
-"""Outputs of an orbit, and their extremes, in one call of C (`outputs.c`, `extremes.c`) where kernels are compiled."""
+"""Outputs of an orbit, and their extremes, in one call of C (`outputs.c`, `extremes.c`)."""
 
 from __future__ import annotations
 
