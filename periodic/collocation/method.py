@@ -12,7 +12,7 @@ from periodic.checks import whole
 from periodic.collocation import kinks, touch
 from periodic.collocation.condensation import condensation
 from periodic.collocation.event import event_rows
-from periodic.collocation.jumping import graze, impacts, slide
+from periodic.collocation.jumping import graze, impacts, slide, turn
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.native import iteration
@@ -223,7 +223,7 @@ class Collocation(Discretisation):
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
-        found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide)]
+        found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
         return min((c for c in found if c is not None), key=lambda c: c.part, default=None)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

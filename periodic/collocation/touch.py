@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.collocation.conditions import Clearance, Length
 from periodic.collocation.dense import Dense, Extremum, exact, sliding
+from periodic.collocation.turns import held, short_of, turns
 from periodic.correction.change import Beyond, Change
-from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
-from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System, resets_of, slides_of
 
@@ -49,61 +49,6 @@ FLAT = 1e-5
 
 
 @dataclass(frozen=True)
-class Clearance:
-    """Side condition: the extremum of a switch nearest a phase lies at `level`, min of side * s."""
-
-    switch: int
-    side: int
-    phase: float
-    level: float = 0.0
-
-    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
-        at = Dense(system, orbit).nearest(self.switch, self.side, self.phase)
-        row = clearance(system, orbit, at, self.side, free)
-        return Row(row.value - self.level, row.nodes, row.outer, row.stages)
-
-
-def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple[int, ...]) -> Row:
-    """Return side * s at a point of an orbit as a row."""
-    phase = np.array([at.phase])
-    basis = orbit.mesh.scheme.basis(np.array([at.theta]))
-    state = basis @ orbit.knots[at.interval]
-    points = Points(
-        np.array([at.interval]),
-        np.array([at.theta]),
-        phase,
-        basis @ orbit.knot_rates[at.interval],
-        state,
-        np.zeros((1, orbit.algebraic.shape[2])),
-    )
-    d_state, d_phase, d_parameter = (
-        side * g[:, at.switch] for g in system.switch_gradient(state, phase, orbit.parameter)
-    )
-    slopes = Slopes(np.zeros_like(state), d_state, np.zeros((1, 0)), d_phase, d_parameter[0, list(free)])
-    row = gathered(system, orbit, points, slopes, free)
-    value = side * float(system.switch(state, phase, orbit.parameter)[0, at.switch])
-    return Row(value, row.nodes, row.outer, row.stages)
-
-
-@dataclass(frozen=True)
-class Length:
-    """Side condition: the segment that begins at an event node has a given length (rad)."""
-
-    segment: int
-    length: float
-
-    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return its length less the given one."""
-        k = len(orbit.phases)
-        outer = np.zeros(k + len(free))
-        outer[self.segment] -= 1.0
-        outer[(self.segment + 1) % k] += 1.0
-        value = float(orbit.mesh.segment_lengths(orbit.phases)[self.segment]) - self.length
-        return Row(value, np.zeros_like(orbit.nodes), outer)
-
-
-@dataclass(frozen=True)
 class Birth:
     """A switch touches its level from `side` where the mesh has no event nodes: an excursion begins."""
 
@@ -113,6 +58,7 @@ class Birth:
     part: float
     shortest: float
     ripple: float = 0.0
+    short_of: float = 0.0
 
     touches = True
     strict = True
@@ -121,7 +67,8 @@ class Birth:
     @property
     def condition(self) -> Clearance:
         """The touch; of all of the orbit at once just before it, where it still has a tangent."""
-        return Clearance(self.extremum.switch, self.side, self.extremum.phase, self.ripple)
+        level = max(self.ripple, self.short_of)
+        return Clearance(self.extremum.switch, self.side, self.extremum.phase, level)
 
     @property
     def name(self) -> str:
@@ -140,10 +87,10 @@ class Birth:
                 held = Clearance(k, -self.side, at.phase, depth * dense.size(k))
                 yield Beyond(orbit.mesh, orbit.phases, held, False)
             return
-        others = [(e, side) for e, side in touching(system, orbit) if not _same(e, at, orbit.mesh.period)]
+        others = [(e, side) for e, side in touching(system, orbit) if not _same(system, orbit, e, at)]
         for length in SHORT:
             for touches in ([(at, self.side), *others], [(at, self.side)])[: 2 if others else 1]:
-                events, phases, segment = inserted(orbit, touches, length)
+                events, phases, segment = inserted(system, orbit, touches, length)
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
                 yield Beyond(mesh, phases, Length(segment, length), False)
 
@@ -212,19 +159,23 @@ class Meeting:
 
 def touching(system: System, orbit: Orbit) -> list[tuple[Extremum, int]]:
     """Return where switches touch their levels, the mesh having no event nodes there, and from which side."""
-    dense, found = Dense(system, orbit), []
+    dense, found = Dense(system, orbit), list[tuple[Extremum, int]]()
     for k in exact(system):
         sides = dense.expected(k, dense.side(k))
         near = SYMMETRIC * float(np.abs(dense.knots[:, :, k]).max())
         for side in np.unique(sides):
             low = [e for e in dense.minima(k, int(side)) if sides[e.interval] == side and e.theta < 1.0]
-            found += [(e, int(side)) for e in low if abs(e.value) < near]
+            for e in low:
+                if abs(e.value) < near and not any(_same(system, orbit, e, other) for other, _ in found):
+                    found.append((e, int(side)))
     return found
 
 
-def _same(one: Extremum, other: Extremum, period: float) -> bool:
-    apart = np.mod(one.phase - other.phase + period / 2, period) - period / 2
-    return one.switch == other.switch and bool(abs(apart) <= SHORT[0])
+def _same(system: System, orbit: Orbit, one: Extremum, other: Extremum) -> bool:
+    """Whether two touches are one: a switch may stay there for a while."""
+    begin, end = held(system, orbit, one.phase)
+    apart = np.mod(other.phase - begin + SHORT[0], orbit.mesh.period)
+    return one.switch == other.switch and bool(apart <= end - begin + 2 * SHORT[0])
 
 
 def ordered(both: list[tuple[EventNode, float]], orbit: Orbit) -> tuple[tuple[EventNode, ...], Array]:
@@ -245,13 +196,19 @@ def index_of(
 
 
 def inserted(
-    orbit: Orbit, touches: list[tuple[Extremum, int]], length: float
+    system: System, orbit: Orbit, touches: list[tuple[Extremum, int]], length: float
 ) -> tuple[tuple[EventNode, ...], Array, int]:
-    """Return event nodes and phases with excursions about points, and the segment that is the first one."""
+    """Return event nodes and phases with excursions about points, and the segment that is the first one.
+
+    Where friction holds a switch at its level they lie before and after that, the latter as the third root of
+    their depth: from there it sets out without acceleration.
+    """
     every = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
     for at, side in touches:
-        every.append((EventNode(at.switch, -side), at.phase - length / 2))
-        every.append((EventNode(at.switch, side), at.phase + length / 2))
+        begin, end = held(system, orbit, at.phase)
+        before, after = (length / 2, length / 2) if begin == end else (length, length ** (2 / 3))
+        every.append((EventNode(at.switch, -side), begin - before))
+        every.append((EventNode(at.switch, side), end + after))
     events, phases = ordered(every, orbit)
     first = every[len(orbit.phases)]
     return events, phases, index_of(events, phases, first, orbit)
@@ -284,11 +241,13 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
     if not before.mesh.events:
         return None
     now, then = before.mesh.segment_lengths(before.phases), after.mesh.segment_lengths(after.phases)
-    found = []
+    found, about = [], {i for turn in turns(system, before) for i in (turn.begin, turn.inside[-1])}
     for i, first in enumerate(before.mesh.events):
         second = before.mesh.events[(i + 1) % len(now)]
         same = first.switch == second.switch
         if first.switch not in own or second.switch not in own or _slide(system, first, second):
+            continue
+        if i in about:
             continue
         half = VANISHING * float(now[i])
         nearest = next((length for length in SHORT if length < half), half)
@@ -319,5 +278,6 @@ def _birth(system: System, before: Orbit, after: Orbit, shortest: float) -> Birt
             nearest = base.nearest(k, side, extremum.phase).value
             gone = abs(nearest) / (abs(nearest) + abs(extremum.value))
             ripple = RIPPLES * float(np.ptp(base.knots[:, :, k])) if base.flat(k, FLAT) else 0.0
-            found.append(Birth(system, extremum, side, float(gone), shortest, ripple))
+            left = short_of(system, after, k, extremum.phase)
+            found.append(Birth(system, extremum, side, float(gone), shortest, ripple, left))
     return min(found, key=lambda birth: birth.part, default=None)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from periodic.collocation.conditions import Clearance
 from periodic.collocation.dense import Dense
-from periodic.collocation.touch import Clearance
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.collocation.conditions import Clearance
 from periodic.collocation.dense import Dense, Extremum
 from periodic.collocation.jumping.impacts import slope_before, tied
 from periodic.collocation.jumping.saltation import before, rate_before
-from periodic.collocation.touch import Clearance, index_of, ordered
+from periodic.collocation.touch import index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.mesh import EventNode

@@ -22,15 +22,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from periodic.collocation.conditions import Clearance, Length, Limit
 from periodic.collocation.dense import Dense, Extremum, sliding
 from periodic.collocation.sides import group, sticks
-from periodic.collocation.touch import Clearance, Length, index_of, ordered
+from periodic.collocation.touch import index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.correction.condition import SideCondition
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
-from periodic.orbit.row import Row
 from periodic.system import System, slides_of
 
 NOISE = 1e-10
@@ -53,29 +53,6 @@ BRIEF = (1e-1, 3e-2, 1e-2)
 
 VANISHING = 0.5
 """A stretch of which a step would leave this part, by its tangent, may end within the step."""
-
-
-@dataclass(frozen=True)
-class Limit:
-    """Side condition: side * (a switch) is `level` at an event node, which need not be its own."""
-
-    node: int
-    switch: int
-    side: int
-    level: float = 0.0
-
-    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return its value and gradient."""
-        start, k = orbit.mesh.starts[self.node], len(orbit.phases)
-        where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
-        d_state, d_phase, d_parameter = system.switch_gradient(*where)
-        nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
-        nodes[start] = d_state[0, self.switch]
-        outer[self.node] = d_phase[0, self.switch]
-        outer[k:] = d_parameter[0, self.switch, list(free)]
-        value = float(system.switch(*where)[0, self.switch])
-        row = Row(value, nodes, outer).scaled(self.side)
-        return Row(row.value - self.level, row.nodes, row.outer)
 
 
 @dataclass(frozen=True)
