@@ -37,7 +37,7 @@ from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.product import spectrum_of
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System
+from periodic.system import System, slides_of
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
@@ -125,7 +125,16 @@ class Collocation(Discretisation):
         old = near.mesh
         mesh = Mesh(scheme, old.breaks, old.events, old.period)
         adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
-        return relax(system, adopted)
+        return relax(system, self._tied(system, adopted))
+
+    def _tied(self, system: System, orbit: Orbit) -> Orbit:
+        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
+        if not slides_of(system) or orbit.mesh.events:
+            return orbit
+        settings = (self.kinks or KinkSettings()).at(self.tolerance)
+        events, phases = kinks.placed(system, orbit, kinks.wanted(system, orbit, settings))
+        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        return transfer(orbit, mesh, phases)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the collocation equations and those of the event nodes."""

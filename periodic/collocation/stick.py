@@ -185,7 +185,11 @@ def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: flo
     if not abs(sigma) < 1:
         return _Stretch()
     (up, down), motion = slides_of(system)[switch], _Motion(system, orbit, switch, phase)
-    speed, h, x, tau = min(motion.speeds(state, phase)), 2 * np.pi / STEPS, state, phase
+    try:
+        speed = min(motion.speeds(state, phase))
+    except np.linalg.LinAlgError:  # the equations do not determine the rates, as without a mass
+        return _Stretch()
+    h, x, tau = 2 * np.pi / STEPS, state, phase
     while tau < phase + orbit.mesh.period:
         x = x + h * motion.rate(x + h / 2 * motion.rate(x, tau, STUCK), tau + h / 2, STUCK)
         before, sigma, tau = sigma, _sigma(system, x, tau + h, orbit, switch), tau + h

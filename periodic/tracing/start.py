@@ -113,8 +113,11 @@ class Start:
             if first.ok:
                 self.tried.append(f"{quantity.name} grown from 0")
                 sign = int(np.sign(guess.parameter[k]))
-                orbit, _ = self.follow(solver, first.orbit, sign, GROWN)
-                yield orbit if orbit is not None and other.value(orbit) == guess.parameter[k] else None
+                orbit, stop = self.follow(solver, first.orbit, sign, GROWN)
+                if orbit is not None and other.value(orbit) == guess.parameter[k]:
+                    yield orbit
+                elif orbit is not None:
+                    self.tried[-1] += f" (to {other.value(orbit):.4g}: {stop.detail})"
 
     def _fixed(self, guess: Orbit, sign: float) -> Solution:
         return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)

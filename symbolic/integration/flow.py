@@ -17,18 +17,21 @@ from symbolic.arrays import Array
 from symbolic.checks import finite
 from symbolic.equations.expressions import Expressions
 from symbolic.integration.cvodes import integrated, integrator
-from symbolic.integration.impacting import Reset, Switch, bouncing
-from symbolic.integration.lsoda import failure, followed
+from symbolic.integration.events import Event, pieced
+from symbolic.integration.lsoda import Rates, failure, followed
 from symbolic.integration.rates import constraint_rows, ode
+from symbolic.integration.sliding import Sides, Sliding
 
 
 class Followed(Protocol):
-    """What is asked of a system that is integrated: its expressions, and its impacts."""
+    """What is asked of a system that is integrated: its expressions, its impacts, and where it sticks."""
 
     @property
     def expressions(self) -> Expressions: ...
     @property
     def resets(self) -> Sequence[int]: ...
+    @property
+    def slides(self) -> dict[int, tuple[int, int]]: ...
     def switch(self, state: Array, phase: Array, parameter: Array) -> Array: ...
     def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array: ...
 
@@ -61,35 +64,41 @@ class Flow:
         """
         n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
-        if self.system.resets:
-            return self._bounced(start, parameter, np.asarray(phase, dtype=float))
+        if self.system.resets or self.system.slides:
+            return self._pieced(start, parameter, np.asarray(phase, dtype=float))
         found = integrated(self._cvodes(tuple(phase)), start, parameter)
         later = self._lsoda(start, parameter, phase) if found is None else found.T
         values = np.concatenate([start[None, :], later])
         return Trajectory(np.asarray(phase, dtype=float), values[:, :n], values[:, n:])
 
-    def _bounced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
-        """The motion through impacts: at each of them there are two points of one phase."""
-        system, (rates, _) = self.system, self._rates
-        n = system.expressions.state.numel()
+    def _pieced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
+        """The motion through dry friction and impacts, at each of which there are two points of one phase."""
+        system, n = self.system, self.system.expressions.state.numel()
+        sliding = Sliding(system, parameter, self.tolerance) if system.slides else None
 
-        def impact(k: int) -> tuple[Switch, Reset]:
+        def rates(sides: Sides) -> Rates:
+            plain = self._rates[0]
+            if sliding is not None:
+                return sliding.rates(sides)
+            return lambda tau, y: np.array(plain(y, tau, parameter)).ravel()
+
+        def impact(k: int, sides: Sides) -> Event[Sides]:
             def value(tau: float, y: Array) -> float:
                 return float(system.switch(y[None, :n], np.array([tau]), parameter)[0, k])
 
-            def reset(tau: float, y: Array) -> Array:
-                after = system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
-                return self._on_constraints(np.append(after, y[n:]), parameter, tau)
+            def after(tau: float, y: Array) -> tuple[Array, Sides]:
+                mapped = system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
+                found = self._on_constraints(np.append(mapped, y[n:]), parameter, tau)
+                return found, sides if sliding is None else sliding.again(sides, tau, found)
 
-            return value, reset
+            return Event(value, after)
 
-        tau, values = bouncing(
-            lambda tau, y: np.array(rates(y, tau, parameter)).ravel(),
-            dict(impact(k) for k in system.resets),
-            start,
-            phase,
-            self.tolerance,
-        )
+        def events(sides: Sides) -> list[Event[Sides]]:
+            slips = [] if sliding is None else sliding.events(sides)
+            return [*(impact(k, sides) for k in system.resets), *slips]
+
+        sides = () if sliding is None else sliding.begin(float(phase[0]), start)
+        tau, values = pieced(rates, events, sides, start, phase, self.tolerance)
         return Trajectory(tau, values[:, :n], values[:, n:])
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:

@@ -347,7 +347,11 @@ def _ending(system: System, before: Orbit, after: Orbit, shortest: float) -> lis
             part = (now[i] - nearest) / (now[i] - then[i])
         final, name = nearest <= end.lengths[-1], system.switches[end.jump].name
         whole = end.lengths is BRIEF and _longest_slip(system, before, end.jump) <= 2 * now[i]
-        told = f"{name} holds all along" if whole else f"a stop at {name} ends"
+        told = (
+            f"{name} holds all along, at a place that is not determined"
+            if whole
+            else f"a stop at {name} ends"
+        )
         found.append(Ending(i, nearest, told, final, whole and final, min(float(part), 1.0), shortest))
     return found
 

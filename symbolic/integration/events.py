@@ -1,9 +1,11 @@
-"""Time integration through impacts: pieces from one zero of a switch to the next, the state mapped there."""
+"""Time integration through events: pieces from one zero of a switch to the next, the state mapped there."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 import scipy
@@ -14,35 +16,49 @@ from symbolic.integration.interrupts import heard
 from symbolic.integration.lsoda import Rates
 
 MOST = 1000
-"""Most impacts in a period of the excitation, 2 pi in tau: after more they pile up in a point."""
+"""Most events in a period of the excitation, 2 pi in tau: after more they pile up in a point."""
 
 STEP = 0.05
-"""Longest step in tau, so that no impact is passed over."""
+"""Longest step in tau, so that no event is passed over."""
 
-Switch = Callable[[float, Array], float]
-Reset = Callable[[float, Array], Array]
+Mode = TypeVar("Mode")
+"""What the equations depend on besides: it is the same between two events."""
+
+Value = Callable[[float, Array], float]
 
 
-def bouncing(
-    rates: Rates, impacts: Mapping[Switch, Reset], start: Array, phase: Array, tolerance: float
+@dataclass(frozen=True)
+class Event(Generic[Mode]):
+    """Where `value` falls to 0 a piece ends; `after` gives state and mode with which the next one begins."""
+
+    value: Value
+    after: Callable[[float, Array], tuple[Array, Mode]]
+
+
+def pieced(
+    rates: Callable[[Mode], Rates],
+    events: Callable[[Mode], Sequence[Event[Mode]]],
+    mode: Mode,
+    start: Array,
+    phase: Array,
+    tolerance: float,
 ) -> tuple[Array, Array]:
-    """Return phases and states, a row each: those asked for, and every impact twice, before and after it.
+    """Return phases and states, a row each: those asked for, and every jump of the state before and after it.
 
-    Each switch is positive but at its impacts. Raises IntegrationError.
+    Raises IntegrationError.
     """
     at, y, found = float(phase[0]), start, [(phase[:1], start[None])]
     left = MOST * math.ceil((phase[-1] - phase[0]) / (2 * math.pi))
-    events = [_terminal(switch) for switch in impacts]
     while True:
-        later = phase[phase > at]
+        later, here = phase[phase > at], events(mode)
         with heard():
             piece = scipy.integrate.solve_ivp(
-                rates,
+                rates(mode),
                 (at, phase[-1]),
                 y,
                 method="LSODA",
                 t_eval=later,
-                events=events,
+                events=[_terminal(event.value) for event in here],
                 rtol=tolerance,
                 atol=tolerance,
                 max_step=STEP,
@@ -56,13 +72,14 @@ def bouncing(
         assert piece.t_events is not None and piece.y_events is not None
         which = next(k for k, times in enumerate(piece.t_events) if len(times))
         at, before = float(piece.t_events[which][0]), np.array(piece.y_events[which][0])
-        y, left = list(impacts.values())[which](at, before), left - 1
-        found.append((np.array([at, at]), np.array([before, y])))
+        (y, mode), left = here[which].after(at, before), left - 1
+        if not np.array_equal(y, before):
+            found.append((np.array([at, at]), np.array([before, y])))
         if left < 0:
-            raise IntegrationError(f"impacts pile up at tau = {at:.6g}", at)
+            raise IntegrationError(f"events pile up at tau = {at:.6g}", at)
 
 
-def _terminal(switch: Switch) -> Switch:
+def _terminal(switch: Value) -> Value:
     def value(tau: float, y: Array) -> float:
         return switch(tau, y)
 
