@@ -19,6 +19,7 @@ from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
+from periodic.collocation.sides import group
 from periodic.collocation.unresolved import lost
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
@@ -129,7 +130,8 @@ class Collocation(Discretisation):
 
     def _tied(self, system: System, orbit: Orbit) -> Orbit:
         """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        if not slides_of(system) or orbit.mesh.events:
+        slides = slides_of(system)
+        if not slides or any(group(system, orbit.mesh, k) for k in slides):
             return orbit
         settings = (self.kinks or KinkSettings()).at(self.tolerance)
         events, phases = kinks.placed(system, orbit, kinks.wanted(system, orbit, settings))

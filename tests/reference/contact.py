@@ -148,7 +148,10 @@ class Contact:
         """The mode after an event of element i, and R."""
         element, same = self.elements[i], np.eye(len(z))
         if isinstance(element, Wall):
-            return mode, element.reset
+            after = element.reset @ z
+            slips = [isinstance(e, Friction) and abs(e.row @ after) > ROUNDING for e in self.elements]
+            each = zip(self.elements, mode, slips, strict=True)
+            return tuple(int(np.sign(e.row @ after)) if slip else m for e, m, slip in each), element.reset
         if isinstance(element, Stop):
             return _with(mode, i, 1 - mode[i]), same
         _, stuck, carried = self.sticking(Omega, _with(mode, i, 0))

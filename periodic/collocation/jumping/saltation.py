@@ -37,7 +37,7 @@ Saltation = Callable[[Array, Array, Array], Array]
 def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Saltation:
     """Return the saltation matrix at an event node of an orbit, as a function of where the event is.
 
-    It raises numpy.linalg.LinAlgError where there are no rates.
+    It raises numpy.linalg.LinAlgError where there are no rates, and where the switch is at rest.
     """
     switch, start = orbit.mesh.events[index].switch, orbit.mesh.starts[index]
     interval, side, unknown = before(orbit, index)[0], sides(system, orbit.mesh), orbit.algebraic
@@ -55,7 +55,10 @@ def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
         jump = new - by_state[0] @ old - by_phase[0]
         found = np.zeros((n, n + len(free)))
         found[:, :n], found[:, n:] = by_state[0], by_parameter[0][:, chosen]
-        return found + np.outer(jump, slopes) / (s_state @ old + s_phase)
+        speed = float(s_state @ old + s_phase)
+        if speed == 0:
+            raise np.linalg.LinAlgError("an event at rest")
+        return found + np.outer(jump, slopes) / speed
 
     return matrix
 

@@ -48,6 +48,9 @@ SHORT_OF = 1e-9
 SHORT = (1e-2, 1e-3, 1e-4)
 """Lengths (rad) of stretches of sticking at which patterns are exchanged, tried in turn."""
 
+LINEAR = (*SHORT, 1e-5, 1e-6)
+"""The same where the length grows in proportion to the parameter."""
+
 BRIEF = (1e-1, 3e-2, 1e-2)
 """The same of slips between two stretches of sticking, whose size falls as the cube of their length."""
 
@@ -82,7 +85,9 @@ class Place:
     @property
     def lengths(self) -> tuple[float, ...]:
         """Lengths of the new stretch that are tried."""
-        return BRIEF if self.kind == (True, False) else SHORT
+        if not isinstance(self.at, Extremum):
+            return LINEAR
+        return SHORT if self.touches else BRIEF
 
     def inserted(self, orbit: Orbit, length: float) -> list[tuple[EventNode, float]]:
         """The first event node of the new stretch, be it there or new, and those that are new."""
@@ -309,8 +314,14 @@ def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Begi
     begun = [
         Beginning(system, place, _share(system, before, place), shortest)
         for place in wrong(system, after, before)
+        if not _at_rest(system, before, place.jump)
     ]
     return min(begun, key=lambda each: each.part, default=None)
+
+
+def _at_rest(system: System, orbit: Orbit, jump: int) -> bool:
+    """Whether nothing slides all along an orbit, as at a rest that friction holds: it has no neighbours."""
+    return not Dense(system, orbit).knots[:, :, jump].any()
 
 
 def _share(system: System, before: Orbit, place: Place) -> float:

@@ -42,7 +42,15 @@ def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
     return found
 
 
-SAMPLE = [("clearances", 2), ("gears", 0), ("gears", 2), ("impacts", 0), ("friction", 3), ("chains", 4)]
+SAMPLE = [
+    ("clearances", 2),
+    ("gears", 0),
+    ("gears", 2),
+    ("impacts", 0),
+    ("friction", 3),
+    ("chains", 4),
+    ("friction", 119),
+]
 
 
 @pytest.mark.parametrize(("kind", "seed"), SAMPLE)
