@@ -51,9 +51,10 @@ class Sliding:
         return tuple(self._at(values, k, pair) for k, pair in self._slides)
 
     def again(self, sides: Sides, tau: float, y: Array) -> Sides:
-        """The sides after an impact, which may tear off what held."""
-        now = self.begin(tau, y)
-        return now if any(a == STUCK and b != STUCK for a, b in zip(sides, now, strict=True)) else sides
+        """The sides after an impact, which may turn what slips, and tear off what held."""
+        values = self._switches(tau, y)
+        slips = [abs(values[k]) > self.tolerance for k, _ in self._slides]
+        return tuple(b if slip else a for a, b, slip in zip(sides, self.begin(tau, y), slips, strict=True))
 
     def rates(self, sides: Sides) -> Rates:
         """x' on given sides."""
