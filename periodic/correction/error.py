@@ -98,12 +98,14 @@ def deferred(
     spectrum: Spectrum,
     only_at_points: tuple[int, ...] = (),
     solved: Solved | None = None,
+    kinked: bool | None = None,
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
     `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
     multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit, at
-    the same parameter but about a fold. The states `only_at_points` count at the orbit's mesh points alone,
+    the same parameter but about a fold; `kinked` says whether they do, by default whether the mesh has event
+    nodes. The states `only_at_points` count at the orbit's mesh points alone,
     not between them. `solved` linearises and solves in one; by default
     `periodic.correction.newton.linearised`, with `linearise`.
     """
@@ -115,7 +117,7 @@ def deferred(
     try:
         found = solve(problem.system, fine, problem.free, closing, NewtonSettings())
         monodromy = found.fundamental[-1]
-        if len(orbit.mesh.exact_ends):
+        if len(orbit.mesh.exact_ends) if kinked is None else kinked:
             onto_branch = found.increment + _along(found, problem, size_of(orbit))
             better = moved(problem.system, problem.free, found.orbit, onto_branch)
             monodromy = solve(problem.system, better, problem.free, closing, NewtonSettings()).fundamental[-1]

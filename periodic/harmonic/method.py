@@ -17,6 +17,7 @@ from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import Balance, sampled
 from periodic.harmonic.hill import Floquet, floquet
+from periodic.harmonic.kinked import beside, has_kinks
 from periodic.harmonic.series import NO_PHASES, FourierOrbit, harmonics_of, mesh_for, series, tail
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -26,7 +27,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System, resets_of
+from periodic.system import System, check_continuous
 
 WAYS = (1.0, 0.5, 0.25)
 """How far on the way to the harmonics needed an orbit is tried, in turn."""
@@ -94,8 +95,7 @@ class HarmonicBalance(Discretisation):
 
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
         """Return the constant orbit at rest, or a series of as many harmonics as an orbit seems to need."""
-        if resets_of(system):
-            raise ValueError("method is HarmonicBalance; for a system with impacts it must be Collocation()")
+        check_continuous("HarmonicBalance", system)
         if near is None:
             mesh = mesh_for(self.harmonics, FORCED)
             return series(at_rest(system, mesh, parameter), mesh)
@@ -128,9 +128,14 @@ class HarmonicBalance(Discretisation):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by a Newton step with half as many harmonics again (deferred correction)."""
+        """Estimate the errors by a Newton step with half as many harmonics again (deferred correction).
+
+        Where the equations have kinks, by one on a mesh that is tied to them.
+        """
         assert isinstance(correction, FourierCorrection)
         system, orbit = problem.system, correction.orbit
+        if has_kinks(system):
+            return beside(problem, _series(orbit), tangent, spectrum, self.tolerance)
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)

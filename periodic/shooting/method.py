@@ -1,7 +1,7 @@
 """Shooting, single and multiple: the orbit as trajectories of a trusted integrator that join.
 
 It shares no equation with collocation and serves to check it. The mesh is only there to interpolate the
-trajectory; the integrator's step control passes the kinks, so nothing is tied to them.
+trajectory; the system's flow looks after the kinks, so nothing is tied to them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.shooting.flow import condense
 from periodic.stability.product import spectrum_of
 from periodic.stability.spectrum import Spectrum
-from periodic.system import Flowing, System, resets_of
+from periodic.system import Flowing, System, check_continuous
 
 TIGHTER = 0.1
 """Tolerance of the integration that an orbit is held against, as a part of its own."""
@@ -124,7 +124,8 @@ class Shooting(Discretisation):
             tolerance = TIGHTER * self.tolerance
             return Chain(condense(_flowing(system), orbit, free, self.segments, tolerance))
 
-        return deferred(tighter, problem, correction.orbit, tangent, spectrum)
+        kinked = bool(problem.system.switches)
+        return deferred(tighter, problem, correction.orbit, tangent, spectrum, kinked=kinked)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the segments one by one."""
@@ -164,6 +165,5 @@ def _flowing(system: System) -> Flowing:
             f"system is a {type(system).__name__} without flow, which shooting needs; "
             f"it must be a Flowing system (symbolic.compile makes one of a model)"
         )
-    if resets_of(system):
-        raise ValueError("method is Shooting; for a system with impacts it must be Collocation()")
+    check_continuous("Shooting", system)
     return cast(Flowing, system)

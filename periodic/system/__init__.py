@@ -22,7 +22,7 @@ from periodic.system.equations import (
     check_value,
     index_of,
 )
-from periodic.system.events import Jumping, Resetting, jumps_of, resets_of, slides_of
+from periodic.system.events import Jumping, Resetting, check_continuous, jumps_of, resets_of, slides_of
 from periodic.system.motion import Flowing, FlowLike, Moving, TrajectoryLike
 from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
@@ -51,6 +51,7 @@ __all__ = [
     "VariableLike",
     "Within",
     "address_of",
+    "check_continuous",
     "check_system",
     "check_value",
     "compiling",

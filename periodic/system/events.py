@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
+import numpy as np
+
 from periodic.system.arrays import Array
 from periodic.system.equations import LinearisationLike, System
 
@@ -112,3 +114,19 @@ def slides_of(system: System) -> dict[int, tuple[int, int]]:
 def resets_of(system: System) -> tuple[int, ...]:
     """Return the indices of the switches at which the state is mapped; none of most systems."""
     return tuple(getattr(system, "resets", ()))
+
+
+def check_continuous(method: str, system: System) -> None:
+    """Refuse a system whose motions jump, or are bent by equations that jump, for a method blind to both.
+
+    A jump at given phases, of a square wave, bends all motions alike. Raises ValueError.
+    """
+    what = "with impacts" if resets_of(system) else ""
+    state, jumps = system.rest(system.nominal)[0], list(jumps_of(system))
+    if jumps:
+        phase = np.arange(4.0)
+        states = state + np.arange(4.0)[:, None] * np.ones_like(state)
+        slope = system.switch_gradient(states, phase, system.nominal)[0][:, jumps]
+        what = what or ("whose equations jump" if slope.any() else "")
+    if what:
+        raise ValueError(f"method is {method}; for a system {what} it must be Collocation()")

@@ -16,20 +16,23 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import finite
 from symbolic.equations.expressions import Expressions
-from symbolic.integration.cvodes import integrated, integrator
+from symbolic.integration.cvodes import integrated, integrator, kept
 from symbolic.integration.events import Event, pieced
 from symbolic.integration.lsoda import Rates, failure, followed
+from symbolic.integration.passages import Passages
 from symbolic.integration.rates import constraint_rows, ode
 from symbolic.integration.sliding import Sides, Sliding
 
 
 class Followed(Protocol):
-    """What is asked of a system that is integrated: its expressions, its impacts, and where it sticks."""
+    """What is asked of a system that is integrated: its expressions, impacts and kinks, where it sticks."""
 
     @property
     def expressions(self) -> Expressions: ...
     @property
     def resets(self) -> Sequence[int]: ...
+    @property
+    def kinks(self) -> Sequence[int]: ...
     @property
     def slides(self) -> dict[int, tuple[int, int]]: ...
     def switch(self, state: Array, phase: Array, parameter: Array) -> Array: ...
@@ -58,18 +61,28 @@ class Flow:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.01")
 
     def run(self, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Trajectory:
-        """Integrate from phase[0] and return the solution at all of `phase`.
+        """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
         Raises IntegrationError where the integrator fails.
         """
         n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
-        if self.system.resets or self.system.slides:
-            return self._pieced(start, parameter, np.asarray(phase, dtype=float))
-        found = integrated(self._cvodes(tuple(phase)), start, parameter)
-        later = self._lsoda(start, parameter, phase) if found is None else found.T
-        values = np.concatenate([start[None, :], later])
-        return Trajectory(np.asarray(phase, dtype=float), values[:, :n], values[:, n:])
+        phase = np.asarray(phase, dtype=float)
+        if self.system.slides:
+            return self._pieced(start, parameter, phase)
+
+        def sweep(y: Array, along: Array) -> Array:
+            found = integrated(self._cvodes(tuple(along)), y, parameter)
+            later = self._lsoda(y, parameter, along) if found is None else found.T
+            return np.concatenate([y[None, :], later])
+
+        def reset(k: int, tau: float, y: Array) -> Array:
+            after = self.system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
+            return self._on_constraints(np.append(after, y[n:]), parameter, tau)
+
+        given = reset if self.system.resets else None
+        tau, values = self._passages.follow(sweep, start, phase, parameter, given).with_impacts(phase)
+        return Trajectory(tau, values[:, :n], values[:, n:])
 
     def _pieced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
         """The motion through dry friction and impacts, at each of which there are two points of one phase."""
@@ -119,9 +132,11 @@ class Flow:
         )
 
     def _cvodes(self, phase: tuple[float, ...]) -> ca.Function:
-        if phase not in self._integrators:
-            self._integrators[phase] = integrator(self._problem, phase, self.tolerance)
-        return self._integrators[phase]
+        return kept(self._integrators, phase, lambda: integrator(self._problem, phase, self.tolerance))
+
+    @cached_property
+    def _passages(self) -> Passages:
+        return Passages(self.system.expressions, self._problem["ode"], self.system.kinks, self.system.resets)
 
     @cached_property
     def _problem(self) -> dict[str, ca.SX]:

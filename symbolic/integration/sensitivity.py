@@ -11,16 +11,18 @@ a solution for every x, also where contact is lost and g hardly depends on z. Th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
+import scipy
 
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
-from symbolic.integration.cvodes import IntegrationError, integrated, integrator
+from symbolic.integration.cvodes import IntegrationError, integrated, integrator, kept, spaced
+from symbolic.integration.passages import Passages
 from symbolic.integration.rates import constraint_rows, explicit_rates
 
 EPSILON = 1e-10
@@ -29,8 +31,8 @@ EPSILON = 1e-10
 TIGHTER = (1.0, 0.1, 0.01)
 """Tolerances tried in turn, as parts of the wanted one."""
 
-KEPT = 64
-"""How many integrators are kept; each is for certain phases."""
+ASIDE = 1e3
+"""How far before a kink, in tolerances, the derivatives are integrated: past it they have none."""
 
 ITERATIONS = 60
 CLOSE = 1e-13
@@ -52,13 +54,16 @@ class Sensitivities:
 class SensitiveFlow:
     """Integrates a system in scaled variables; `move` takes the unknowns along Newton's increments.
 
+    `kinks` are the switches at whose level the rates have a kink: there the integration begins anew.
     Raises ValueError for a system without a constraint for each unknown.
     """
 
     expressions: Expressions
     move: Callable[[Array, Array], Array]
+    kinks: Sequence[int] = ()
     _integrators: dict[Hashable, ca.Function] = field(default_factory=dict, repr=False)
     _starts: dict[tuple[int, ...], ca.Function] = field(default_factory=dict, repr=False)
+    _slopes: dict[tuple[int, ...], ca.Function] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         rows, unknowns = len(constraint_rows(self.expressions)), self.expressions.algebraic.size1()
@@ -84,27 +89,69 @@ class SensitiveFlow:
         """
         n, width = len(state), 1 + len(state) + len(free)
         start = self._start(state, algebraic, parameter, float(phase[0]), free)
-        later = self._integrated(start, parameter, tuple(phase), free, tolerance)
-        values = np.column_stack([start, later])
-        both = values.T.reshape(len(phase), width, -1).swapaxes(1, 2)
+        values = self._through(start, parameter, phase, free, tolerance)
+        both = values.reshape(len(phase), width, -1).swapaxes(1, 2)
         return Sensitivities(both[:, :n, 0], both[:, n:, 0], both[:, :n, 1:], both[:, n:, 1:])
 
-    def _integrated(
-        self,
-        start: Array,
-        parameter: Array,
-        phase: tuple[float, ...],
-        free: tuple[int, ...],
-        tolerance: float,
+    def _through(
+        self, start: Array, parameter: Array, phase: Array, free: tuple[int, ...], tolerance: float
     ) -> Array:
-        """All but the first values, a column each.
+        """The values at all phases: the kinks are found first, then each piece between them integrated."""
+
+        def sweep(y: Array, along: Array) -> Array:
+            return np.concatenate([y[None], self._integrated(y, parameter, along, None, tolerance)])
+
+        def piece(y: Array, begin: float, wanted: Array) -> Array:
+            along = np.unique(np.append(begin, np.maximum(wanted, begin)))
+            last = spaced(along)
+            used, place = np.unique(last, return_inverse=True)
+            later = self._integrated(y, parameter, along[used], free, tolerance) if len(used) > 1 else y[:0]
+            values = np.concatenate([y[None], later.reshape(-1, len(y))])[place]
+            for k in np.flatnonzero(last != np.arange(len(along))):
+                way = along[k] - along[last[k]]
+                values[k] = self._carried(values[k], parameter, along[last[k]], way, free)
+            return values[np.searchsorted(along, wanted)]
+
+        size = self.expressions.state.size1() + self.expressions.algebraic.size1()
+        kinks = self._passages.follow(sweep, start[:size], phase, parameter).passages if self.kinks else []
+        found, y, begin, done = [], start, float(phase[0]), -np.inf
+        for passage in kinks:
+            near = ASIDE * tolerance / abs(passage.rate) if passage.rate else np.inf
+            end = max(passage.before - near, (begin + passage.before) / 2)
+            inside = np.append(phase[(phase > done) & (phase <= passage.before)], passage.before)
+            values = piece(y, begin, np.append(inside[inside < end], end))
+            late = [self._carried(values[-1], parameter, end, at - end, free) for at in inside[inside >= end]]
+            found += [values[:-1], np.array(late[:-1]).reshape(-1, len(y))]
+            y, begin, done = np.append(passage.y, late[-1][size:]), passage.after, passage.before
+        return np.concatenate([*found, piece(y, begin, phase[phase > done])])
+
+    def _carried(self, y: Array, parameter: Array, phase: float, way: float, free: tuple[int, ...]) -> Array:
+        """y and its derivatives a short way on, by the equations linearised where they are."""
+        e = self.expressions
+        size, width = e.state.size1() + e.algebraic.size1(), e.state.size1() + len(free)
+        if free not in self._slopes:
+            known = [ca.vertcat(e.state, e.algebraic), e.phase, e.parameter]
+            slopes = [self._rates, ca.jacobian(self._rates, known[0])]
+            slopes.append(ca.jacobian(self._rates, self._chosen(free)))
+            self._slopes[free] = ca.Function("slopes", known, slopes)
+        rate, jacobian, by_free = (np.array(a) for a in self._slopes[free](y[:size], phase, parameter))
+        generator = np.zeros((size + len(free), size + len(free)))
+        generator[:size] = way * np.hstack([jacobian, by_free])
+        both = np.vstack([y[size:].reshape(width, size).T, np.eye(width)[e.state.size1() :]])
+        gradient = (scipy.linalg.expm(generator) @ both)[:size]
+        return np.append(y[:size] + way * rate.ravel(), gradient.T.ravel())
+
+    def _integrated(
+        self, start: Array, parameter: Array, phase: Array, free: tuple[int, ...] | None, tolerance: float
+    ) -> Array:
+        """All but the first values, a row each; those of y alone where `free` is None.
 
         CVODES gives up where a step runs too far into a sudden touch-down. A tighter tolerance shortens it.
         """
         for factor in TIGHTER:
-            later = integrated(self._cvodes(free, phase, factor * tolerance), start, parameter)
+            later = integrated(self._cvodes(free, tuple(phase), factor * tolerance), start, parameter)
             if later is not None and np.isfinite(later).all():
-                return later
+                return later.T
         raise IntegrationError(f"CVODES failed between tau = {phase[0]:.6g} and {phase[-1]:.6g}")
 
     def _start(
@@ -140,22 +187,26 @@ class SensitiveFlow:
     def _chosen(self, free: tuple[int, ...]) -> ca.SX:
         return ca.vertcat(ca.SX(0, 1), *[self.expressions.parameter[i] for i in free])
 
-    def _cvodes(self, free: tuple[int, ...], phase: tuple[float, ...], tolerance: float) -> ca.Function:
+    def _cvodes(
+        self, free: tuple[int, ...] | None, phase: tuple[float, ...], tolerance: float
+    ) -> ca.Function:
         key = (free, phase, tolerance)
-        if key not in self._integrators:
-            while len(self._integrators) >= KEPT:
-                self._integrators.pop(next(iter(self._integrators)))  # the oldest
-            self._integrators[key] = integrator(self._problem(free), phase, tolerance)
-        return self._integrators[key]
+        return kept(self._integrators, key, lambda: integrator(self._problem(free), phase, tolerance))
+
+    @cached_property
+    def _passages(self) -> Passages:
+        return Passages(self.expressions, self._rates, self.kinks)
 
     @cached_property
     def _rates(self) -> ca.SX:
         return explicit_rates(self.expressions, EPSILON)
 
-    def _problem(self, free: tuple[int, ...]) -> dict[str, ca.SX]:
-        """The ODE of y and its derivatives."""
+    def _problem(self, free: tuple[int, ...] | None) -> dict[str, ca.SX]:
+        """The ODE of y and, unless `free` is None, its derivatives."""
         e, rates = self.expressions, self._rates
         y = ca.vertcat(e.state, e.algebraic)
+        if free is None:
+            return {"x": y, "t": e.phase, "p": e.parameter, "ode": rates}
         in_state = ca.SX(y.size1(), e.state.size1())
         in_free = ca.jacobian(rates, self._chosen(free))
         gradient = ca.SX.sym("gradient", y.size1(), e.state.size1() + len(free))

@@ -254,6 +254,13 @@ class CompiledSystem:
         first = len(self.switches) - 2 * len(switches)
         return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
 
+    @property
+    def kinks(self) -> tuple[int, ...]:
+        """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
+        jumping = {*self.resets, *self.jumps, *(k for pair in self.slides.values() for k in pair)}
+        each = ((k, s) for k, s in enumerate(self.switches) if k not in jumping)
+        return tuple(k for k, s in each if s.levels == (0.0,) and s.direction == 0)
+
     def linearise_beside(
         self,
         rate: Array,
@@ -365,7 +372,7 @@ class CompiledSystem:
 
     @cached_property
     def _flow(self) -> SensitiveFlow:
-        return SensitiveFlow(self.expressions, self.move)
+        return SensitiveFlow(self.expressions, self.move, self.kinks)
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""

@@ -1,0 +1,51 @@
+"""A Fourier series held against the orbit with kinks that it stands for.
+
+Samples see an excursion past a kink where one of them lies in it, and the spectrum falls by powers of the
+harmonic. So the series is put on a mesh that is tied to all its passages, those between the samples as well,
+and one Newton step of the collocation equations there tells how far it is from the orbit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from periodic.collocation.dense import exact
+from periodic.collocation.kinks import exact_crossings, placed
+from periodic.collocation.method import Collocation
+from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.problem import Problem
+from periodic.harmonic.series import NO_PHASES, FourierOrbit
+from periodic.linear.unknowns import Increment
+from periodic.orbit.algebraic import algebraic_at
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import Mesh, uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.redistribution import redistribute
+from periodic.orbit.scheme import Array, Scheme
+from periodic.stability.spectrum import Spectrum
+from periodic.system import System
+
+
+def has_kinks(system: System) -> bool:
+    """Whether the equations have kinks that a mesh can be tied to."""
+    return bool(exact(system))
+
+
+def beside(
+    problem: Problem, orbit: FourierOrbit, tangent: Increment, spectrum: Spectrum, tolerance: float
+) -> ErrorEstimate:
+    """Estimate the errors of a series by a step of collocation on a mesh that is tied to its kinks."""
+    system, method = problem.system, Collocation().at(tolerance)
+    free = uniform(method.scheme or Scheme(), orbit.mesh.ntst, orbit.mesh.period)
+    pieces = _on(system, orbit, free, NO_PHASES)
+    crossings = sorted(exact_crossings(system, pieces), key=lambda crossing: crossing.phase)
+    events, phases = placed(system, pieces, crossings) if crossings else ((), NO_PHASES)
+    tied = _on(system, orbit, redistribute(pieces, free.ntst, events, phases, method.shortest), phases)
+    return deferred(method.linearise, problem, tied, tangent.restricted(orbit, tied), spectrum)
+
+
+def _on(system: System, orbit: FourierOrbit, mesh: Mesh, phases: Array) -> Orbit:
+    """The series as a piecewise polynomial, its unknowns solved for."""
+    pieces = transfer(orbit, mesh, phases)
+    unknowns = algebraic_at(system, pieces, pieces.stage_phases.ravel())
+    return replace(pieces, algebraic=unknowns.reshape(pieces.algebraic.shape))
