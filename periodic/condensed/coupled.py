@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.flexibility import Flexibility
 from periodic.condensed.linearised import Linearised
-from periodic.condensed.moments import Complex
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -23,127 +23,150 @@ from periodic.orbit.scheme import Array
 class Coupled:
     """Equations matrix u = right (1, dy) of the forces that depend on the motion and the own states.
 
-    u holds the active forces at the points (P ka), then the own states there (P o).
+    u holds the active forces at the points of the intervals where they are (C a ka), then the own states at
+    all points (P o). A force outside of its contact is none: on such intervals it is no unknown.
 
     Parameters
     ----------
     given : Linearised
         The system about its orbit.
-    flexibility : ndarray, shape (P s, P k)
+    flexibility : Flexibility
         What forces do to the states of the linear part.
     wraps : complex
         Own states at the beginning of the period in parts of those at its end: 1 in periodic motion, 0 where
         they begin with nothing.
     """
 
-    def __init__(self, given: Linearised, flexibility: Array | Complex, *, wraps: complex) -> None:
+    def __init__(self, given: Linearised, flexibility: Flexibility, *, wraps: complex) -> None:
         orbit, local = given.orbit, given.local
         self.given, self.flexibility, self.wraps = given, flexibility, wraps
-        self.kind = np.result_type(flexibility, wraps)
+        self.kind = np.result_type(float if flexibility.real else complex, wraps)
         self.n = n = orbit.nodes.shape[1]
         self.places, self.others = list(given.part.states), given.others
+        self.intervals, self.ncol = orbit.stages.shape[:2]
         self.points, self.k = len(local.forces), local.forces.shape[1]
-        by_motion = local.forces[:, :, 1 : 1 + 2 * n]
-        self.active = np.flatnonzero(np.abs(by_motion).max(axis=(0, 2), initial=0.0) > 0)
-        self.passive = np.setdiff1d(np.arange(self.k), self.active)
-        self.count = self.points * len(self.active)
+        by_motion = np.abs(local.forces[:, :, 1 : 1 + 2 * n]).max(axis=2, initial=0.0)
+        self.active = np.flatnonzero(by_motion.max(axis=0, initial=0.0))
+        self.held = np.flatnonzero(by_motion.reshape(self.intervals, -1).max(axis=1, initial=0.0))
+        self.at = (self.held[:, None] * self.ncol + np.arange(self.ncol)).ravel()
+        self.count = len(self.at) * len(self.active)
         self.size = self.count + self.points * len(self.others)
         self.columns = [0, *range(1 + 2 * n, local.forces.shape[2])]
 
-    def _onto(self, chosen: NDArray[np.int_]) -> Array:
-        """Columns of the flexibility for some of the forces, (P, s, P chosen)."""
-        whole: Array = np.asarray(self.flexibility)
-        shape = (self.points, len(self.places), self.points)
-        return whole.reshape(*shape, self.k)[..., chosen].reshape(*shape[:2], self.points * len(chosen))
-
     @cached_property
     def _by_active(self) -> Array:
-        return self._onto(self.active)
+        """States at the points by the active forces, (P, s, C a ka)."""
+        found = self.flexibility.columns(self.held)
+        if len(self.active) < self.k:
+            found = found[..., self.active]
+        return np.asarray(found.reshape(self.points, len(self.places), self.count))
+
+    @cached_property
+    def _rows_of_forces(self) -> Array:
+        """Rows of the active forces, (C a, ka, w)."""
+        return self.given.local.forces[self.at[:, None], self.active]
+
+    @cached_property
+    def passive(self) -> NDArray[np.bool_]:
+        """Whether a force at a point is none of the unknowns, (P, k)."""
+        found = np.ones((self.points, self.k), dtype=bool)
+        found[self.at[:, None], self.active] = False
+        return found
 
     @cached_property
     def affine(self) -> Array:
         """States of the linear part by (1, dy), forces that do not depend on them included: (P, s, 1+q)."""
-        driven = self.given.local.forces[:, self.passive][:, :, self.columns]
-        return self.given.affine + self._onto(self.passive) @ driven.reshape(
-            self.points * len(self.passive), len(self.columns)
+        driven = np.where(self.passive[:, :, None], self.given.local.forces[:, :, self.columns], 0.0)
+        if not driven.any():
+            return self.given.affine
+        shape = (self.intervals, self.ncol, self.k, len(self.columns))
+        states = self.flexibility.applied(driven.reshape(shape))
+        return np.asarray(self.given.affine + states.reshape(self.given.affine.shape))
+
+    def forces(self, u: Array) -> Array:
+        """Return the forces at the points, (N, a, k, r), of unknowns (size, r)."""
+        found = np.zeros((self.points, self.k, u.shape[1]), dtype=np.result_type(self.kind, u))
+        found[self.at[:, None], self.active] = u[: self.count].reshape(
+            len(self.at), len(self.active), u.shape[1]
         )
+        return found.reshape(self.intervals, self.ncol, self.k, u.shape[1])
 
-    def _rate_blocks(self, rates: Array) -> Array:
-        """Rows (P, r, o) that multiply the own states' rates, as rows in the own states, (P, r, P, o)."""
+    def asked(self, states: Array) -> Array:
+        """Return the active forces (C a ka, r) that the places ask for where their states are (P, s, r)."""
+        by_place = self._rows_of_forces[:, :, [1 + self.n + place for place in self.places]]
+        return np.asarray((by_place @ states[self.at]).reshape(self.count, states.shape[2]))
+
+    def _rate_blocks(self, rates: Array, at: NDArray[np.int_]) -> Array:
+        """Rows (R, r, o) that multiply the own states' rates, as rows in the own states, (R, r, P, o)."""
         orbit = self.given.orbit
-        scheme, (count, points, _) = orbit.mesh.scheme, orbit.stages.shape
-        weights = scheme.stage_rates / orbit.grid.width[:, None, None]
-        shape = (count, points, rates.shape[1], count, points, len(self.others))
-        found = np.zeros(shape, dtype=self.kind)
-        local = rates.reshape(count, points, rates.shape[1], -1)
-        each = np.arange(count)
-        found[each, :, :, each] += np.einsum("naro,nab->narbo", local, weights[:, :, 1:])
-        begun = np.einsum("naro,na->naro", local, weights[:, :, 0])
-        found[each[1:], :, :, each[:-1], -1] += begun[1:]
-        found[0, :, :, -1, -1] += self.wraps * begun[0]
-        return found.reshape(self.points, rates.shape[1], self.points, -1)
+        weights = (orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]).reshape(self.points, -1)
+        found = np.zeros((*rates.shape[:2], self.intervals, self.ncol, len(self.others)), dtype=self.kind)
+        each, interval = np.arange(len(at)), at // self.ncol
+        found[each, :, interval] += np.einsum("pro,pb->prbo", rates, weights[at, 1:])
+        begun = np.einsum("pro,p->pro", rates, weights[at, 0])
+        first = interval == 0
+        found[each[~first], :, interval[~first] - 1, -1] += begun[~first]
+        found[each[first], :, -1, -1] += self.wraps * begun[first]
+        return found.reshape(*rates.shape[:2], self.points, -1)
 
-    def _rows(self, rows: Array) -> tuple[Array, Array]:
-        """Rows (P, r, w) of (1, d rate, d state, dy) as rows in u, and in (1, dy)."""
+    def _inner(self, rows: Array, at: NDArray[np.int_]) -> Array:
+        """Rows at some points, (R, r, w) of (1, d rate, d state, dy), as rows in u, (R r, size)."""
         n, others = self.n, self.others
         by_place = rows[:, :, [1 + n + k for k in self.places]]
-        inner = np.zeros((self.points, rows.shape[1], self.size), dtype=self.kind)
-        inner[:, :, : self.count] = by_place @ self._by_active
-        outer = rows[:, :, self.columns] + by_place @ self.affine
+        inner = by_place @ self._by_active[at]
         if len(others):
-            own = self._rate_blocks(rows[:, :, 1 + others])
-            each = np.arange(self.points)
-            own[each, :, each] += rows[:, :, 1 + n + others]
-            inner[:, :, self.count :] = own.reshape(self.points, rows.shape[1], -1)
-            outer[:, :, 0] += self._gap(rows[:, :, 1 + others])
-        return inner, outer
+            own = self._rate_blocks(rows[:, :, 1 + others], at)
+            own[np.arange(len(at)), :, at] += rows[:, :, 1 + n + others]
+            inner = np.concatenate([inner, own.reshape(*inner.shape[:2], -1)], axis=2)
+        return np.asarray(inner.reshape(inner.shape[0] * inner.shape[1], self.size))
 
-    def _gap(self, rates: Array) -> Array:
-        """What rates (P, r, o) get where mesh points are not yet the ends of their intervals, (P, r)."""
+    def _outer(self, rows: Array, at: NDArray[np.int_]) -> Array:
+        """The same in (1, dy), (R r, 1+q)."""
+        by_place = rows[:, :, [1 + self.n + k for k in self.places]]
+        outer = rows[:, :, self.columns] + by_place @ self.affine[at]
+        if len(self.others):
+            outer[:, :, 0] += self._gap(rows[:, :, 1 + self.others], at)
+        return np.asarray(outer.reshape(outer.shape[0] * outer.shape[1], outer.shape[2]))
+
+    def _gap(self, rates: Array, at: NDArray[np.int_]) -> Array:
+        """What rates (R, r, o) get where mesh points are not yet the ends of their intervals, (R, r)."""
         orbit = self.given.orbit
-        count, points, _ = orbit.stages.shape
         gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:-1, -1]]) - orbit.nodes[:-1]
         weights = orbit.mesh.scheme.stage_rates[:, 0] / orbit.grid.width[:, None]
         along = (weights[:, :, None] * gap[:, None, self.others]).reshape(self.points, -1)
-        return np.asarray(np.einsum("pro,po->pr", rates, along))
+        return np.asarray(np.einsum("pro,po->pr", rates, along[at]))
 
     @cached_property
-    def _assembled(self) -> tuple[Array, Array]:
-        local = self.given.local
-        inner, outer = self._rows(local.forces[:, self.active])
-        matrix = np.zeros((self.size, self.size), dtype=self.kind)
-        matrix[: self.count] = -inner.reshape(self.count, self.size)
-        matrix[np.arange(self.count), np.arange(self.count)] += 1.0
-        right = np.zeros((self.size, len(self.columns)), dtype=self.kind)
-        right[: self.count] = outer.reshape(self.count, len(self.columns))
-        if len(self.others):
-            inner, outer = self._rows(local.own)
-            matrix[self.count :] = inner.reshape(-1, self.size)
-            right[self.count :] = -outer.reshape(-1, len(self.columns))
-        return matrix, right
-
-    @property
     def matrix(self) -> Array:
         """The equations, (size, size)."""
-        return self._assembled[0]
+        matrix = np.empty((self.size, self.size), dtype=self.kind)
+        matrix[: self.count] = -self._inner(self._rows_of_forces, self.at)
+        matrix[np.arange(self.count), np.arange(self.count)] += 1.0
+        if len(self.others):
+            matrix[self.count :] = self._inner(self.given.local.own, np.arange(self.points))
+        return matrix
 
-    @property
+    @cached_property
     def right(self) -> Array:
         """Their right-hand sides by (1, dy), (size, 1+q)."""
-        return self._assembled[1]
+        right = self._outer(self._rows_of_forces, self.at)
+        if len(self.others):
+            right = np.concatenate([right, -self._outer(self.given.local.own, np.arange(self.points))])
+        return right
 
     def restricted(self, states: Array, outer: Array) -> tuple[Array, Array]:
         """Return a row in the states at the points (P, n) and (1, dy) as one in u and (1, dy)."""
         by_place = states[:, self.places].ravel()
-        inner = np.zeros(self.size, dtype=self.kind)
-        inner[: self.count] = by_place @ self._by_active.reshape(len(by_place), self.count)
-        inner[self.count :] = states[:, self.others].ravel()
+        inner = by_place @ self._by_active.reshape(len(by_place), self.count)
+        inner = np.concatenate([inner, states[:, self.others].ravel()])
         return inner, outer + by_place @ self.affine.reshape(len(by_place), -1)
 
     def stages(self, inner: Array, given: Array) -> Array:
         """Return the states at the points, (P, n), of u and (1, dy)."""
         found = np.empty((self.points, self.n), dtype=np.result_type(self.kind, inner))
-        found[:, self.places] = self._by_active @ inner[: self.count] + self.affine @ given
+        found[:, self.places] = self._by_active @ inner[: self.count]
+        if given.any():
+            found[:, self.places] += self.affine @ given
         found[:, self.others] = inner[self.count :].reshape(self.points, len(self.others))
         return found
 

@@ -82,12 +82,12 @@ class Floquet:
         """How free motion drives forces and own states at the points, (P ka + P o, coordinates)."""
         given, system = self.given, self._system
         n, modes = system.n, 2 * len(given.response.modes.exponents)
-        shown = given.response.free().reshape(system.points, len(system.places), modes)
-        places = [1 + n + k for k in system.places]
+        ahead = given.response.ahead.reshape(system.points, len(system.places), -1)
+        shown = np.concatenate([ahead.real, -ahead.imag], axis=2)
         right = np.zeros((system.size, modes + len(system.others)))
-        forces = given.local.forces[:, system.active]
-        right[: system.count, :modes] = (forces[:, :, places] @ shown).reshape(system.count, modes)
+        right[: system.count, :modes] = system.asked(shown)
         if len(system.others):
+            places = [1 + n + k for k in system.places]
             own = given.local.own
             right[system.count :, :modes] = -(own[:, :, places] @ shown).reshape(-1, modes)
             right[system.count :, modes:] = -self._begun(own[:, :, 1 + system.others])
@@ -96,10 +96,12 @@ class Floquet:
     @cached_property
     def _left(self) -> Array:
         """What forces and own states leave at the end of the period, (coordinates, P ka + P o)."""
-        system, final = self._system, self.given.response.final()
-        modes, own = len(final), len(system.others)
+        system = self._system
+        count = len(self.given.response.modes.exponents)
+        final = self.given.response.left(system.held)[..., system.active].reshape(count, system.count)
+        modes, own = 2 * count, len(system.others)
         found = np.zeros((modes + own, system.size))
-        found[:modes, : system.count] = final[..., system.active].reshape(modes, -1)
+        found[:modes, : system.count] = np.concatenate([final.real, final.imag])
         found[np.arange(own) + modes, np.arange(own) + system.size - own] = 1.0
         return found[self.kept]
 
@@ -140,10 +142,7 @@ class Floquet:
         """
         system = self._system
         flat = states.reshape(system.points, len(system.places), -1)
-        forces = self.given.local.forces[:, system.active]
-        places = [1 + system.n + k for k in system.places]
-        right = (forces[:, :, places] @ flat).reshape(system.count, flat.shape[2])
-        answer = scipy.linalg.lu_solve(self._factors, right, check_finite=False)
+        answer = scipy.linalg.lu_solve(self._factors, system.asked(flat), check_finite=False)
         return np.concatenate([modes.real, modes.imag])[self.kept] + self._left @ answer
 
     def once(self, basis: Array) -> Array:
@@ -161,10 +160,7 @@ class Floquet:
 
     def forces(self, answers: Array) -> Array:
         """Return all forces at the points, (N, b, k, r), of the active ones."""
-        system, (count, points, _) = self._system, self.given.orbit.stages.shape
-        found = np.zeros((count, points, system.k, answers.shape[1]))
-        found[:, :, system.active] = answers[: system.count].reshape(count, points, -1, answers.shape[1])
-        return found
+        return self._system.forces(answers)
 
     @property
     def monodromy(self) -> Array:

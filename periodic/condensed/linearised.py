@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
+from periodic.condensed.flexibility import Flexibility
 from periodic.condensed.moments import Complex
 from periodic.condensed.reduction import audible, reduced, reduced_slope
 from periodic.condensed.response import Response
+from periodic.condensed.slopes import slopes
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, linear_of
@@ -103,18 +105,14 @@ class Linearised:
         return np.setdiff1d(np.arange(self.orbit.nodes.shape[1]), self.part.states)
 
     @cached_property
-    def flexibility(self) -> Array:
-        """What forces do to the states in periodic motion, (P s, P k)."""
-        return self._flat(self.response.periodic)
+    def flexibility(self) -> Flexibility:
+        """What forces do to the states in periodic motion."""
+        return Flexibility.repeating(self.response)
 
     @cached_property
-    def from_rest(self) -> Array:
-        """What they do to those that begin with nothing, (P s, P k)."""
-        return self._flat(self.response.from_rest)
-
-    def _flat(self, response: Array) -> Array:
-        size = self.orbit.stages.shape[0] * self.orbit.stages.shape[1]
-        return response.reshape(size * len(self.part.states), size * len(self.part.forces))
+    def from_rest(self) -> Flexibility:
+        """What they do to those that begin with nothing."""
+        return Flexibility(self.response)
 
     @cached_property
     def forces(self) -> Array:
@@ -123,7 +121,7 @@ class Linearised:
 
     @cached_property
     def _slopes(self) -> tuple[Array, Complex]:
-        return self.response.slopes(self.forces, self.orbit.grid.width_gradient, self.changes)
+        return slopes(self.response, self.forces, self.orbit.grid.width_gradient, self.changes)
 
     @property
     def begun(self) -> Complex:
@@ -135,7 +133,7 @@ class Linearised:
         """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
-        made = (self.flexibility @ self.forces.ravel()).reshape(stages.shape)
+        made = self.flexibility.applied(self.forces[..., None])[..., 0]
         return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(
             count * points, s, -1
         )

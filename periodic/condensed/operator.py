@@ -55,11 +55,10 @@ class Condensed:
     @property
     def effect(self) -> Array:
         """About how much the states change with each free parameter over a period, shape (q,)."""
-        k, width = len(self.orbit.phases), self.given.local.forces.shape[2]
-        n = self.orbit.nodes.shape[1]
-        whole = self.given.flexibility @ self.given.local.forces[:, :, 1 + 2 * n + k :].reshape(
-            self.given.flexibility.shape[1], width - 1 - 2 * n - k
-        )
+        k, (count, points, n) = len(self.orbit.phases), self.orbit.stages.shape
+        forces = self.given.local.forces[:, :, 1 + 2 * n + k :]
+        whole = self.given.flexibility.applied(forces.reshape(count, points, *forces.shape[1:]))
+        whole = whole.reshape(-1, forces.shape[2])
         states = np.abs(whole).max(axis=0, initial=0.0)
         states += np.abs(self.given.affine[:, :, 1 + k :]).max(axis=(0, 1), initial=0.0)
         return np.asarray(
@@ -91,10 +90,8 @@ class Condensed:
         """
         system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
         flat = states.reshape(system.points, -1)
-        forces = self.given.local.forces[:, system.active]
-        by_place = forces[:, :, [1 + system.n + place for place in system.places]]
         missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
-        aim = [np.einsum("pks,ps->pk", by_place, flat).ravel(), [-float(np.vdot(m, flat)) for m in missed]]
+        aim: list[Any] = [system.asked(flat[..., None])[:, 0], [-float(np.vdot(m, flat)) for m in missed]]
         found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
         outer = found[system.size :]
         stages = system.stages(found[: system.size], np.append(0.0, outer))

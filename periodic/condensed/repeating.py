@@ -16,8 +16,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.condensed.coupled import Coupled, folded
+from periodic.condensed.flexibility import Flexibility
 from periodic.condensed.linearised import Linearised, answer
 from periodic.condensed.moments import Complex
+from periodic.condensed.slopes import slopes
 from periodic.linear.variation import Tangent
 from periodic.orbit.gradients import Points, Slopes, collocation_points, gathered, solved
 from periodic.orbit.row import Row
@@ -53,24 +55,23 @@ class CondensedRepeating:
     def coupled(self) -> Coupled:
         """The equations of forces and own states."""
         given = self.given
-        if self.mu == 1.0:
-            return Coupled(given, given.flexibility, wraps=1.0)
-        earlier = given.response.earlier(*given.response.closings(self.mu))
-        whole = given.from_rest + (earlier if isinstance(self.mu, complex) else earlier.real)
-        return Coupled(given, whole, wraps=1 / self.mu)
+        flexibility = Flexibility.repeating(given.response, self.mu)
+        return Coupled(given, flexibility, wraps=1.0 if self.mu == 1.0 else 1 / self.mu)
 
     @property
     def matrix(self) -> Array:
         """K_mu, with the columns of the free parameters."""
+        if not self.free:
+            return self.coupled.matrix
         first = 1 + len(self.given.orbit.phases)
         return np.concatenate([self.coupled.matrix, -self.coupled.right[:, first:]], axis=1)
 
     @property
     def slope(self) -> Complex:
         """The derivative of K_mu in mu."""
-        closing = self.given.response.closings(self.mu)
-        change = self.given.response.earlier(-(closing[0] ** 2), -(closing[1] ** 2))
-        still = Coupled(self.given, np.zeros_like(change), wraps=0.0).matrix
+        response = self.given.response
+        still = Coupled(self.given, Flexibility(response, past=False), wraps=0.0).matrix
+        change = Flexibility.by_multiplier(response, self.mu)
         found = Coupled(self.given, change, wraps=-1 / self.mu**2).matrix - still
         return found.astype(np.complex128)
 
@@ -124,16 +125,19 @@ class CondensedRepeating:
         own = np.zeros((coupled.points, n), dtype=left.dtype)
         own[:, given.local.rows] = left[coupled.count : coupled.size].reshape(coupled.points, -1)
         onto = np.einsum("pr,prm->pm", own, line.d_algebraic[:, :n])
-        onto[:, forces[coupled.active]] -= left[: coupled.count].reshape(coupled.points, -1)
+        onto[coupled.at[:, None], forces[coupled.active]] -= left[: coupled.count].reshape(
+            len(coupled.at), -1
+        )
         weights = _solved(line, onto)
         pull = np.einsum("pr,prn->pn", own, line.d_state[:, :n])
         pull += np.einsum("pm,pmn->pn", weights, line.d_state[:, n:])
         if source is not None:
             pull = pull + folded(given.orbit, source, (1 / self.mu).real)[0]
         pull = pull[:, coupled.places]
-        driven = (coupled.flexibility.T @ pull.ravel()).reshape(coupled.points, -1)[:, coupled.passive]
+        whole = coupled.flexibility.whole.reshape(pull.size, -1)
+        driven = np.where(coupled.passive, (pull.ravel() @ whole).reshape(coupled.points, -1), 0.0)
         onto = np.zeros_like(onto, dtype=driven.dtype)
-        onto[:, forces[coupled.passive]] = driven
+        onto[:, forces] = driven
         return np.concatenate([own, weights + _solved(line, onto)], axis=1), pull
 
     def _bent(
@@ -165,7 +169,7 @@ class CondensedRepeating:
         stretch = orbit.grid.width_gradient
         forces = np.ascontiguousarray(tangent.algebraic[:, :, list(given.part.forces)])
         response, changes = answer(given.part, orbit, orbit.parameter, free)
-        found = response.slopes(forces, stretch, changes, self.mu)[0]
+        found = slopes(response, forces, stretch, changes, self.mu)[0]
         weights = pull.reshape(found.shape[:3])
         total = np.einsum("nas,nasq->q", weights, found).real
         if tangent.parameter.any():
@@ -173,7 +177,7 @@ class CondensedRepeating:
             for step in (size, -size):
                 beside, changed = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, free)
                 ends.append(
-                    np.einsum("nas,nasq->q", weights, beside.slopes(given.forces, stretch, changed)[0])
+                    np.einsum("nas,nasq->q", weights, slopes(beside, given.forces, stretch, changed)[0])
                 )
             total = total + (ends[0] - ends[1]) / (2 * size)
         return np.asarray(total)
@@ -184,9 +188,10 @@ class CondensedRepeating:
         size, ends = self._step(tangent), []
         for step in (size, -size):
             beside, _ = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, ())
-            whole = beside.periodic
+            whole = Flexibility.repeating(beside).whole
             ends.append(pull.ravel() @ whole.reshape(pull.size, -1))
-        return np.asarray((ends[0] - ends[1]) / (2 * size)).reshape(len(pull), -1)
+        found: Array = np.asarray((ends[0] - ends[1]) / (2 * size)).reshape(len(pull), -1)
+        return found
 
     def _step(self, tangent: Tangent) -> float:
         parameter = self.given.orbit.parameter

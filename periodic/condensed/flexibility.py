@@ -1,0 +1,179 @@
+"""What forces do to the places, as a matrix: the columns that are asked for, or its product with forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.condensed.moments import Complex
+from periodic.condensed.response import Response, real_product
+from periodic.orbit.scheme import Array
+
+Matrix = NDArray[Any]
+"""Real or complex."""
+
+SPREAD = 300.0
+"""Decay over a run of intervals (nepers) up to which the way between any two of them is one product."""
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """States at the points of N intervals by forces there, (N, a, s, N, b, k), seldom made as a whole.
+
+    Parameters
+    ----------
+    response : Response
+        The modes.
+    closing : tuple of ndarray, optional
+        What the modes and their conjugates at the beginning are of what a period leaves in them, (J,) each;
+        default nothing, z(0) = 0.
+    past : bool
+        Whether forces act within their own period too, not just in later ones.
+    """
+
+    response: Response
+    closing: tuple[Complex, Complex] | None = None
+    past: bool = True
+
+    @classmethod
+    def repeating(cls, response: Response, multiplier: complex = 1.0) -> Flexibility:
+        """Return that of motions and forces that are multiplied by a number over the period."""
+        return cls(response, response.closings(multiplier))
+
+    @classmethod
+    def by_multiplier(cls, response: Response, multiplier: complex) -> Flexibility:
+        """Return the derivative of `repeating` in the multiplier."""
+        own, other = response.closings(multiplier)
+        return cls(response, (-(own**2), -(other**2)), past=False)
+
+    @property
+    def real(self) -> bool:
+        """Whether real forces make real states."""
+        return self.closing is None or np.array_equal(self.closing[1], self.closing[0].conj())
+
+    @property
+    def intervals(self) -> NDArray[np.int_]:
+        """All of them."""
+        return np.arange(len(self.response.grid.width))
+
+    @cached_property
+    def whole(self) -> Matrix:
+        """All columns, (N, a, s, N, b, k)."""
+        closing = self.response.closing if self.closing is None else self.closing[0]
+        if self.response.uniform and self.past and closing is self.response.closing:
+            return self._circulant()
+        return self._columns(self.intervals)
+
+    def columns(self, intervals: NDArray[np.int_]) -> Matrix:
+        """Return the columns of the forces of some intervals, in order: (N, a, s, C, b, k)."""
+        if len(intervals) == len(self.intervals):
+            return self.whole
+        return self.whole[:, :, :, intervals] if self.response.uniform else self._columns(intervals)
+
+    def applied(self, forces: Array) -> Matrix:
+        """Return the states at the points, (N, a, s, r), by forces (N, b, k, r)."""
+        response = self.response
+        if response.uniform or not self.real or not self.past:
+            found = self.whole.reshape(-1, forces[..., 0].size) @ forces.reshape(-1, forces.shape[3])
+            return np.asarray(found.reshape(*forces.shape[:2], -1, forces.shape[3]))
+        if self.closing is not None:
+            begun = self.closing[0][:, None] * response.driven(forces)[-1]
+        else:
+            begun = np.zeros((len(response.modes.exponents), forces.shape[3]), dtype=complex)
+        return response.motions(forces, begun)[0]
+
+    def _columns(self, intervals: NDArray[np.int_]) -> Matrix:
+        count, points = len(self.intervals), self.response.scheme.ncol
+        s, k = self.response.modes.direct.shape
+        kind = float if self.real else complex
+        found = np.zeros((count, points, s, len(intervals), points, k), dtype=kind)
+        if self.past:
+            gaps = np.flatnonzero(np.diff(intervals) > 1) + 1
+            for run in np.split(np.arange(len(intervals)), gaps) if len(intervals) else ():
+                self._run(found[:, :, :, run[0] : run[-1] + 1], intervals[run[0]])
+        if self.closing is not None:
+            found += self._earlier(intervals, *self.closing).reshape(found.shape)
+        return found
+
+    def _earlier(self, intervals: NDArray[np.int_], own: Complex, other: Complex) -> Matrix:
+        """The response to the periods before."""
+        size = len(own)
+        rows, columns = self.response.ahead.reshape(-1, size), self.response.left(intervals).reshape(size, -1)
+        if self.real:
+            return real_product(rows, own[:, None] * columns)
+        plain, conjugate = rows @ (own[:, None] * columns), rows @ (other.conj()[:, None] * columns)
+        return np.asarray((plain + conjugate.conj()) / 2)
+
+    def _run(self, found: Matrix, first: int) -> None:
+        """Add the response within the period to a run of intervals, (N, a, s, C, b, k)."""
+        response, count = self.response, found.shape[3]
+        inside, size = slice(first, first + count), len(response.modes.exponents)
+        start, end = response.start[first + count :], response.end[inside]
+        each = np.arange(count)
+        if count > 1:
+            later = np.tril(np.ones((count, count), dtype=bool), -1)[:, None, None, :, None, None]
+            duration = end[-1] - response.start[first]
+            slow = np.abs(response.modes.exponents.real) * duration <= SPREAD
+            for chosen, way in ((slow, self._spread), (~slow, self._chained)):
+                if chosen.any():
+                    found[inside] += np.where(later, way(np.flatnonzero(chosen), inside), 0.0)
+        found[first + each, :, :, each] += response.local[inside]
+        if len(start):
+            exponents = response.modes.exponents
+            ahead = np.exp(exponents * (start - end[-1])[:, None])
+            back = np.exp(exponents * (end[-1] - end)[:, None])
+            rows = (response.shown[first + count :] * ahead[:, None, None]).reshape(-1, size)
+            columns = response.impulse[inside] * back[:, :, None, None]
+            columns = np.moveaxis(columns, 1, 0).reshape(size, -1)
+            found[first + count :] += real_product(rows, columns).reshape(len(start), *found.shape[1:])
+
+    def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
+        """Responses of some modes to earlier intervals of a run by one product."""
+        response = self.response
+        exponents, begun = response.modes.exponents[chosen], response.start[inside.start]
+        ahead = np.exp(exponents * (response.start[inside] - begun)[:, None])
+        back = np.exp(-exponents * (response.end[inside] - begun)[:, None])
+        shown = response.shown[inside][..., chosen] * ahead[:, None, None]
+        left = np.moveaxis(response.impulse[inside][:, chosen] * back[:, :, None, None], 1, 0)
+        found = real_product(shown.reshape(-1, len(chosen)), left.reshape(len(chosen), -1))
+        return found.reshape(*shown.shape[:3], *left.shape[1:])
+
+    def _chained(self, chosen: NDArray[np.int_], inside: slice) -> Array:
+        """The same interval after interval, for modes that decay too fast for one product."""
+        response, size = self.response, len(chosen)
+        shown = response.shown[inside][..., chosen]
+        left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)
+        decay = response.table.growth[inside][:, chosen, -1]
+        own, width, found = np.zeros_like(left).reshape(size, -1), left[0, 0].size, []
+        for i, rows in enumerate(shown):
+            found.append(real_product(rows.reshape(-1, size), own))
+            own = decay[i][:, None] * own
+            own[:, i * width : (i + 1) * width] = left[:, i].reshape(size, -1)
+        return np.array(found).reshape(*shown.shape[:3], *left.shape[1:])
+
+    def _circulant(self) -> Array:
+        """On a uniform mesh only how many intervals later counts."""
+        response = self.response
+        modes, count, points = response.modes, len(self.intervals), response.scheme.ncol
+        s, k = modes.direct.shape
+        width = response.grid.width[0]
+        impulse = response.impulse[0]
+        impulse = impulse if self.closing is None else impulse * self.closing[0][:, None, None]
+        # by falling number of intervals, as the columns of a row have it
+        ahead = np.exp(modes.exponents[:, None] * (width * np.arange(count - 1.0, -1.0, -1.0)))
+        moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
+        shown = response.shown[0].reshape(points * s, -1)
+        found = real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
+        twice = np.concatenate([found, np.zeros_like(found) if self.closing is None else found], axis=1)
+        row, column, each = twice.strides
+        laid = np.lib.stride_tricks.as_strided(
+            twice[:, count:], (count, *found.shape), (-column, row, column, each), writeable=False
+        )
+        whole = np.array(laid).reshape(count, points, s, count, points, k)
+        own = np.arange(count)
+        whole[own, :, :, own] += response.local
+        return whole
