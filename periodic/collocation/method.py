@@ -292,14 +292,17 @@ class CollocationRefinement(Refinement):
 
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
-        orbit = self.orbit
-        return redistribute(orbit, self._ntst, orbit.mesh.events, orbit.phases, self.method.shortest)
+        return self._made(self.orbit.mesh.events, self.orbit.phases)
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
         for chosen in self._choices():
             tied, phases = kinks.placed(self.system, self.orbit, chosen)
-            yield redistribute(self.orbit, self._ntst, tied, phases, self.method.shortest), phases
+            yield self._made(tied, phases), phases
+
+    def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        """The mesh with such event nodes."""
+        return redistribute(self.orbit, self._ntst, events, phases, self.method.shortest)
 
     def _choices(self) -> Iterator[list[Crossing]]:
         yield self.wanted

@@ -12,20 +12,27 @@ The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Mul
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
 from periodic.condensed.operator import Condensed
 from periodic.condensed.response import Response
 from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.condition import SideCondition
 from periodic.correction.error import LEAST_SPAN, SMALL, UNKNOWN, ErrorEstimate
+from periodic.correction.newton import Linearise, Linearised, NewtonSettings, newton_step
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.construction import bisect
+from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
+from periodic.system import System
 
 
 def applies(operator: Condensed) -> bool:
@@ -53,6 +60,37 @@ def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     parameter = float(abs(answer.parameter) / largest)
     return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
+
+
+class OneSided:
+    """Equations linearised one after the other at orbits that differ by their errors, see `deferred`.
+
+    An orbit about to touch may do so by its error: then the multipliers are those of the orbit before it,
+    which has the same contacts as the mesh.
+    """
+
+    def __init__(self, linearise: Linearise) -> None:
+        self.linearise = linearise
+        self.known: tuple[Linearised, NDArray[np.int_]] | None = None
+
+    def __call__(
+        self,
+        system: System,
+        orbit: Orbit,
+        free: tuple[int, ...],
+        conditions: Sequence[SideCondition],
+        settings: NewtonSettings,
+    ) -> Linearised:
+        """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
+        step = newton_step(self.linearise, system, orbit, free, conditions, settings)
+        operator, kernel = step.operator, step.kernel
+        assert isinstance(operator, Condensed) and kernel is not None
+        held = operator.system.held
+        if self.known is not None and not np.array_equal(held, self.known[1]):
+            return self.known[0]
+        found = Linearised(operator.orbit, step.increment, kernel, operator.fundamental)
+        self.known = found, held
+        return found
 
 
 class _Missing:

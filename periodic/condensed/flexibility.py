@@ -79,7 +79,7 @@ class Flexibility:
         response = self.response
         if response.uniform or not self.real or not self.past:
             found = self.whole.reshape(-1, forces[..., 0].size) @ forces.reshape(-1, forces.shape[3])
-            return np.asarray(found.reshape(*forces.shape[:2], -1, forces.shape[3]))
+            return np.asarray(found.reshape(*self.whole.shape[:3], forces.shape[3]))
         if self.closing is not None:
             begun = self.closing[0][:, None] * response.driven(forces)[-1]
         else:

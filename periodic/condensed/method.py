@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from periodic.collocation.event import event_rows
-from periodic.collocation.method import Collocation, CollocationRefinement, scheme_for
-from periodic.condensed.estimate import applies, estimate
+from periodic.collocation.method import Collocation, scheme_for
+from periodic.condensed.estimate import OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
+from periodic.condensed.refinement import CondensedRefinement
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement
@@ -89,7 +88,8 @@ class CondensedCollocation(Collocation):
             return estimate(problem, operator, tangent, spectrum)
         part = linear_of(problem.system)
         velocities = () if part is None else part.velocities
-        return deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities)
+        beside = OneSided(self._brief)
+        return deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside)
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)
@@ -104,24 +104,3 @@ class CondensedCollocation(Collocation):
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""
         return CondensedRefinement(self, system, orbit, error)
-
-
-class CondensedRefinement(CollocationRefinement):
-    """Meshes of equal intervals where no kink asks for others: there all is known of one interval."""
-
-    def refined(self) -> Mesh:
-        """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
-        if self.system.switches:
-            return super().refined()
-        return self._even()
-
-    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
-        """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
-        if self.system.switches:
-            yield from super().meshes()
-        else:
-            yield self._even(), np.zeros(0)
-
-    def _even(self) -> Mesh:
-        mesh = self.orbit.mesh
-        return Mesh(mesh.scheme, (np.linspace(0, 1, self._ntst + 1),), (), mesh.period)

@@ -58,8 +58,7 @@ class Condensed:
         k, (count, points, n) = len(self.orbit.phases), self.orbit.stages.shape
         forces = self.given.local.forces[:, :, 1 + 2 * n + k :]
         whole = self.given.flexibility.applied(forces.reshape(count, points, *forces.shape[1:]))
-        whole = whole.reshape(-1, forces.shape[2])
-        states = np.abs(whole).max(axis=0, initial=0.0)
+        states = np.abs(whole).max(axis=(0, 1, 2), initial=0.0)
         states += np.abs(self.given.affine[:, :, 1 + k :]).max(axis=(0, 1), initial=0.0)
         return np.asarray(
             states + np.abs(self.given.local.own[:, :, 1 + 2 * n + k :]).max(axis=(0, 1), initial=0.0)

@@ -166,7 +166,8 @@ class Response:
         count, points = forces.shape[:2]
         flat = forces.reshape(count, points * forces.shape[2], -1)
         own = self.local.reshape(count, -1, flat.shape[1]) @ flat
-        return np.asarray((own + self._seen(at)).reshape(count, points, -1, *forces.shape[3:]))
+        shape = (count, points, len(self.modes.direct), *forces.shape[3:])
+        return np.asarray((own + self._seen(at)).reshape(shape))
 
     def _seen(self, at: Complex) -> Array:
         """States at the points by the modes at the left ends, (N, J, r): shape (N, a s, r)."""

@@ -67,27 +67,35 @@ def redistribute(
     without any error there: what Newton needs close to a kink.
     """
     wanted = density(orbit)
+    wanted *= ntst / float(wanted @ orbit.grid.width)
+    for growth in GROWTHS:
+        mesh = spread(orbit, growth * wanted, events, phases, shortest)
+        if mesh.ntst >= ntst:
+            break
+    return mesh
+
+
+def spread(
+    orbit: Orbit, wanted: Array, events: tuple[EventNode, ...], phases: Array, shortest: float
+) -> Mesh:
+    """Return a mesh for an orbit as `redistribute` does, of a density (N,) in intervals per unit of tau.
+
+    No interval holds more than SPLIT intervals of that density.
+    """
     period = orbit.mesh.period
     edges = np.append(orbit.grid.left, orbit.grid.left[0] + period)
-    total = np.append(0.0, np.cumsum(wanted * orbit.grid.width))
+    curve = np.array([edges, np.append(0.0, np.cumsum(wanted * orbit.grid.width))])
     begins = phases if events else np.zeros(1)
     ends = np.append(begins[1:], begins[0] + period)
-    segments = [
-        (begin, end, np.array([edges, total * ntst / total[-1]]))
-        for begin, end in zip(begins, ends, strict=True)
-    ]
-    for growth in GROWTHS:
-        breaks = tuple(_halved(begin, end, curve, growth, shortest) for begin, end, curve in segments)
-        if sum(len(b) - 1 for b in breaks) >= ntst:
-            break
+    breaks = tuple(_halved(begin, end, curve, shortest) for begin, end in zip(begins, ends, strict=True))
     return Mesh(orbit.mesh.scheme, breaks, events, period)
 
 
-def _halved(begin: float, end: float, curve: Array, growth: float, shortest: float) -> Array:
+def _halved(begin: float, end: float, curve: Array, shortest: float) -> Array:
     """Breaks of one segment, halved where an interval holds more than SPLIT of the curve's intervals."""
     sigma = np.linspace(0.0, 1.0, MIN_INTERVALS + 1)
     for _ in range(MAX_HALVINGS):
-        share = growth * np.diff(_cumulative(begin + sigma * (end - begin), *curve))
+        share = np.diff(_cumulative(begin + sigma * (end - begin), *curve))
         long = np.diff(sigma) * (end - begin) > shortest
         middle = (sigma[1:] + sigma[:-1])[(share > SPLIT) & long] / 2
         if len(middle) == 0:

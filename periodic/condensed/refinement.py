@@ -1,0 +1,84 @@
+"""Meshes of condensed orbits: equal intervals, or as fine as contacts, and motion between them, ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.collocation.method import CollocationRefinement
+from periodic.condensed.linearised import local_rows
+from periodic.correction.error import SAFETY
+from periodic.correction.meshes import AIM
+from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.redistribution import SPLIT, density, spread
+from periodic.orbit.scheme import Array
+from periodic.system import linear_of
+
+FINER, COARSER = 2.5, 2.0
+"""How many times shorter and longer intervals may become at a time."""
+
+FEWEST = 16
+"""Intervals a period at the least beside contacts: forces that drive the structure are polynomials there."""
+
+
+class CondensedRefinement(CollocationRefinement):
+    """Equal intervals where no kink asks for others: there all is known of one interval.
+
+    Else the motion is exact for its forces, so that intervals without any need but show it, and those with
+    forces that depend on it are as short as the multipliers ask for too.
+    """
+
+    def refined(self) -> Mesh:
+        """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
+        return super().refined() if self.system.switches else self._even()
+
+    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
+        """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        if self.system.switches:
+            yield from super().meshes()
+        else:
+            yield self._even(), np.zeros(0)
+
+    def _even(self) -> Mesh:
+        mesh = self.orbit.mesh
+        return Mesh(mesh.scheme, (np.linspace(0, 1, self._ntst + 1),), (), mesh.period)
+
+    def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        wanted = self._wanted
+        total = float(wanted @ self.orbit.grid.width)
+        scale = np.clip(total, self.method.ntst_min, self.method.ntst_max) / total
+        return spread(self.orbit, scale * wanted, events, phases, self.method.shortest)
+
+    @property
+    def _wanted(self) -> Array:
+        """Intervals a rad that are wanted in each interval, (N,)."""
+        orbit, width, error = self.orbit, self.orbit.grid.width, self.error
+        felt, active = self._felt
+        wanted = density(replace(orbit, nodes=orbit.nodes[:, felt], stages=orbit.stages[:, :, felt]))
+        lacking = SAFETY * error.multiplier if error.curable > error.motion else 0.0
+        points, share = orbit.mesh.scheme.ncol, wanted * width
+        wanted *= self._times(error.motion, points + 1) / (share if active.all() else share[~active]).mean()
+        wanted = np.maximum(wanted, FEWEST / orbit.mesh.period)
+        if not active.any():
+            return wanted
+        shorter = SPLIT * self._times(lacking, 2 * points - 1) / width[active].max()
+        return np.where(active, np.maximum(wanted, shorter), wanted)
+
+    def _times(self, error: float, order: int) -> float:
+        """How many times as many intervals bring an error of an order to its aim."""
+        ratio = error / (AIM * self.method.tolerance)
+        return float(np.clip(ratio, COARSER**-order, FINER**order)) ** (1 / order)
+
+    @property
+    def _felt(self) -> tuple[list[int], NDArray[np.bool_]]:
+        """States that are heard or that forces depend on, and the intervals with such forces, (N,)."""
+        orbit, part = self.orbit, linear_of(self.system)
+        n = orbit.nodes.shape[1]
+        assert part is not None
+        forces = np.abs(local_rows(self.system, part, orbit, ()).forces[:, :, 1 : 1 + 2 * n])
+        by_state = forces[:, :, n:].max(axis=(0, 1), initial=0.0) > 0
+        felt = [k for k in range(n) if by_state[k] or k not in part.velocities]
+        return felt, forces.reshape(len(orbit.grid.width), -1).max(axis=1, initial=0.0) > 0
