@@ -162,14 +162,16 @@ class Gap:
 def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
     """Return what is not accounted for between the points of a branch, in order along it.
 
-    turns: whether turns of the parameter have labels there, as folds of a branch have.
+    turns: whether turns of the parameter have labels there, as folds of a branch have. One that is named at a
+    touch may lie just before it.
     """
     entries, found = _on_touches(entries), []
+    folded = {entry.value for entry in entries if entry.touch and entry.label is Label.FOLD}
     both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
     for (last, entry), (before, after), turning in both:
         if not entry.after(before, turning):
             found.append(Gap(last.value, entry.value, _passed(before, after, entry.label)))
-        elif turns and _turned(last, entry):
+        elif turns and entry.value not in folded and _turned(last, entry):
             found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
     return found
 

@@ -173,7 +173,7 @@ def touching(system: System, orbit: Orbit) -> list[tuple[Extremum, int]]:
 
 def _same(system: System, orbit: Orbit, one: Extremum, other: Extremum) -> bool:
     """Whether two touches are one: a switch may stay there for a while."""
-    begin, end = held(system, orbit, one.phase)
+    begin, end = held(system, orbit, one.switch, one.phase)
     apart = np.mod(other.phase - begin + SHORT[0], orbit.mesh.period)
     return one.switch == other.switch and bool(apart <= end - begin + 2 * SHORT[0])
 
@@ -205,7 +205,7 @@ def inserted(
     """
     every = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
     for at, side in touches:
-        begin, end = held(system, orbit, at.phase)
+        begin, end = held(system, orbit, at.switch, at.phase)
         before, after = (length / 2, length / 2) if begin == end else (length, length ** (2 / 3))
         every.append((EventNode(at.switch, -side), begin - before))
         every.append((EventNode(at.switch, side), end + after))

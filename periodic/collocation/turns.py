@@ -72,8 +72,8 @@ def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
     return bool(slope[0] <= TURNING * slope.max())
 
 
-def held(system: System, orbit: Orbit, phase: float) -> tuple[float, float]:
-    """Return where the stretch of sticking about a phase begins and ends, the phase twice where it slips."""
+def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
+    """Return where sticking that holds a switch about a phase begins and ends; the phase twice if none."""
     for jump in slides_of(system):
         for j in group(system, orbit.mesh, jump):
             release = stuck_until(system, orbit, j)
@@ -81,14 +81,14 @@ def held(system: System, orbit: Orbit, phase: float) -> tuple[float, float]:
                 continue
             length = float((orbit.phases[release] - orbit.phases[j]) % orbit.mesh.period)
             since = float((phase - orbit.phases[j] + SAME) % orbit.mesh.period) - SAME
-            if since <= length + SAME:
+            if since <= length + SAME and _turns(system, orbit, j, switch):
                 return phase - since, phase - since + length
     return phase, phase
 
 
 def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
     """Return how far short of its level a touch is held: 0 but where friction turns the motion."""
-    begin, end = held(system, orbit, phase)
+    begin, end = held(system, orbit, switch, phase)
     events = zip(orbit.mesh.events, orbit.phases, strict=True)
     apart = [abs(_wrapped(begin - tau, orbit)) for e, tau in events if sliding(system, e.switch) is not None]
     if begin == end and min(apart, default=np.inf) > SAME:

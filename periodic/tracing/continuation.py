@@ -463,7 +463,8 @@ class Continuation:
                 return at.end, at
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), patient)
         if not new.ok:
-            raise RejectedError(new.outcome.value)
+            where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
+            raise RejectedError(f"{new.outcome.value}{where}")
         found = method.change(system, base.orbit, new.orbit)
         if found is None or not found.strict:
             return new, None

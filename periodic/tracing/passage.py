@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from periodic.correction.change import Change, Held
 from periodic.correction.condition import SideCondition
 from periodic.correction.identity import distance
@@ -62,11 +64,23 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         along = progress(solver, base, found.orbit)
         if not 0 < along <= LONGER * ds:
             return None
+        if _comes_back(found, change):
+            return None
         earlier = method.change(system, base.orbit, found.orbit)
         if earlier is None or (not change.strict and not earlier.strict):
             return Reached(found, along, change)
         change, near = earlier, found.orbit
     return None
+
+
+def _comes_back(found: Solution, change: Change) -> bool:
+    """Whether the branch comes back there from where its orbits are none of the system: it began before."""
+    row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
+    if not change.strict or row.stages is not None:  # extrema do not come and go within a step
+        return False
+    way = found.tangent
+    ahead = np.vdot(row.nodes, way.nodes) + row.outer @ np.append(way.phases, way.parameters)
+    return bool(ahead > 0)
 
 
 def _held(solver: Solver, guess: Orbit, held: Held) -> Solution:

@@ -350,14 +350,15 @@ def _ending(system: System, before: Orbit, after: Orbit, shortest: float) -> lis
         if end is None:
             continue
         half = VANISHING * float(now[i])
+        whole = end.lengths is BRIEF and _longest_slip(system, before, end.jump) <= 2 * now[i]
         nearest = next((length for length in end.lengths if length < half), half)
-        if then[i] > (max(half, nearest) if end.rooted else nearest):
+        nearest = end.lengths[-1] if whole else nearest
+        if then[i] > (max(half, nearest) if end.rooted and not whole else nearest):
             continue
         part = (now[i] ** 2 - nearest**2) / (2 * now[i] * (now[i] - then[i]))
         if not end.rooted:
             part = (now[i] - nearest) / (now[i] - then[i])
         final, name = nearest <= end.lengths[-1], system.switches[end.jump].name
-        whole = end.lengths is BRIEF and _longest_slip(system, before, end.jump) <= 2 * now[i]
         told = (
             f"{name} holds all along, at a place that is not determined"
             if whole
