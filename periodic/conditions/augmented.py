@@ -21,7 +21,7 @@ from periodic.equilibrium.held import oscillating_row, singular_row
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System
+from periodic.system import System, resets_of
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,14 @@ class FoldCondition(Condition):
 class DoublingCondition(Condition):
     """The orbit doubles its period (PD): a multiplier is -1."""
 
+    def check(self, system: System, parameter: Array) -> None:
+        """Refuse a system whose multiplier is positive."""
+        if not resets_of(system):
+            _two_states(self, system)
+
     def at(self, origin: Orbit, given: Given) -> SideCondition:
-        """Return the side condition near an orbit."""
+        """Return the side condition near an orbit. Raises ValueError for an equilibrium."""
+        of_orbits(self, origin)
         return _Singular(-1.0, Given(given.own))
 
 
@@ -48,12 +54,25 @@ class TorusCondition(Condition):
 
     def check(self, system: System, parameter: Array) -> None:
         """Refuse a system whose orbits have no pair of multipliers."""
-        if len(system.states) < 2:
-            raise ValueError("determined has TorusCondition(), which needs two states; the system has one")
+        _two_states(self, system)
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
-        """Return the side condition near an orbit."""
+        """Return the side condition near an orbit. Raises ValueError for an equilibrium."""
+        of_orbits(self, origin)
         return _Pair()
+
+
+def _two_states(condition: Condition, system: System) -> None:
+    if len(system.states) < 2:
+        name = type(condition).__name__
+        raise ValueError(f"determined has {name}(), which needs two states; the system has one")
+
+
+def of_orbits(condition: Condition, origin: Orbit) -> None:
+    """Refuse a condition of periodic orbits for an equilibrium. Raises ValueError."""
+    if origin.equilibrium:
+        name = type(condition).__name__
+        raise ValueError(f"determined has {name}(...), which holds orbits; it must be left out of equilibria")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from periodic.collocation.conditions import Clearance
 from periodic.collocation.dense import Dense
+from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -37,7 +38,8 @@ class GrazingCondition(Condition):
         index_of_switch(system, self.switch)
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
-        """Return the side condition near an orbit."""
+        """Return the side condition near an orbit. Raises ValueError for an equilibrium."""
+        of_orbits(self, origin)
         return _Grazing(self.switch)
 
 

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.unknowns import mean_weights, node_phase_gradient
 from periodic.orbit.orbit import FORCED, Orbit
@@ -44,7 +45,8 @@ class PhaseCondition(Condition):
             )
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
-        """Return the side condition with respect to an orbit."""
+        """Return the side condition with respect to an orbit. Raises ValueError for an equilibrium."""
+        of_orbits(self, origin)
         return _Phase(origin)
 
 

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from periodic.checks import named
 from periodic.conditions.adjoint import polynomial
 from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import smooth
 from periodic.conditions.variations import equations
 from periodic.correction.condition import Condition, side_conditions
+from periodic.correction.error import LEAST_SPAN
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
+
+MET = 1e-3
+"""How far Newton's step may lead from an orbit, in parts of its peak to peak and of what is determined."""
 
 
 def sensitivities(
@@ -52,8 +57,11 @@ def sensitivities(
     Raises
     ------
     ValueError
-        For a functional without derivative, and an orbit that is a Fourier series.
+        For a functional without derivative, an orbit that is a Fourier series, and one that does not fulfil
+        its equations or what is determined.
     """
+    named("functionals", functionals, "functionals")
+    named("determined", determined or {}, "conditions")
     orbit = as_read_by(system, orbit)
     polynomial(orbit)
     names = [p.name for p in system.parameters]
@@ -63,14 +71,33 @@ def sensitivities(
     closing = side_conditions(list((determined or {}).values()), own, orbit)
     rows = [condition.linearise(system, orbit, free) for condition in closing]
     rows += [_held(orbit, first + i, len(free)) for i in range(len(others))]
-    right = np.zeros((1 + len(rows), len(others)))
-    right[1 + len(own) :] = np.eye(len(others))
-    ways = equations(system, orbit, free).solve(rows, right)
+    right = np.zeros((1 + len(rows), 1 + len(others)))
+    right[0, 0] = 1.0
+    right[1 + len(own) :, 1:] = np.eye(len(others))
+    step, *ways = equations(system, orbit, free).solve(rows, right)
+    _check_met(orbit, step, [names[k] for k in own])
     found = {}
     for label, functional in functionals.items():
         slope = smooth(functional).linearise(system, orbit, free)
         found[label] = {names[k]: _along(slope, way) for k, way in zip(others, ways, strict=True)}
     return found
+
+
+def _check_met(orbit: Orbit, step: Increment, determined: Sequence[str]) -> None:
+    """Refuse an orbit that Newton's step still moves: it fulfils its equations or conditions elsewhere."""
+    for name, change in zip(determined, step.parameters, strict=False):
+        value = orbit.parameters[name]
+        if not abs(change) <= MET * max(abs(value), np.finfo(float).tiny):
+            raise ValueError(
+                f"{name} of the orbit is {value:.6g}, where its condition is not met; the orbit must be one "
+                f"that trace found with it (a labelled point, or determined={{{name!r}: ...}})"
+            )
+    apart = float(np.abs(step.profile).max()) / max(orbit.span(), LEAST_SPAN)
+    if not apart <= MET:
+        raise ValueError(
+            f"orbit is {apart:.1e} peaks to peak from the one at its parameters; it must be one that trace "
+            f"found there"
+        )
 
 
 def _held(orbit: Orbit, index: int, free: int) -> Row:

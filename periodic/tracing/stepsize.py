@@ -47,8 +47,9 @@ class ArclengthControl:
     max_points : int
         Bounds the steps in each direction.
     max_newton : int
-        Bounds the Newton iterations of one call up to one correction, those for rejected steps and for the
-        first orbit included. One costs a linear solve on about ntst_max intervals at most.
+        Bounds the Newton iterations of a branch up to one correction, those for rejected steps, for the first
+        orbit and before an interruption included. One costs a linear solve on about ntst_max intervals at
+        most.
 
     Raises
     ------

@@ -170,6 +170,7 @@ def trace(
     empty = joined(parameter, layout_of(system), [], made_with(ready))
     if before is not None:
         check(before, ready)
+        ready.work.iterations = before.newton_iterations
     first = ready.first() if before is None else problem.solved(start_of(before).orbit)
     runs = [ready.run(first, sign) for sign in ready.signs]
     generators: list[Iterator[Point]] = [*runs] if before is None else taken_up(runs, before)
@@ -255,7 +256,7 @@ def _joined(empty: Branch, runs: list[Continuation], elapsed: float, before: Bra
     halves = [Half(run.collected, run.stop, run.checkpoint) for run in runs if run.stop is not None]
     return replace(
         joined(empty.parameter, empty.layout, halves, empty.made),
-        newton_iterations=runs[0].solver.work.iterations + (before.newton_iterations if before else 0),
+        newton_iterations=runs[0].solver.work.iterations,
         elapsed=elapsed + (before.elapsed if before else 0.0),
         versions={name: _version(name) for name in ("orbitrace", "numpy", "scipy")},
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -102,7 +102,7 @@ class Watch:
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
-        return (*self.special, *events, *limits)
+        return (*map(_checked, self.special), *events, *limits)
 
     def measured(self, system: System, orbit: Orbit) -> dict[str, float]:
         """Return the columns of an orbit.
@@ -170,13 +170,29 @@ def _called(what: str, functional: Functional, system: System, orbit: Orbit) -> 
         raise ValueError(f"{what} failed with {why}; it must give a number for each orbit") from error
 
 
+def _checked(test: TestFunction) -> TestFunction:
+    """The same test function, refused where its value is no finite number."""
+    name = f"special point {test.label.value or test.name}"
+
+    def value(solution: Solution) -> float:
+        found = test.value(solution)
+        return _finite(name, found, solution)
+
+    return replace(test, value=value)
+
+
+def _finite(what: str, found: object, solution: Solution) -> float:
+    """A finite number. Raises ValueError that says where there is none."""
+    if not (isinstance(found, int | float | np.number) and math.isfinite(found)):
+        place = f"{solution.problem.parameter} = {solution.value:.10g}"
+        raise ValueError(f"{what} gave {found!r} at {place}; it must be a finite number")
+    return float(found)
+
+
 def _passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
     def value(solution: Solution) -> float:
         problem = solution.problem
         found = _called(f"event {name}", functional, problem.shown, problem.seen(solution.orbit))
-        if not (isinstance(found, int | float | np.number) and math.isfinite(found)):
-            place = f"{problem.parameter} = {solution.value:.10g}"
-            raise ValueError(f"event {name} gave {found!r} at {place}; it must be a finite number")
-        return apart(functional, float(found), level)
+        return apart(functional, _finite(f"event {name}", found, solution), level)
 
     return TestFunction(label=label, value=value, name=name)

@@ -2,9 +2,9 @@
 
     python tests/mutants/run.py [--count 100] [--seed 0] [--since COMMIT] [--limit SECONDS]
 
-The mutants are made in a clone of the last commit. Asked first are the test files that import a mutant's module
-or have its name, then the others of its folder, those of whole problems and those of its package, as far as the
-time for a mutant goes.
+The mutants are made in a clone of the last commit. Asked first are the test files that import a mutant's
+module or have its name, then the others of its folder, those of whole problems and those of its package, as
+far as the time for a mutant goes.
 """
 
 from __future__ import annotations

@@ -352,3 +352,46 @@ def test_gradient_of_every_functional_in_the_orbit() -> None:
         near = functional(system, moved(h)) - functional(system, moved(-h))
         far = functional(system, moved(2 * h)) - functional(system, moved(-2 * h))
         assert change == pytest.approx((8 * near - far) / (12 * h), rel=1e-7)
+
+
+def test_sensitivities_ask_for_an_orbit_that_meets_its_conditions() -> None:
+    """Assert that an orbit of other parameters, and one that is no fold, are refused; a fold is not."""
+    system, wanted = sym.scene("duffing"), {"place": per.Value("Omega")}
+    branch = per.trace(system, "Omega", (0.3, 3.0), tol=per.Accuracy.DRAFT)
+    fold = branch.labelled("LP")[0]
+    determined = {"Omega": per.FoldCondition()}
+    assert per.sensitivities(system, fold.orbit, wanted, determined=determined)["place"]["F"] > 0
+    with pytest.raises(ValueError, match="^Omega of the orbit is 0.3, where its condition is not met; "):
+        per.sensitivities(system, branch[0].orbit, wanted, determined=determined)
+    elsewhere = replace(branch[0].orbit, parameter=1.1 * branch[0].orbit.parameter)
+    with pytest.raises(ValueError, match="peaks to peak from the one at its parameters"):
+        per.sensitivities(system, elsewhere, wanted)
+    with pytest.raises(ValueError, match="^functionals is Value"):
+        per.sensitivities(system, fold.orbit, per.Value("Omega"))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("condition", [per.TorusCondition(), per.DoublingCondition(), per.PhaseCondition()])
+def test_conditions_of_orbits_are_refused_for_equilibria(condition: per.Condition) -> None:
+    """Assert that what holds a periodic orbit holds no equilibrium."""
+    system = sym.compile(
+        sym.Equations(lambda x, p: {"x": x.v, "v": p.mu * x.v - x.x}, {"x": 0.0, "v": 0.0}, {"mu": -0.1})
+    )
+    with pytest.raises(ValueError, match="which holds orbits; it must be left out of equilibria"):
+        per.equilibria(system, "mu", (-0.2, -0.1), determined={"omega": condition})
+
+
+def test_one_state_does_not_double() -> None:
+    """Assert that a doubling of a single state, whose multiplier is positive, is refused."""
+    values = {"a": 1.0, "w": 1.0}
+    system = sym.compile(
+        sym.Equations(lambda x, p, w: {"x": w.cos - p.a * x.x}, {"x": 0.0}, values, frequency="w")
+    )
+    with pytest.raises(ValueError, match="DoublingCondition.., which needs two states"):
+        per.trace(system, "w", (0.9, 1.1), determined={"a": per.DoublingCondition()})
+
+
+def test_special_points_by_no_number_are_refused() -> None:
+    """Assert that a test function that gives no finite number is named, with the place."""
+    nothing = per.TestFunction(label=per.Label.USER, value=lambda solution: float("nan"))
+    with pytest.raises(ValueError, match="^special point UZ gave nan at Omega = "):
+        per.trace(sym.scene("duffing"), "Omega", (0.9, 1.0), watch=per.Watch(special=(nothing,)))

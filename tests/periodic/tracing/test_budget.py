@@ -28,12 +28,16 @@ def test_no_more_is_spent(iterations: int) -> None:
 
 
 def test_goes_on_with_more() -> None:
-    """Assert that a branch that spent all it was allowed, again and again, ends as one that was not cut."""
+    """Assert that a branch that spent all it was allowed, again and again, ends as one that was not cut.
+
+    What is allowed is allowed to the branch: as much again gives no further point.
+    """
     options, expected = duffing_options(), whole("duffing")
     branch = per.trace(**options, control=allowed(100))
     parts = [len(branch)]
     while branch.stop.reason is per.Reason.MAX_NEWTON and len(parts) < 40:
-        branch = per.trace(**options, control=allowed(101), guess=branch)
+        assert len(per.trace(**options, control=allowed(100 * len(parts)), guess=branch)) == len(branch)
+        branch = per.trace(**options, control=allowed(100 * (len(parts) + 1)), guess=branch)
         parts.append(len(branch))
     assert len(parts) > 2 and parts == sorted(parts)
     assert branch.values == pytest.approx(expected.values, rel=1e-11)
