@@ -69,9 +69,9 @@ class ArclengthControl:
     slow: float = 0.7
     recovery: float = 4.0
     patience: int = 9
-    remesh_every: int = 10
-    remesh_above: float = 0.5
-    remesh_below: float = 1 / 20
+    remesh_every: int = 20
+    remesh_above: float = 0.7
+    remesh_below: float = 1 / 50
     smaller: float = 0.8
     meshes: int = 5
     max_points: int = 5000
