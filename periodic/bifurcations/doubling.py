@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from periodic.bifurcations.label import Label
@@ -16,7 +18,7 @@ NEGATIVE = 1e-3
 
 def passing(found: Complex, at: int) -> float:
     """prod (mu - at) / (1 + |mu|) of given multipliers; each factor over its size, so that none overflows."""
-    return float(np.prod((found - at) / (1 + np.abs(found))).real)
+    return float(math.prod(_factors(found, at)).real)
 
 
 def nearest(found: Complex, at: int) -> float:
@@ -24,8 +26,12 @@ def nearest(found: Complex, at: int) -> float:
 
     The product of all dips wherever one of many pairs passes.
     """
-    factors = np.abs((found - at) / (1 + np.abs(found)))
-    return float(np.sign(passing(found, at)) * np.prod(np.sort(factors)[:2]))
+    factors = _factors(found, at)
+    return math.copysign(math.prod(sorted(map(abs, factors))[:2]), math.prod(factors).real)
+
+
+def _factors(found: Complex, at: int) -> list[complex]:
+    return [(mu - at) / (1 + abs(mu)) for mu in found.tolist()]
 
 
 def dips(base: Solution, new: Solution, at: int) -> list[tuple[float, float]]:

@@ -182,7 +182,7 @@ def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
     for entry in entries:
         last = found[-1] if found else None
         same = last is not None and last.touch and entry.value == last.value
-        found.append(replace(entry, touch=same or entry.label is Label.GRAZING))
+        found.append(replace(entry, touch=True) if same or entry.label is Label.GRAZING else entry)
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class Stretch:
     def _solved(self, distance: float) -> Solution:
         solver, base = self.solver, self.base
         constraint = solver.constraint(base.orbit, base.tangent, distance)
-        newton, failure = replace(solver.tolerance.newton, close=0.0), Outcome.TOO_MANY
+        newton, failure = solver.tolerance.newton.closest, Outcome.TOO_MANY
         for guess in self._guesses(distance):
             found = solver.on(guess, constraint, newton)
             if found.ok:

@@ -234,6 +234,8 @@ class Collocation(Discretisation):
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
+        if not system.switches:
+            return None
         found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
         return min((c for c in found if c is not None), key=lambda c: c.part, default=None)
 

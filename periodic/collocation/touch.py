@@ -237,9 +237,9 @@ def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Chan
 
 
 def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Meeting | None:
-    own = [*exact(system), *(k for pair in slides_of(system).items() for k in (pair[0], *pair[1]))]
     if not before.mesh.events:
         return None
+    own = [*exact(system), *(k for pair in slides_of(system).items() for k in (pair[0], *pair[1]))]
     now, then = before.mesh.segment_lengths(before.phases), after.mesh.segment_lengths(after.phases)
     found, about = [], {i for turn in turns(system, before) for i in (turn.begin, turn.inside[-1])}
     for i, first in enumerate(before.mesh.events):

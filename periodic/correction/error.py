@@ -14,7 +14,7 @@ import numpy as np
 
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
-from periodic.correction.newton import Linearise, Linearised, NewtonSettings, linearised, moved
+from periodic.correction.newton import USUAL, Linearise, Linearised, NewtonSettings, linearised, moved
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
@@ -115,12 +115,12 @@ def deferred(
     closing = [*problem.side_conditions(fine), across]
     solve = solved or partial(linearised, linearise)
     try:
-        found = solve(problem.system, fine, problem.free, closing, NewtonSettings())
+        found = solve(problem.system, fine, problem.free, closing, USUAL)
         monodromy = found.fundamental[-1]
         if len(orbit.mesh.exact_ends) if kinked is None else kinked:
             onto_branch = found.increment + _along(found, problem, size_of(orbit))
             better = moved(problem.system, problem.free, found.orbit, onto_branch)
-            monodromy = solve(problem.system, better, problem.free, closing, NewtonSettings()).fundamental[-1]
+            monodromy = solve(problem.system, better, problem.free, closing, USUAL).fundamental[-1]
         multiplier = spectrum.apart(monodromy)
     except FAILURES:
         return UNKNOWN

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -60,6 +61,15 @@ class NewtonSettings:
         whole("max_halvings", self.max_halvings, 0)
         for name in ("max_change", "short", "negligible", "tiny"):
             positive(name, getattr(self, name))
+
+    @cached_property
+    def closest(self) -> NewtonSettings:
+        """The same for orbits that are linearised where they are, however near the last iterate was."""
+        return replace(self, close=0.0)
+
+
+USUAL = NewtonSettings()
+"""Of what is no iteration, but one step of it."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +143,7 @@ def correct(
 
     The outcome is on the result; nothing is raised for a numerical failure.
     """
-    settings = settings or NewtonSettings()
+    settings = settings or USUAL
     equations = _Equations(linearise, system, free, tuple(conditions), settings)
     found = equations.iterated(guess)
     orbit, outcome, last = found.orbit, found.outcome, found.last

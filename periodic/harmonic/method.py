@@ -12,7 +12,7 @@ from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
 from periodic.correction.meshes import Refinement
-from periodic.correction.newton import Correction, NewtonSettings, moved, newton_step
+from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import Balance, sampled
@@ -140,7 +140,7 @@ class HarmonicBalance(Discretisation):
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)
         across = ArclengthConstraint(fine, direction, 0.0, problem.scale, problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], NewtonSettings()
+        closing, newton = [*problem.side_conditions(fine), across], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
         except FAILURES:

@@ -21,7 +21,7 @@ from periodic.condensed.linearised import Linearised, Local, local_rows
 from periodic.condensed.response import Response
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
-from periodic.correction.newton import Correction, NewtonSettings, moved, newton_step
+from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import on_coefficients, projected
@@ -224,7 +224,7 @@ class SplitHarmonicBalance(HarmonicBalance):
         fine = with_unknowns(system, series(orbit, more))
         direction = tangent.restricted(orbit, fine)
         across = ArclengthConstraint(fine, direction, 0.0, problem.scale, problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], NewtonSettings()
+        closing, newton = [*problem.side_conditions(fine), across], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
             factor = newton.max_change / max(step.length, newton.max_change)

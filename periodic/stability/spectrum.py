@@ -128,8 +128,9 @@ class Spectrum:
     def pairs(self) -> list[Pair]:
         """A member of each complex pair of multipliers that is not 1 whatever the parameters."""
         multipliers = self.multipliers
-        unit = np.abs(multipliers - 1).argsort()[: self.trivial]
-        chosen = np.setdiff1d(np.flatnonzero(multipliers.imag > 0), unit).astype(int)
+        upper = multipliers.imag > 0
+        upper[np.abs(multipliers - 1).argsort()[: self.trivial]] = False
+        chosen = np.flatnonzero(upper)
         solutions = self.fundamental @ self.vectors[:, chosen]
         turns = np.angle((solutions[:-1].conj() * solutions[1:]).sum(axis=1)).sum(axis=0)
         both = zip(map(int, chosen), turns, self._sizes(solutions, chosen), strict=True)
@@ -187,8 +188,8 @@ class Spectrum:
         Unlike the multipliers themselves these stay smooth where two of them meet.
         """
         own, other = self.monodromy / self.radius, monodromy / self.radius
-        first = abs(np.trace(other) - np.trace(own))
-        second = abs(np.trace(other @ other) - np.trace(own @ own)) / 2
+        first = abs(other.trace() - own.trace())
+        second = abs(np.vdot(other, other.T) - np.vdot(own, own.T)) / 2
         return float(max(first, second))
 
     def start(self, change: Increment) -> Array:
@@ -208,4 +209,6 @@ class Spectrum:
 
 def without_trivial(multipliers: Complex, count: int) -> Complex:
     """Return the multipliers without the `count` that are nearest 1."""
+    if count == 0:
+        return multipliers
     return np.delete(multipliers, np.abs(multipliers - 1).argsort(kind="stable")[:count])

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turning import Found, at_once
 from periodic.correction.identity import closes, repeats, same
+from periodic.correction.newton import NewtonSettings
 from periodic.correction.predictor import tangent
 from periodic.correction.refinement import carried, is_refined, refined, remeshed
 from periodic.correction.solution import Solution
@@ -295,7 +297,7 @@ class Continuation:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
         assert self.state is not None
         ds, begin = self.state.ds, self.state.begun.value
-        control = replace(self.control, ds_min=self.state.least)
+        control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
         sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
         touching = standing(self.solver, base, ds) if self.state.steps == 0 else None
@@ -453,15 +455,13 @@ class Continuation:
     def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
         """The end of a step, and the change of pattern that it ends at, foreseen or found."""
         solver, system, method = self.solver, self.solver.problem.system, self.solver.discretisation
-        newton = solver.tolerance.newton
-        patient = replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
         guess = tangent(solver.problem, base, ds)
         foreseen = method.change(system, base.orbit, guess)
         if foreseen is not None:
             at = reached(solver, base, None, ds, foreseen)
             if at is not None:
                 return at.end, at
-        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), patient)
+        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
             where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
             raise RejectedError(f"{new.outcome.value}{where}")
@@ -472,6 +472,12 @@ class Continuation:
         if at is None:
             raise RejectedError(f"{found.name} within the step")
         return at.end, at
+
+    @cached_property
+    def _patient(self) -> NewtonSettings:
+        """Newton's settings for the end of a step."""
+        newton = self.solver.tolerance.newton
+        return replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
 
     def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
         """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -99,6 +99,21 @@ class ArclengthControl:
         if not pairs:
             raise ValueError(f"growth is {self.growth!r}; it must be pairs of a count and a positive factor")
 
+    def down_to(self, least: float) -> ArclengthControl:
+        """Return the control with another least step.
+
+        Parameters
+        ----------
+        least : float
+            The least step.
+
+        Returns
+        -------
+        ArclengthControl
+            Itself where it has that.
+        """
+        return self if least == self.ds_min else replace(self, ds_min=least)
+
     def next_size(self, ds: float, iterations: int, strain: float) -> float:
         """Return the next step from the Newton iterations and the strain of the last.
 
@@ -120,7 +135,7 @@ class ArclengthControl:
         if ds < self.ds and iterations <= self.growth[0][0]:
             factor = max(factor, min(self.recovery, self.ds / ds))
         factor = min(factor, self.aim / max(strain, self.aim / max(self.recovery, 2)))
-        return float(np.clip(ds * rounded(factor), self.ds_min, self.ds_max))
+        return min(max(ds * rounded(factor), self.ds_min), self.ds_max)
 
     def shorter(self, strain: float) -> float:
         """Return the part of a rejected step to be tried next.
@@ -135,7 +150,7 @@ class ArclengthControl:
         float
             The part, from 0.25 to 0.75.
         """
-        return rounded(float(np.clip(self.aim / strain, 0.25, 0.75)))
+        return rounded(min(max(self.aim / strain, 0.25), 0.75))
 
 
 def rounded(factor: float) -> float:

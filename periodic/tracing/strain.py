@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -54,7 +55,7 @@ def _motion(solution: Solution, ds: float) -> Motion:
 
 
 def _angle(cosine: float, least: float) -> float:
-    return float(np.arccos(np.clip(cosine, -1, 1)) / np.arccos(least))
+    return math.acos(min(max(cosine, -1.0), 1.0)) / math.acos(least)
 
 
 def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:

@@ -11,7 +11,7 @@ from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
 from periodic.collocation.unresolved import FAST
 from periodic.correction.error import STEEP, ErrorEstimate, relative
-from periodic.correction.newton import NewtonSettings
+from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP as STEEP_RATE
 from periodic.linear.unknowns import Increment, size_of
@@ -49,7 +49,7 @@ class Estimated:
 
 def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spectrum) -> Estimated | None:
     """Return the errors of an orbit that the parameter alone determines, or None where NumPy is to do."""
-    ready = prepared(problem.system, orbit, orbit.mesh.bisected(), problem.free, NewtonSettings())
+    ready = prepared(problem.system, orbit, orbit.mesh.bisected(), problem.free, USUAL)
     if ready is None:
         return None
     call, library = ready
