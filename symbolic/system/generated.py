@@ -15,7 +15,7 @@ from symbolic.kernels.kernel import Argument, batch, build, points, vector
 
 Kernel = Callable[..., None]
 
-SMALL = 31
+SMALL = 60
 """Number of states up to which the engine iterates in C."""
 
 

@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from periodic.collocation.native.elimination import ELIMINATION, LARGE
+from periodic.collocation.native.elimination import ELIMINATION, LARGE, full
 from periodic.correction.newton import NewtonSettings
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.mesh import Mesh
@@ -20,8 +20,8 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling, jumps_of, resets_of
 
-MOST = LARGE - 1
-"""Number of states up to which it is worth its while, whatever the matrices: see `LARGE`."""
+MOST = 60
+"""Number of states up to which it is worth its while; where matrices are full, up to `LARGE`."""
 
 _SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
 
@@ -77,7 +77,7 @@ def prepared(
     if n > MOST or orbit.equilibrium or len(free) != 1 or resets_of(system) or jumps_of(system):
         return None
     with_compiler, functions = compiling(system), _functions(system, free)
-    if with_compiler is None or functions is None:
+    if with_compiler is None or functions is None or (n >= LARGE and _full(system, orbit)):
         return None
     library = with_compiler.library(source(*_SOURCES))
     if library is None:
@@ -92,6 +92,12 @@ def prepared(
     for name, where in zip(_SYSTEM, functions, strict=True):
         setattr(call, name, where)
     return call, library
+
+
+def _full(system: System, orbit: Orbit) -> bool:
+    """Whether the derivatives in the states at the first collocation point are mostly other than 0."""
+    at = orbit.knot_rates[0, 1:2], orbit.stages[0, :1], orbit.algebraic[0, :1], orbit.stage_phases[0, :1]
+    return full(system.linearise(*at, orbit.parameter).d_state)
 
 
 def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:

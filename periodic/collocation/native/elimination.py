@@ -130,7 +130,12 @@ def routines(system: System, line: LinearisationLike) -> Routines | None:
 def _full(line: LinearisationLike) -> bool:
     """Whether the derivatives in the states at the first point are mostly other than 0."""
     first = line.part(slice(0, 1)) if isinstance(line, Evaluated) else line
-    return bool(np.count_nonzero(first.d_state[:1]) > FULL * first.d_state[:1].size)
+    return full(first.d_state[:1])
+
+
+def full(matrix: Array) -> bool:
+    """Return whether a matrix is mostly other than 0."""
+    return bool(np.count_nonzero(matrix) > FULL * matrix.size)
 
 
 def _parts(orbit: Orbit, line: LinearisationLike) -> Iterator[tuple[slice, LinearisationLike]]:

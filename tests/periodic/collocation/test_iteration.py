@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -39,7 +40,22 @@ def compiled(name: str, kernels: str = "c") -> sym.CompiledSystem:
     """A scene of the package with its kernels in C."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ORBITRACE_KERNELS", kernels)
-        return build(load(name))
+        return sym.compile(chain(20)) if name == "chain" else build(load(name))
+
+
+def chain(count: int) -> sym.Model:
+    """A chain of oscillators, whose matrices are mostly zeros."""
+    x = [sym.coordinate(f"x{i}") for i in range(count)]
+    parts: list[sym.Part] = [sym.HarmonicForce(x[0], 0.3)]
+    for q in x:
+        parts += [sym.Mass(q, 1.0), sym.Damper(q, 0.05), sym.Spring(q, 1.0), sym.CubicSpring(q, 0.1)]
+    return sym.combine([*parts, *(sym.Coupling(q, r, 0.05) for q, r in pairwise(x))])
+
+
+def begun(name: str) -> Orbit:
+    """The first orbit of a system's branch."""
+    one = per.ArclengthControl(max_points=1)
+    return per.trace(compiled(name), "Omega", (1.5, 1.6), control=one)[0].orbit
 
 
 @cache
@@ -71,7 +87,11 @@ def lost_contact() -> Orbit:
     return max((p.orbit for p in traces.disc().points), key=lambda orbit: len(orbit.phases))
 
 
-CASES = {"duffing": ("Omega", lambda: duffing().points[20].orbit), "vitrea79-810N": ("speed", lost_contact)}
+CASES = {
+    "duffing": ("Omega", lambda: duffing().points[20].orbit),
+    "vitrea79-810N": ("speed", lost_contact),
+    "chain": ("Omega", lambda: begun("chain")),
+}
 
 
 @pytest.mark.parametrize("close_to", [0.0, 1.0])
