@@ -11,7 +11,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
-AIM = 0.15
+AIM = 0.1
 """The part of the tolerance that a new mesh aims at."""
 
 
