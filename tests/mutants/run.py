@@ -3,7 +3,7 @@
     python tests/mutants/run.py [--count 100] [--seed 0] [--since COMMIT] [--limit SECONDS]
 
 The mutants are made in a clone of the last commit. Asked first are the test files that import a mutant's
-module or have its name, then the others of its folder, those of whole problems and those of its package, as
+module or have its name, then the others of its folder, those of whole problems, of its package, and all, as
 far as the time for a mutant goes.
 """
 
@@ -38,10 +38,10 @@ def stages(module: Path) -> list[list[str]]:
     importing = [path for path in every if f"from {dotted} import" in path.read_text("utf-8")]
     room = Path("tests", *module.parts[:-1])
     inside = [path for path in every if path.is_relative_to(room)]
+    own = [path for path in every if package in path.parts]
     whole = [path for path in every if path.is_relative_to("tests/problems")]
-    others = [path for path in every if package in path.parts]
     asked, found = set[Path](), list[list[str]]()
-    for stage in ([*nearest, *importing], inside, whole, others):
+    for stage in ([*nearest, *importing], inside, whole, own, every):
         new = [path for path in dict.fromkeys(stage) if path not in asked]
         asked |= set(new)
         found += [[str(path) for path in new]] if new else []

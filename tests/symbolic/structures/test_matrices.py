@@ -211,3 +211,10 @@ def test_files_that_do_not_fit_are_refused(known: sym.Matrices, tmp_path: Path) 
         arguments: Any = given
         with pytest.raises(ValueError, match=said):
             sym.read_matrices(**arguments)
+
+
+@pytest.mark.parametrize("count", [0, 4])
+def test_numbers_of_modes_that_there_are_not(count: int) -> None:
+    """Assert that no modes, and more than degrees of freedom, are refused."""
+    with pytest.raises(ValueError, match=f"^modes is {count}; it must be a whole number"):
+        modes(scipy.sparse.eye_array(3).tocsr(), scipy.sparse.eye_array(3).tocsr(), count)

@@ -1,0 +1,20 @@
+"""Tables of notebooks, and names in a line."""
+
+from symbolic.tables import MANY, table, told
+
+
+def test_table() -> None:
+    """Assert headings, cells and how many rows there are; nothing for a table without rows."""
+    found = table(["name", "unit"], [["x<y", "m"], ["v", "m/s"]], title="states")
+    assert "<summary>states (2)</summary>" in found
+    assert all(cell in found for cell in (">name<", ">unit<", ">x&lt;y<", ">m/s<"))
+    assert found.startswith("<details open>")
+    assert table(["name"], []) == ""
+    assert table(["name"], [["x"]] * (MANY + 1)).startswith("<details>")
+
+
+def test_names_in_a_line() -> None:
+    """Assert that many names are cut, with how many there are, and none are told."""
+    assert told(["a", "b"]) == "a, b"
+    assert told([]) == "none"
+    assert told(str(k) for k in range(MANY + 1)).endswith(f", ... ({MANY + 1})")
