@@ -51,8 +51,11 @@ SHORT = (1e-2, 1e-3, 1e-4)
 LINEAR = (*SHORT, 1e-5, 1e-6)
 """The same where the length grows in proportion to the parameter."""
 
-BRIEF = (1e-1, 3e-2, 1e-2)
+BRIEF = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 """The same of slips between two stretches of sticking, whose size falls as the cube of their length."""
+
+LAST = 1e-2
+"""Length (rad) of the last slips of a motion that will not slip any more."""
 
 VANISHING = 0.5
 """A stretch of which a step would leave this part, by its tangent, may end within the step."""
@@ -246,20 +249,21 @@ def _places(system: System, orbit: Orbit) -> list[Place]:
             sides, most = dense.expected(k, side), _most(dense, [k])
             for way in (int(way) for way in np.unique(sides) if way):
                 low = dense.minima(k, way)
-                found += [_turn(system, jump, e, way, way * dense.value(e) / most) for e in low]
+                found += [_turn(system, jump, e, way, way * dense.value(e), most) for e in low]
         found += _limits(system, orbit, jump)
     return found
 
 
-def _turn(system: System, jump: int, at: Extremum, side: int, value: float) -> Place:
-    """The place of an extremum on a given side of 0."""
+def _turn(system: System, jump: int, at: Extremum, side: int, value: float, most: float) -> Place:
+    """The place of an extremum on a given side of 0, its value and the largest one along the orbit."""
     up, down = slides_of(system)[jump]
-    condition = Clearance(at.switch, side, at.phase)
     if at.switch == jump:
         release = EventNode(up if side > 0 else down, side)
-        return Place(jump, at, condition, value, ((EventNode(jump, -side), -1.0), (release, 0.0)))
+        condition = Clearance(at.switch, side, at.phase)
+        return Place(jump, at, condition, value / most, ((EventNode(jump, -side), -1.0), (release, 0.0)))
     new = (EventNode(at.switch, -side), -1 / 3), (EventNode(jump, side), 2 / 3)
-    return Place(jump, at, condition, value, new)
+    condition = Clearance(at.switch, side, at.phase, SHORT_OF * most)
+    return Place(jump, at, condition, value / most, new)
 
 
 def _limits(system: System, orbit: Orbit, jump: int) -> list[Place]:
@@ -275,7 +279,7 @@ def _limits(system: System, orbit: Orbit, jump: int) -> list[Place]:
         d = orbit.mesh.events[j].direction
         onward, stuck = up if d > 0 else down, sticks(system, orbit.mesh, jump, j) is not None
         side, new = (-d, EventNode(jump, -d)) if stuck else (d, EventNode(onward, d))
-        condition = Limit(j, onward, side)
+        condition = Limit(j, onward, side, SHORT_OF * most)
         found.append(Place(jump, j, condition, side * float(value[onward]) / most, ((new, 1.0),)))
     return found
 
@@ -300,7 +304,7 @@ def wrong(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[
             sides, most = dense.expected(k, side), _most(dense, [k])
             for e in dense.unseen(k, side):
                 way = int(sides[e.interval])
-                found.append(_turn(system, jump, e, way, way * dense.value(e) / most))
+                found.append(_turn(system, jump, e, way, way * dense.value(e), most))
     return found
 
 
@@ -352,19 +356,19 @@ def _ending(system: System, before: Orbit, after: Orbit, shortest: float) -> lis
         half = VANISHING * float(now[i])
         whole = end.lengths is BRIEF and _longest_slip(system, before, end.jump) <= 2 * now[i]
         nearest = next((length for length in end.lengths if length < half), half)
-        nearest = end.lengths[-1] if whole else nearest
+        nearest = LAST if whole else nearest
         if then[i] > (max(half, nearest) if end.rooted and not whole else nearest):
             continue
         part = (now[i] ** 2 - nearest**2) / (2 * now[i] * (now[i] - then[i]))
         if not end.rooted:
             part = (now[i] - nearest) / (now[i] - then[i])
-        final, name = nearest <= end.lengths[-1], system.switches[end.jump].name
+        final, name = whole or nearest <= end.lengths[-1], system.switches[end.jump].name
         told = (
             f"{name} holds all along, at a place that is not determined"
             if whole
             else f"a stop at {name} ends"
         )
-        found.append(Ending(i, nearest, told, final, whole and final, min(float(part), 1.0), shortest))
+        found.append(Ending(i, nearest, told, final, whole, min(float(part), 1.0), shortest))
     return found
 
 
