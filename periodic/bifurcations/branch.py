@@ -44,4 +44,5 @@ BRANCHING = TestFunction(
     dips=lambda base, new: dips(base, new, 1),
     local=lambda solution: nearest(solution.spectrum.nontrivial, 1),
     touches=touches,
+    singular=True,
 )

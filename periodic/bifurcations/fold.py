@@ -14,6 +14,13 @@ VERTICAL = 1e-10
 """Slopes smaller than this, in ranges of the parameter, are rounding."""
 
 
+STEEP = 1e-5
+"""Slopes smaller than this, in ranges of the parameter, are those of a turn or of a vertical stretch."""
+
+REACH = 0.01
+"""A turn in a vertical stretch is one if the parameter changes by more than its error in a step as long."""
+
+
 def slope(solution: Solution) -> float:
     """d parameter / d arclength; 0 where the branch is vertical."""
     found = solution.tangent.parameter
@@ -30,6 +37,27 @@ def turns_twice(base: Solution, new: Solution) -> bool:
     ends = np.array([base.tangent.parameter, new.tangent.parameter])
     sign = np.sign(ends[0])
     return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())
+
+
+def moves(base: Solution, new: Solution) -> float:
+    """Return what the parameter changes by between two solutions beyond what it is known to (SI).
+
+    Where the branch is vertical, as in a canard explosion, that is its error across the branch.
+    """
+    return max(abs(new.value - base.value) - _blur(base, new), 0.0)
+
+
+def turns(base: Solution, new: Solution, ds: float) -> bool:
+    """Whether a slope that changes sign within a step is more than an error of the parameter along it."""
+    bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
+    return bend * max(ds, REACH) ** 2 / 2 > _blur(base, new)
+
+
+def _blur(base: Solution, new: Solution) -> float:
+    scale = base.problem.scale
+    if max(abs(end.tangent.parameter) for end in (base, new)) > STEEP * scale:
+        return VERTICAL * scale
+    return max(end.error.blur(end.value, scale) for end in (base, new))
 
 
 FOLD = TestFunction(label=Label.FOLD, value=slope, twice=turns_twice)

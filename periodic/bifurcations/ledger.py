@@ -15,6 +15,7 @@ import numpy as np
 
 from periodic.bifurcations import codim2
 from periodic.bifurcations.doubling import known as known_spectrum
+from periodic.bifurcations.fold import STEEP
 from periodic.bifurcations.label import Label
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
@@ -25,9 +26,6 @@ PASSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, La
 
 PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
 """Labels that say nothing of stability; of others nothing is known of what passes there."""
-
-STEEP = 1e-5
-"""Slopes of the parameter smaller than this, in parts of its range, are those of a turn."""
 
 BESIDE_END = 1e-3
 """Multipliers so near the circle at the end of a branch are on it: it may begin or end at a special point."""

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations import codim2
-from periodic.bifurcations.fold import FOLD, VERTICAL
+from periodic.bifurcations.across import crossing
+from periodic.bifurcations.fold import FOLD, moves, turns
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
 from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
 from periodic.bifurcations.turning import Found, is_one, named, shrinks
-from periodic.correction.problem import Problem
 from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -58,12 +58,12 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     """
     stretch = Stretch(solver, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    turns = [] if from_turn else _where(stretch, new, ds, FOLD, sought.course)
+    folds = [] if from_turn else _folds(stretch, new, ds, sought.course)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
-    pieces = [begin, *turns, Found(Label.NONE, ds, new)]
-    _check_ways(solver.problem, pieces)
-    found = turned = [named(stretch, turn, new, ds) for turn in turns]
-    for test in (*codim2.sought(new, bool(turns) or from_turn), *sought.tests):
+    pieces = [begin, *folds, Found(Label.NONE, ds, new)]
+    _check_ways(pieces)
+    found = turned = [named(stretch, turn, new, ds) for turn in folds]
+    for test in (*codim2.sought(new, bool(folds) or from_turn), *sought.tests):
         met = _where(stretch, new, ds, test, sought.course)
         found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
     found = found + _at_values(stretch, pieces, sought)
@@ -85,7 +85,7 @@ def _at_values(stretch: Stretch, pieces: list[Found], sought: Sought) -> list[Fo
     return found
 
 
-def _check_ways(problem: Problem, pieces: list[Found]) -> None:
+def _check_ways(pieces: list[Found]) -> None:
     """Reject a step whose end does not lie where the folds within it lead.
 
     Between folds the parameter goes the way of the tangent; an end on the other side is on another part of
@@ -94,8 +94,15 @@ def _check_ways(problem: Problem, pieces: list[Found]) -> None:
     for begin, end in zip(pieces[:-1], pieces[1:], strict=True):
         way = (end if begin.label is Label.FOLD else begin).solution.tangent.parameter
         change = end.solution.value - begin.solution.value
-        if change * way < 0 and abs(change) > VERTICAL * problem.scale:
+        if change * way < 0 and moves(begin.solution, end.solution) > 0:
             raise RejectedError("the step ends on another part of the branch")
+
+
+def _folds(stretch: Stretch, new: Solution, ds: float, course: Course) -> list[Found]:
+    """Locate the folds within a step, those that are more than an error of the parameter."""
+    if FOLD.value(stretch.base) * FOLD.value(new) < 0 and not turns(stretch.base, new, ds):
+        return []
+    return _where(stretch, new, ds, FOLD, course)
 
 
 def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction, course: Course) -> list[Found]:
@@ -136,8 +143,8 @@ def _between(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> 
 def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:
     """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
     solver, base, crossed = stretch.solver, stretch.base, test is not FOLD
-    precision, ends = test.precision * ds, [stretch.at(end) for end in span]
-    distance, solution = stretch.root(span, test.value, precision, aside=crossed)
+    ends = [stretch.at(end) for end in span]
+    distance, solution = _root(stretch, span, ds, test)
     turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.scale)
     if solution.orbit.equilibrium and turned < ALIGNED:
         raise RejectedError("a special point of another branch was met")
@@ -147,17 +154,26 @@ def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestF
         return [Found(test.label, distance, solution)]  # it has no size for its error to be a part of
     better = _accepted(solver, refined(solver, solution))
     if better is not solution:
-        solution = _again(solver, better, ds, test, aside=crossed)
+        solution = _again(solver, better, ds, test)
     return [Found(test.label, distance, solution, test.name)]
 
 
-def _again(solver: Solver, near: Solution, ds: float, test: TestFunction, aside: bool) -> Solution:
+def _root(
+    stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction
+) -> tuple[float, Solution]:
+    """Return distance and solution of the zero of a test function between two distances from the base."""
+    ends = [stretch.at(end).once(test.value) for end in span]
+    found = crossing(stretch, span, test) if test.singular and ends[0] * ends[1] < 0 else None
+    return found or stretch.root(span, test.value, test.precision * ds, aside=test is not FOLD)
+
+
+def _again(solver: Solver, near: Solution, ds: float, test: TestFunction) -> Solution:
     """Locate the zero of a test function about a solution near it."""
     around = Stretch(solver, near, {0.0: near})
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [test.value(around.at(side)) for side in (-reach, reach)]
         if ends[0] * ends[1] < 0:
-            return around.root((-reach, reach), test.value, test.precision * ds, aside=aside)[1]
+            return _root(around, (-reach, reach), ds, test)[1]
     raise RejectedError("a special point was not found again on a finer mesh")
 
 

@@ -108,5 +108,10 @@ HOPF = TestFunction(
     local=_growth,
 )
 BRANCHING = TestFunction(
-    label=Label.BRANCH, value=branching, genuine=_on_its_way, twice=_touches_twice, touches=crosses
+    label=Label.BRANCH,
+    value=branching,
+    genuine=_on_its_way,
+    twice=_touches_twice,
+    touches=crosses,
+    singular=True,
 )

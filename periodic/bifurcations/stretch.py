@@ -56,24 +56,34 @@ class Stretch:
     known: dict[float, Solution]
     end: float | None = None
 
-    def at(self, distance: float) -> Solution:
-        """Return the orbit at a distance. Raises RejectedError where there is none."""
+    def at(self, distance: float, *, nearest: bool = False) -> Solution:
+        """Return the orbit at a distance. Raises RejectedError where there is none.
+
+        nearest: whether it is looked for between the nearest orbits that are known, else from the base.
+        """
         if distance not in self.known:
-            self.known[distance] = self._solved(distance)
+            self.known[distance] = self._solved(distance, nearest)
         return self.known[distance]
 
-    def _solved(self, distance: float) -> Solution:
+    def _solved(self, distance: float, nearest: bool) -> Solution:
         solver, base = self.solver, self.base
         constraint = solver.constraint(base.orbit, base.tangent, distance)
         newton, failure = solver.tolerance.newton.closest, Outcome.TOO_MANY
-        for guess in self._guesses(distance):
+        for guess in self._guesses(distance, nearest):
             found = solver.on(guess, constraint, newton)
             if found.ok:
                 return found
             failure = found.outcome
         raise _NoOrbitError(failure.value, distance)
 
-    def _guesses(self, distance: float) -> Iterator[Orbit]:
+    def _guesses(self, distance: float, nearest: bool) -> Iterator[Orbit]:
+        below, above = (
+            max((k for k in self.known if k < distance), default=None),
+            min((k for k in self.known if k > distance), default=None),
+        )
+        if nearest and below is not None and above is not None:
+            a, b = self.known[below], self.known[above]
+            yield cubic(self.solver, a, b, above - below, distance - below, self.base)
         if self.end is not None:
             yield cubic(self.solver, self.base, self.known[self.end], self.end, distance)
         yield tangent(self.solver.problem, self.base, distance)

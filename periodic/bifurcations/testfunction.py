@@ -44,6 +44,8 @@ class TestFunction:
         A function of the same sign that is to be followed there, smooth about a change of sign.
     touches : callable
         Whether a turn of the branch, between a base and a new solution, is of that kind.
+    singular : bool
+        Whether branches cross where it vanishes, so that the equations are singular there.
     name : str
         The user's name of an event or limit.
     """
@@ -56,6 +58,7 @@ class TestFunction:
     dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
     local: Callable[[Solution], float] | None = None
     touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
+    singular: bool = False
     name: str = ""
 
     @property

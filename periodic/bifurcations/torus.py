@@ -14,6 +14,9 @@ from periodic.correction.solution import Solution
 from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
 from periodic.stability.winding import meetings
 
+LARGE = 1e300
+"""Multipliers' products are at most this."""
+
 
 def noise(solution: Solution) -> float:
     """What multipliers cannot be told apart by."""
@@ -32,10 +35,21 @@ def _both(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return np.triu_indices(count, 1)
 
 
+def _products(found: Complex) -> Complex:
+    """The products of all pairs, those beyond LARGE given as that."""
+    first, second = _both(len(found))
+    sizes = np.abs(found)
+    if sizes.max(initial=0.0) <= np.sqrt(LARGE):
+        return np.asarray(found[first] * found[second])
+    known = np.maximum(sizes, np.finfo(float).tiny)
+    logarithms, phases = np.log(known), found / known
+    both = np.minimum(logarithms[first] + logarithms[second], np.log(LARGE))
+    return np.asarray(phases[first] * phases[second] * np.exp(both))
+
+
 def torus_of(found: Complex, noise: float) -> float:
     """The torus test of given multipliers, their products known to within `noise`."""
-    first, second = _both(len(found))
-    products = found[first] * found[second]
+    products = _products(found)
     if (np.abs(products - 1) < noise).any():
         return 0.0
     return float(np.prod((products - 1) / (1 + np.abs(products))).real)
@@ -44,7 +58,7 @@ def torus_of(found: Complex, noise: float) -> float:
 def nearest_pair(found: Complex) -> list[int]:
     """Return the indices of the two multipliers whose product is nearest 1."""
     first, second = _both(len(found))
-    nearest = np.abs(found[first] * found[second] - 1).argmin()
+    nearest = np.abs(_products(found) - 1).argmin()
     return [int(first[nearest]), int(second[nearest])]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -15,12 +15,13 @@ from periodic.collocation.event import event_rows
 from periodic.collocation.jumping import graze, impacts, slide, turn
 from periodic.collocation.kinks import Crossing, KinkSettings
 from periodic.collocation.local import relax
+from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
+from periodic.collocation.multipliers.unresolved import lost
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.collocation.sides import group
-from periodic.collocation.unresolved import lost
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
@@ -36,7 +37,7 @@ from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.product import spectrum_of
+from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.spectrum import Spectrum
 from periodic.system import System, slides_of
 
@@ -180,7 +181,9 @@ class Collocation(Discretisation):
         to the multipliers where a contact is shallow.
         """
         off = aside(orbit, event_rows(system, orbit, free))
-        return linearised(partial(self._equations, off=off), system, orbit, free, conditions, settings)
+        given = (system, orbit, free, conditions, settings)
+        found = linearised(partial(self._equations, off=off), *given)
+        return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator))
 
     @property
     def _plain(self) -> bool:
@@ -195,9 +198,10 @@ class Collocation(Discretisation):
             return replace(correction, outcome=Outcome.THROUGH_STOP)
         if not impacts.crossed(system, correction.orbit):
             return replace(correction, outcome=Outcome.SLIDES)
-        if kinks.genuine(system, correction.orbit):
-            return correction
-        return replace(correction, outcome=Outcome.EVENTS_CROSSED)
+        if not kinks.genuine(system, correction.orbit):
+            return replace(correction, outcome=Outcome.EVENTS_CROSSED)
+        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
+        return SteppedCorrection(**given, system=system, equations=self.linearise)
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
@@ -213,7 +217,8 @@ class Collocation(Discretisation):
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh, where it can be in one call of C."""
         system, orbit = problem.system, correction.orbit
-        found = estimated(problem, orbit, tangent, spectrum) if self._plain else None
+        plain = self._plain and not isinstance(spectrum, GradedSpectrum)
+        found = estimated(problem, orbit, tangent, spectrum) if plain else None
         if found is None:
             error = deferred(self.linearise, problem, orbit, tangent, spectrum, solved=self._beside)
             found = Estimated(error, error is not UNKNOWN)
@@ -245,7 +250,8 @@ class Collocation(Discretisation):
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
-        return spectrum_of(correction.fundamental, correction.operator, trivial)
+        stepping = correction.stepping if isinstance(correction, SteppedCorrection) else correction.operator
+        return spectrum_of(correction.fundamental, stepping, trivial)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""

@@ -251,7 +251,7 @@ class LeadingSpectrum(Spectrum):
             return super()._sizes(solutions, chosen)
         return np.asarray(np.abs(self.leading.states @ self.vectors[:, chosen]).max(axis=(0, 1), initial=0.0))
 
-    def apart(self, monodromy: Array) -> float:
+    def apart(self, monodromy: Array, operator: object = None) -> float:
         """Distance from another spectrum of those that are not damped strongly.
 
         Of all multipliers in the sums of their powers, of the leading ones each from the nearest.

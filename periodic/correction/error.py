@@ -61,6 +61,10 @@ class ErrorEstimate:
         """What is held against the tolerance but for the multipliers."""
         return SAFETY * max(self.orbit, self.parameter)
 
+    def blur(self, value: float, scale: float) -> float:
+        """Return what a value of the parameter in a range of length `scale` is known to (SI)."""
+        return SAFETY * self.parameter * max(abs(value), SMALL * scale)
+
     @property
     def worst(self) -> float:
         """What is held against the tolerance."""
@@ -116,12 +120,12 @@ def deferred(
     solve = solved or partial(linearised, linearise)
     try:
         found = solve(problem.system, fine, problem.free, closing, USUAL)
-        monodromy = found.fundamental[-1]
+        beside = found
         if len(orbit.mesh.exact_ends) if kinked is None else kinked:
             onto_branch = found.increment + _along(found, problem, size_of(orbit))
             better = moved(problem.system, problem.free, found.orbit, onto_branch)
-            monodromy = solve(problem.system, better, problem.free, closing, USUAL).fundamental[-1]
-        multiplier = spectrum.apart(monodromy)
+            beside = solve(problem.system, better, problem.free, closing, USUAL)
+        multiplier = spectrum.apart(beside.fundamental[-1], beside.operator)
     except FAILURES:
         return UNKNOWN
     change = found.increment

@@ -263,12 +263,16 @@ def stretched(orbit: Orbit, increment: Increment) -> float:
 
 @dataclass(frozen=True)
 class Linearised:
-    """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n)."""
+    """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n).
+
+    operator: they themselves, where they are to be had.
+    """
 
     orbit: Orbit
     increment: Increment
     kernel: Increment
     fundamental: Array
+    operator: Operator | None = field(default=None, repr=False, compare=False)
 
 
 def linearised(
@@ -282,7 +286,8 @@ def linearised(
     """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
     step = newton_step(linearise, system, orbit, free, conditions, settings)
     kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
-    return Linearised(step.operator.orbit, step.increment, kernel, step.operator.fundamental)
+    operator = step.operator
+    return Linearised(operator.orbit, step.increment, kernel, operator.fundamental, operator)
 
 
 def in_order(orbit: Orbit) -> bool:

@@ -15,12 +15,16 @@ def tangent(problem: Problem, solution: Solution, distance: float) -> Orbit:
     return moved(problem.system, problem.free, solution.orbit, solution.tangent, distance)
 
 
-def cubic(solver: Solver, a: Solution, b: Solution, distance: float, place: float) -> Orbit:
+def cubic(
+    solver: Solver, a: Solution, b: Solution, distance: float, place: float, along: Solution | None = None
+) -> Orbit:
     """Return the cubic through two solutions on one mesh and their tangents, at `place` from the first.
 
-    Both are distances along the first one's tangent; `distance` is the second's.
+    Both are distances along the tangent of the first one, or of another solution on this mesh; `distance` is
+    the second's.
     """
-    constraint = solver.constraint(a.orbit, a.tangent, 0.0)
+    origin = along or a
+    constraint = solver.constraint(origin.orbit, origin.tangent, 0.0)
     theta, problem = place / distance, solver.problem
     chord = difference(problem, a.orbit, b.orbit).scaled(theta**2 * (3 - 2 * theta))
     begin = a.tangent.scaled(distance * theta * (1 - theta) ** 2 / constraint.rate(a.tangent))

@@ -110,3 +110,23 @@ class Solution:
     def refinement(self) -> Refinement:
         """What to change of the mesh."""
         return self.discretisation.refine(self.problem.system, self.orbit, self.error)
+
+
+@dataclass(frozen=True)
+class Between(Solution):
+    """A solution where the equations are singular, from those on either side on the same mesh.
+
+    There an estimate would tell rounding, magnified without bound: its errors are those of another beside it.
+
+    Parameters
+    ----------
+    beside : Solution
+        That one, at a distance.
+    """
+
+    beside: Solution = field(repr=False)
+
+    @property
+    def error(self) -> ErrorEstimate:
+        """The errors of the one beside it."""
+        return self.beside.error

@@ -24,6 +24,12 @@ from periodic.orbit.scheme import Array
 GROWTH = 1e6
 """Growth of motions within a period above which mesh points are not computed from the first one alone."""
 
+PLACES = 16
+"""Between so many places at the most growth is looked at."""
+
+MOST = 1e150
+"""Largest fundamental matrices that are given: products of two are finite."""
+
 SMALL = 16
 """Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
 
@@ -87,8 +93,15 @@ class Chain:
 
     @cached_property
     def maps(self) -> Array:
-        """The affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
-        return chain(self.condensed)
+        """The affine maps (1, dx_0, dy) -> dx_j, (N+1, n, 1+n+q); not finite where too large."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return chain(self.condensed)
+
+    @property
+    def flow(self) -> Array | None:
+        """dx/dtau at the joints, shape (N+1, n); None where states or equations jump."""
+        jumping = getattr(self.condensed, "perturbed", None) is not None
+        return None if jumping else self.orbit.end_rates[self._joints]
 
     @property
     def _joints(self) -> NDArray[np.int_]:
@@ -104,11 +117,20 @@ class Chain:
 
     @cached_property
     def fundamental(self) -> Array:
-        """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
-        if getattr(self.condensed, "perturbed", None) is not None:
-            steps = self.steps
-            return np.array(list(accumulate(steps, lambda m, step: step @ m, initial=np.eye(steps.shape[1]))))
-        return self.maps[:, :, 1 : 1 + self.maps.shape[1]]
+        """Fundamental matrices at the mesh points, shape (N+1, n, n), those beyond MOST scaled to it."""
+        if getattr(self.condensed, "perturbed", None) is None:
+            found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
+            if self.growth <= MOST:
+                return found
+        return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
+
+    @cached_property
+    def growth(self) -> float:
+        """How much motions grow at the most from one joint to another; of large systems from the first."""
+        if self.maps.shape[1] <= SMALL:
+            return between_any(self.steps)
+        found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
+        return found if np.isfinite(found) else np.inf
 
     @property
     def effect(self) -> Array:
@@ -124,8 +146,7 @@ class Chain:
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
         orbit, n, count = self.orbit, self.maps.shape[1], len(self.own)
-        growth = np.abs(self.maps[:, :, 1 : 1 + n]).max()
-        if growth > GROWTH:
+        if self.growth > GROWTH:
             maps, top = self._from_both_ends()
         else:
             maps, top = self.maps, self.maps[-1].copy()
@@ -198,6 +219,32 @@ def _after(later: Array, earlier: Array) -> Array:
     both[:, :, 0] += later[:, :, 0]
     both[:, :, 1 + n :] += later[:, :, 1 + n :]
     return both
+
+
+def between_any(steps: Array) -> float:
+    """Return the largest element of the products of consecutive steps (N, n, n): of most of them at least.
+
+    They are joined in pairs until few are left.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        while len(steps) > PLACES:
+            even = len(steps) // 2 * 2
+            steps = np.concatenate([steps[1:even:2] @ steps[:even:2], steps[even:]])
+        products = np.broadcast_to(np.eye(steps.shape[1]), steps.shape).copy()
+        largest = 1.0
+        for j, step in enumerate(steps):
+            products[: j + 1] = step @ products[: j + 1]
+            largest = max(largest, float(np.abs(products[: j + 1]).max()))
+            if not np.isfinite(products[: j + 1]).all():
+                return np.inf
+    return largest
+
+
+def _after_bounded(before: Array, step: Array) -> Array:
+    """A product of two matrices, scaled down to MOST if it is larger."""
+    product = step @ before
+    size = float(np.abs(product).max())
+    return product if size <= MOST else product * (MOST / size)
 
 
 def onto_start(row: Row, maps: Array) -> Array:

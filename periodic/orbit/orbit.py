@@ -195,6 +195,17 @@ class Orbit:
         rates = self.knot_rates[:, 0, :]
         return np.concatenate([rates, rates[:1]])
 
+    @property
+    def end_rates(self) -> Array:
+        """dx/dtau at the mesh points, where the scheme collocates at their ends as exact as the equations.
+
+        From the interval on the left, shape (N+1, n).
+        """
+        if self.mesh.scheme.points[-1] < 1.0:
+            return self.node_rates
+        rates = self.knot_rates[:, -1, :]
+        return np.concatenate([rates[-1:], rates])
+
     def locate(self, tau: Array) -> tuple[NDArray[np.int_], Array]:
         """Return where phases lie on the mesh.
 

@@ -13,6 +13,7 @@ class Reason(Enum):
     CLOSED = "branch closed"
     ASKED = "stopped as asked"
     EQUILIBRIUM = "equilibrium reached"
+    HOMOCLINIC = "homoclinic orbit reached"
     MAX_POINTS = "largest number of points reached"
     MAX_NEWTON = "largest number of Newton iterations reached"
     SMALL_STEP = "step size below its minimum"
@@ -117,6 +118,17 @@ class Stop:
             How many points there are.
         """
         return cls(Reason.EQUILIBRIUM, f"the orbits shrank to it after {count} points")
+
+    @classmethod
+    def homoclinic(cls, period: float) -> Stop:
+        """Return that autonomous orbits grow longer without bound.
+
+        Parameters
+        ----------
+        period : float
+            The last one's (s).
+        """
+        return cls(Reason.HOMOCLINIC, f"the period grows without bound, {period:.4g} s here")
 
     @classmethod
     def interrupted(cls, count: int) -> Stop:

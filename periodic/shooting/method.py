@@ -28,7 +28,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
 from periodic.shooting.flow import condense
-from periodic.stability.product import spectrum_of
+from periodic.stability.graded import spectrum_of
 from periodic.stability.spectrum import Spectrum
 from periodic.system import Flowing, System, check_continuous
 

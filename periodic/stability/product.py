@@ -14,9 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
 
 APART = np.log(10.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
@@ -32,14 +30,19 @@ ROUNDING = float(np.finfo(float).eps)
 TINY = float(np.finfo(float).tiny)
 """What grows by less in an interval is gone, as where a motion begins to stick."""
 
+MOST = 300 * np.log(10.0)
+"""Larger multipliers (a logarithm) are given as this one."""
+
 
 def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]:
     """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first.
 
     known: the relative error of the steps. Eigenvalues are 0 whose motions a step makes smaller than that:
-    of them the steps say nothing more.
+    of them the steps say nothing more. Of those beyond 1e300 the modulus is given as that.
     """
     n = steps.shape[1]
+    if n == 1:
+        return _of_block(steps, np.eye(1))
     basis = np.eye(n)
     for _ in range(PERIODS):
         begun, triangles = basis, np.empty_like(steps)
@@ -57,21 +60,20 @@ def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]
     return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])
 
 
-def spectrum_of(fundamental: Array, operator: object, trivial: int, known: float = ROUNDING) -> Spectrum:
-    """Return the spectrum of an orbit, from the steps of its operator where motions grow by many decades."""
-    steps = getattr(operator, "steps", None)
-    if steps is None or not np.abs(fundamental).max() > GROWTH:
-        return Spectrum(fundamental, trivial)
-    return Spectrum(fundamental, trivial, known_better=multipliers(steps, known))
-
-
 def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
     """Eigenvalues of turn @ factors[-1] ... factors[0], largest modulus first."""
+    if len(turn) == 1:
+        sizes = np.maximum(np.abs(factors[:, 0, 0]), TINY)
+        total = float(np.log(sizes).sum())
+        sign = turn[0, 0] * np.prod(np.sign(factors[:, 0, 0]))
+        return np.array([sign * np.exp(min(total, MOST))], dtype=np.complex128)
     product, logarithm = np.eye(len(turn)), 0.0
     for factor in factors:
         product = factor @ product
         size = max(float(np.abs(product).max()), TINY)
         product, logarithm = product / size, logarithm + float(np.log(size))
-    with np.errstate(over="ignore"):
-        values = np.linalg.eigvals(turn @ product) * np.exp(logarithm)
+    values = np.linalg.eigvals(turn @ product)
+    sizes = np.abs(values)
+    known = np.log(np.maximum(sizes, TINY)) + logarithm
+    values = values * np.exp(np.minimum(known, MOST) - np.log(np.maximum(sizes, TINY)))
     return values[np.argsort(-np.abs(values), kind="stable")].astype(np.complex128)

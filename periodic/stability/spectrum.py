@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 
@@ -88,13 +88,10 @@ class Spectrum:
         the Jacobian in 1/s, shape (1, n, n).
     trivial : int
         How many multipliers are 1 whatever the parameters.
-    known_better : ndarray of complex, shape (n,), optional
-        The multipliers, largest first, where the monodromy matrix has lost the small ones.
     """
 
     fundamental: Array
     trivial: int = 0
-    known_better: Complex | None = field(default=None, kw_only=True)
 
     @property
     def monodromy(self) -> Array:
@@ -104,9 +101,6 @@ class Spectrum:
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:
         values, vectors = np.linalg.eig(self.monodromy)
-        if self.known_better is not None:
-            values = values.astype(np.complex128)
-            values[np.argsort(-np.abs(values), kind="stable")] = self.known_better
         return values.astype(np.complex128), vectors.astype(np.complex128)
 
     @property
@@ -182,8 +176,10 @@ class Spectrum:
         product = found @ self.vectors[:, k]
         return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
 
-    def apart(self, monodromy: Array) -> float:
+    def apart(self, monodromy: Array, operator: object = None) -> float:
         """Distance from another spectrum in the sums of first and second powers, over the largest multiplier.
+
+        operator: the equations that it belongs to, where these say more than their monodromy matrix.
 
         Unlike the multipliers themselves these stay smooth where two of them meet.
         """

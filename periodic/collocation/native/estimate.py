@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.collocation.multipliers.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.collocation.unresolved import FAST
 from periodic.correction.error import STEEP, ErrorEstimate, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem

@@ -14,9 +14,9 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation.multipliers.unresolved import lost
 from periodic.collocation.native import call, iteration
 from periodic.collocation.native.estimate import estimated
-from periodic.collocation.unresolved import lost
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import deferred
 from periodic.correction.newton import NewtonSettings, correct

@@ -23,7 +23,7 @@ Complex = NDArray[np.complex128]
 def lost(system: System, orbit: Orbit) -> float:
     """Return by how much the multiplier of the least damped of such vibrations comes out too small."""
     width = orbit.grid.width
-    jacobian = _jacobians(system, orbit) * width[:, None, None]
+    jacobian = jacobians(system, orbit) * width[:, None, None]
     large = np.abs(jacobian @ jacobian).sum(axis=2).max(axis=1) > FAST**2
     if not (large.any() and np.isfinite(jacobian).all()):
         return 0.0
@@ -39,8 +39,8 @@ def lost(system: System, orbit: Orbit) -> float:
     return float(np.exp(min(true, 0.0)) - np.exp(min(found, 0.0)))
 
 
-def _jacobians(system: System, orbit: Orbit) -> Array:
-    """J of dx' = J dx about the middle of every interval, (N, n, n); not a number where it has none."""
+def jacobians(system: System, orbit: Orbit) -> Array:
+    """Return J of dx' = J dx about the middle of every interval, (N, n, n); NaN where it has none."""
     k, n = orbit.mesh.scheme.ncol // 2, orbit.nodes.shape[1]
     at = orbit.knot_rates[:, 1 + k], orbit.stages[:, k], orbit.algebraic[:, k], orbit.stage_phases[:, k]
     found = system.linearise(*at, orbit.parameter)

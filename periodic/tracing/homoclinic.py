@@ -1,0 +1,58 @@
+"""Branches of autonomous orbits that end at a homoclinic or heteroclinic orbit: their periods grow forever.
+
+The nearer the orbits pass to an equilibrium the longer they stay, T ~ -log|p - p*|, so that the parameter
+stops changing long before the period does: nothing of the branch is left that its arclength could find.
+
+References
+----------
+Kuznetsov, Elements of Applied Bifurcation Theory, 6.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from periodic.bifurcations import codim2
+from periodic.bifurcations.fold import VERTICAL
+from periodic.conditions.phase import PhaseCondition
+from periodic.correction.problem import Problem
+from periodic.results.point import Point
+
+LONGER = 10.0
+"""How many times as long orbits have become since the parameter changed by more than its error."""
+
+STILL = 1e-3
+"""Least speed on such an orbit, as a part of the largest."""
+
+
+def period(problem: Problem, points: Sequence[Point]) -> float | None:
+    """Return the period of the last point (s) where orbits grow longer without bound, None elsewhere.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is solved.
+    points : sequence of Point
+        The branch so far.
+    """
+    at = [k for k, condition in enumerate(problem.conditions) if isinstance(condition, PhaseCondition)]
+    if len(at) != 1 or codim2.picked(problem) is not None:
+        return None
+    omega, last = problem.others[at[0]], points[-1]
+    speeds = np.linalg.norm(last.orbit.node_rates, axis=1)
+    if speeds.min() > STILL * speeds.max():
+        return None
+    longest = _period(last, omega)
+    for point in reversed(points):
+        blur = max(p.error.blur(p.parameter, problem.scale) for p in (point, last))
+        if abs(point.parameter - last.parameter) > max(blur, VERTICAL * problem.scale):
+            return None
+        if longest > LONGER * _period(point, omega):
+            return longest
+    return None
+
+
+def _period(point: Point, omega: int) -> float:
+    return float(point.orbit.mesh.period / point.orbit.parameter[omega])
