@@ -2,7 +2,6 @@
 
 from .bifurcations.hopf import eigenvalues, hopf, mode
 from .bifurcations.label import Label
-from .bifurcations.normalform import first_lyapunov
 from .bifurcations.switching import SwitchError, branched, doubled
 from .bifurcations.testfunction import TestFunction
 from .collocation.kinks import KinkSettings
@@ -24,6 +23,7 @@ from .correction.problem import Problem
 from .correction.solution import Solution
 from .correction.tolerance import Accuracy, Tolerance
 from .equilibrium.method import Equilibrium
+from .equilibrium.normalform import first_lyapunov
 from .harmonic.method import HarmonicBalance
 from .linear.operator import Operator
 from .linear.unknowns import Increment, Unknowns
