@@ -21,6 +21,8 @@ from periodic.conditions.augmented import DoublingCondition, FoldCondition, Hopf
 from periodic.correction.condition import Condition
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
+from periodic.equilibrium.method import Equilibrium
+from periodic.equilibrium.normalform import first_lyapunov
 from periodic.linear.unknowns import mean_weights
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Complex, Stability
@@ -74,6 +76,19 @@ def _complex_beside(solution: Solution) -> bool:
     return complex_pair(_beside(solution))
 
 
+def _lyapunov(solution: Solution) -> float:
+    """The first Lyapunov coefficient: orbits are born on the other side beyond where it vanishes (Bautin)."""
+    method = solution.discretisation
+    assert isinstance(method, Equilibrium)
+    return first_lyapunov(solution.problem.system, solution.orbit, method.frequency)
+
+
+def _determinant(solution: Solution) -> float:
+    """The product of the eigenvalues, each over the largest one: a real one passes 0 beside the pair."""
+    found = solution.spectrum.multipliers
+    return float(np.prod(found / np.abs(found).max()).real)
+
+
 FOLDS = (
     TestFunction(label=Label.RESONANCE_1, value=lambda solution: second_at(solution, 1.0)),
     TestFunction(label=Label.FOLD_DOUBLING, value=doubling),
@@ -92,11 +107,15 @@ TORI = (
     TestFunction(label=Label.FOLD_TORUS, value=lambda solution: _passing_beside(solution, 1)),
     TestFunction(label=Label.DOUBLING_TORUS, value=lambda solution: _passing_beside(solution, -1)),
 )
+HOPFS = (
+    TestFunction(label=Label.BAUTIN, value=_lyapunov),
+    TestFunction(label=Label.ZERO_HOPF, value=_determinant),
+)
 CURVES: dict[type, tuple[TestFunction, ...]] = {
     FoldCondition: FOLDS,
     DoublingCondition: DOUBLINGS,
     TorusCondition: TORI,
-    HopfCondition: (),
+    HopfCondition: HOPFS,
 }
 HELD: dict[type, float] = {FoldCondition: 1.0, DoublingCondition: -1.0}
 
@@ -127,7 +146,8 @@ def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
     if condition is None:
         return PASSAGES[decides] + (() if turned else BESIDE_TURNS[decides])
     if type(condition) in CURVES:
-        return CURVES[type(condition)] if decides is Stability.MULTIPLIERS else ()
+        of_equilibria = type(condition) is HopfCondition
+        return CURVES[type(condition)] if of_equilibria or decides is Stability.MULTIPLIERS else ()
     return (*PASSAGES[decides], TestFunction(label=Label.FOLD, value=branching))
 
 

@@ -48,6 +48,8 @@ class Label(str):
     FOLD_DOUBLING: ClassVar[Label]
     FOLD_TORUS: ClassVar[Label]
     DOUBLING_TORUS: ClassVar[Label]
+    BAUTIN: ClassVar[Label]
+    ZERO_HOPF: ClassVar[Label]
 
     def __new__(cls, text: str) -> Label:
         found = cls._registered.get(text)
@@ -114,3 +116,5 @@ Label.RESONANCE_4 = Label.register("R4")
 Label.FOLD_DOUBLING = Label.register("LPPD")
 Label.FOLD_TORUS = Label.register("LPNS")
 Label.DOUBLING_TORUS = Label.register("PDNS")
+Label.BAUTIN = Label.register("GH")
+Label.ZERO_HOPF = Label.register("ZH")

@@ -164,6 +164,8 @@ def _root(
     """Return distance and solution of the zero of a test function between two distances from the base."""
     ends = [stretch.at(end).once(test.value) for end in span]
     found = crossing(stretch, span, test) if test.singular and ends[0] * ends[1] < 0 else None
+    if found is None and test.singular and stretch.base.orbit.equilibrium and ends[0] * ends[1] < 0:
+        raise RejectedError("the step leads to another branch, which crosses this one")
     return found or stretch.root(span, test.value, test.precision * ds, aside=test is not FOLD)
 
 

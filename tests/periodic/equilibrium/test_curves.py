@@ -53,6 +53,21 @@ def test_curve_of_hopf_points() -> None:
         assert per.eigenvalues(system, point.orbit) == pytest.approx(point.multipliers)
 
 
+def test_what_a_hopf_curve_passes() -> None:
+    """Assert GH where the normal form's cubic term vanishes, and ZH where a real eigenvalue passes 0."""
+
+    def rates(x: Any, p: Any) -> dict[str, Any]:
+        square = x.x**2 + x.y**2
+        growth = p.a + (p.b - 0.3) * square - square**2
+        return {"x": growth * x.x - x.y, "y": x.x + growth * x.y, "z": (p.b - 0.6) * x.z - x.z**3}
+
+    system = sym.compile(sym.Equations(rates, dict.fromkeys("xyz", 0.0), {"a": -1.0, "b": 0.1}))
+    (hopf,) = per.equilibria(system, "a", (-1, 1)).labelled("HB")
+    curve = per.equilibria(system, "b", (0, 1), guess=hopf.orbit, determined={"a": per.HopfCondition()})
+    found = [(p.label.value, p.parameter) for p in curve.special_points if p.label != "EP"]
+    assert found == [("GH", pytest.approx(0.3, abs=1e-9)), ("ZH", pytest.approx(0.6, abs=1e-9))]
+
+
 def test_hopf_condition_is_for_equilibria() -> None:
     """Assert the sentence for orbits."""
     system = stuart_landau()

@@ -271,6 +271,19 @@ def test_pitchfork_of_one_state_seen_from_the_branch_that_turns() -> None:
     assert places(branch) == pytest.approx([0], abs=1e-9)
 
 
+def test_branch_points_of_curved_branches() -> None:
+    """Assert where a parabola and a line cross, and a circle and a line, to all digits of their roots."""
+    curves = {
+        "parabola": (lambda x, p: (x.x - p.mu**2) * (x.x - p.mu + 0.1), 0.5, np.sqrt(0.15)),
+        "circle": (lambda x, p: (x.x**2 + p.mu**2 - 1) * (x.x - p.mu), 0.0, np.sqrt(0.5)),
+    }
+    for made, middle, apart in curves.values():
+        rates = sym.Equations(lambda x, p, f=made: {"x": -f(x, p)}, {"x": 0.0}, {"mu": 0.0})
+        branch = per.equilibria(sym.compile(rates), "mu", (-2, 2), start=0.0, guess={"x": 1.0 - 2 * middle})
+        places = sorted(point.parameter for point in branch.labelled("BP"))
+        assert places == pytest.approx([middle - apart, middle + apart], rel=1e-10)
+
+
 def test_transcritical_branches() -> None:
     """Assert that of two crossing branches the one that is not left is returned, either way."""
     system = equations(lambda x, p: {"x": (p.mu - x.x) * (x.x + 2 * p.mu)}, {"x": 0.0}, mu=-1.0)
