@@ -27,6 +27,8 @@ KINDS: dict[str, tuple[str, str]] = {
     "LPPD": ("p", "fold and doubling"),
     "LPNS": ("p", "fold and torus"),
     "PDNS": ("p", "doubling and torus"),
+    "GH": ("*", "Bautin"),
+    "ZH": ("p", "zero and Hopf"),
 }
 """Sign and meaning of each label; other labels have a sign of their own without a meaning."""
 
