@@ -193,7 +193,11 @@ class Continuation:
         base = found.found(self.start, float(self.sign))
         if not base.ok:
             beyond = found.shortfall
-            self.stop = Stop.inaccurate(beyond) if beyond else Stop.no_start(found.why_not(base.outcome))
+            self.stop = (
+                Stop.inaccurate(beyond)
+                if beyond
+                else Stop.no_start(found.why_not(base.outcome, self.start.parameter))
+            )
             return
         if base.error.motion > solver.tolerance.orbit:
             self.stop = Stop.inaccurate(base.refinement.shortfall)

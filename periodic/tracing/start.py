@@ -13,8 +13,10 @@ from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
+from periodic.tracing.drift import drifting
 from periodic.tracing.settling import settled
 
 COLLAPSED = 0.1
@@ -76,12 +78,15 @@ class Start:
                 return last
         return first
 
-    def why_not(self, outcome: Outcome) -> str:
-        """Say why there is no first orbit, what was tried, and what else there is."""
+    def why_not(self, outcome: Outcome, parameter: Array) -> str:
+        """Say why there is no first orbit at parameters (p,), what was tried, and what else there is."""
         if not self.tried:
             return outcome.value
+        problem = self.solver.problem
+        free = [] if problem.autonomous else drifting(problem.system, parameter)
+        held = f"; nothing holds {' and '.join(free)}" if free else ""
         return (
-            f"{outcome.value}; nor was one found from {', '.join(self.tried)}; "
+            f"{outcome.value}{held}; nor was one found from {', '.join(self.tried)}; "
             f"guess=per.sampled(...) takes a motion from a simulation"
         )
 

@@ -108,3 +108,14 @@ def test_relaxation_oscillation_from_samples(begin: int) -> None:
     branch = per.trace(system, "a", (0.0, 0.5), guess=guess, determined=free, control=FEW)
     assert len(branch) == 3
     assert 2 * np.pi / branch[0].orbit.omega == pytest.approx(period, rel=1e-9)
+
+
+def test_what_nothing_holds_is_named() -> None:
+    """Assert that two masses joined to each other alone have no first orbit, and that this is said."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    model = sym.Mass(x, 1.0) + sym.Mass(y, 2.0) + sym.Spring(x, 1.0, to=y) + sym.Damper(x, 0.1, to=y)
+    free = sym.compile(model + sym.HarmonicForce(x, 1.0))
+    few = per.ArclengthControl(max_newton=2000)
+    branch = per.trace(free, "Omega", (0.5, 2.0), tol=per.Accuracy.DRAFT, control=few)
+    assert branch.stop.reason is per.Reason.NO_START
+    assert "; nothing holds x and y; nor was one found from" in branch.stop.detail

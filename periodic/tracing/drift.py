@@ -1,0 +1,53 @@
+"""States that nothing holds: what drifts freely has no orbit, or a line of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.orbit.scheme import Array
+from periodic.system import System, linear_of
+
+SINGULAR = 1e-12
+"""Least singular value of a stiffness, of the largest, below which nothing holds a motion."""
+
+TAKES_PART = 0.1
+"""Part of the largest component from which a state is one of those that drift."""
+
+AWAY = 0.1
+"""How far from rest, scaled, it is looked for as well."""
+
+PHASES = np.linspace(0.0, 2 * np.pi, 4, endpoint=False)
+
+
+def drifting(system: System, parameter: Array) -> list[str]:
+    """Return the names of states that may be moved together without any force; none as a rule.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    parameter : ndarray, shape (p,)
+        Parameters in SI units.
+
+    Returns
+    -------
+    list of str
+        Their names.
+    """
+    if linear_of(system) is not None:  # its modes tell
+        return []
+    state, algebraic = system.rest(parameter)
+    many = len(PHASES)
+    places = state + AWAY * np.sin(1.0 + np.arange(many))[:, None] * np.ones_like(state)
+    places[0] = state
+    unknowns = np.tile(algebraic, (many, 1))
+    found = system.linearise(np.zeros_like(places), places, unknowns, PHASES, parameter)
+    stiffness = np.concatenate([found.d_state, found.d_algebraic], axis=2)
+    stiffness = stiffness.reshape(-1, stiffness.shape[2])  # held at one place is held
+    if not np.isfinite(stiffness).all():
+        return []
+    _, sizes, ways = np.linalg.svd(stiffness)
+    if len(sizes) == 0 or sizes[-1] > SINGULAR * sizes[0]:
+        return []
+    way = np.abs(ways[-1, : len(state)])
+    return [s.name for s, part in zip(system.states, way, strict=True) if part > TAKES_PART * way.max()]
