@@ -32,8 +32,8 @@ DEEPEST = 0.1
 MILD = 0.1
 """Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
 
-LEAST = 1e-8
-"""Least change of a switch for which sticking is followed, where no tolerance is given."""
+LEAST = 1e-13
+"""Least change of a switch for which sticking is looked for on an orbit that lacks it."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*impacts.passages(system, orbit), *stick.passages(system, orbit, settings.deepest or LEAST))
+    others = (*impacts.passages(system, orbit), *stick.passages(system, orbit, LEAST))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)

@@ -286,6 +286,12 @@ class CollocationRefinement(Refinement):
         """Whether the orbit has the largest number of intervals."""
         return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
 
+    @property
+    def shortfall(self) -> str:
+        """Why the error exceeds its bound."""
+        brief = "the motion sticks or slips there for too short a while to be followed"
+        return brief if self._misplaced else super().shortfall
+
     @cached_property
     def _misplaced(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
