@@ -24,7 +24,7 @@ LONGER = 10.0
 """How many times as long orbits have become since the parameter changed by more than its error."""
 
 STILL = 1e-3
-"""Least speed on such an orbit, as a part of the largest."""
+"""Least speed on such an orbit, in peaks to peak a rad: a canard is slow, but does not stand still."""
 
 
 def period(problem: Problem, points: Sequence[Point]) -> float | None:
@@ -42,7 +42,7 @@ def period(problem: Problem, points: Sequence[Point]) -> float | None:
         return None
     omega, last = problem.others[at[0]], points[-1]
     speeds = np.linalg.norm(last.orbit.node_rates, axis=1)
-    if speeds.min() > STILL * speeds.max():
+    if speeds.min() > STILL * last.orbit.span():
         return None
     longest = _period(last, omega)
     for point in reversed(points):
