@@ -13,6 +13,7 @@ The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Mul
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,16 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
 from periodic.system import System
+
+
+@dataclass(frozen=True)
+class ContactError(ErrorEstimate):
+    """Errors of an orbit with event nodes.
+
+    variation: what of the multipliers' error is that of the motions beside the orbit; the rest is its own.
+    """
+
+    variation: float = 0.0
 
 
 def applies(operator: Condensed) -> bool:
@@ -71,7 +82,7 @@ class OneSided:
 
     def __init__(self, linearise: Linearise) -> None:
         self.linearise = linearise
-        self.known: tuple[Linearised, NDArray[np.int_]] | None = None
+        self.known: tuple[Linearised, NDArray[np.int_]] | None = None  # the first, and its contacts
 
     def __call__(
         self,
@@ -89,7 +100,7 @@ class OneSided:
         if self.known is not None and not np.array_equal(held, self.known[1]):
             return self.known[0]
         found = Linearised(operator.orbit, step.increment, kernel, operator.fundamental)
-        self.known = found, held
+        self.known = self.known or (found, held)
         return found
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, scheme_for
-from periodic.condensed.estimate import OneSided, applies, estimate
+from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
@@ -89,7 +89,11 @@ class CondensedCollocation(Collocation):
         part = linear_of(problem.system)
         velocities = () if part is None else part.velocities
         beside = OneSided(self._brief)
-        return deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside)
+        found = deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside)
+        if beside.known is None or not correction.orbit.mesh.events:
+            return found
+        variation = spectrum.apart(beside.known[0].fundamental[-1])
+        return ContactError(found.orbit, found.multiplier, found.parameter, found.rounding, variation)
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)

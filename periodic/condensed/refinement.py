@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.method import CollocationRefinement
+from periodic.condensed.estimate import ContactError
 from periodic.condensed.linearised import local_rows
 from periodic.correction.error import SAFETY
 from periodic.correction.meshes import AIM
@@ -59,12 +60,15 @@ class CondensedRefinement(CollocationRefinement):
         felt, active = self._felt
         wanted = density(replace(orbit, nodes=orbit.nodes[:, felt], stages=orbit.stages[:, :, felt]))
         lacking = SAFETY * error.multiplier if error.curable > error.motion else 0.0
+        beside = min(lacking, SAFETY * error.variation) if isinstance(error, ContactError) else lacking
+        own = max(error.motion, lacking if lacking > 2 * beside else 0.0)
         points, share = orbit.mesh.scheme.ncol, wanted * width
-        wanted *= self._times(error.motion, points + 1) / (share if active.all() else share[~active]).mean()
+        typical = max(float(share[part].mean()) for part in (active, ~active) if part.any())
+        wanted *= self._times(own, points + 1) / typical
         wanted = np.maximum(wanted, FEWEST / orbit.mesh.period)
         if not active.any():
             return wanted
-        shorter = SPLIT * self._times(lacking, 2 * points - 1) / width[active].max()
+        shorter = SPLIT * self._times(beside, 2 * points - 1) / width[active].max()
         return np.where(active, np.maximum(wanted, shorter), wanted)
 
     def _times(self, error: float, order: int) -> float:

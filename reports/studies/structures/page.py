@@ -1,4 +1,4 @@
-"""The report on structures: size, accuracy, three nonlinear tips, a rotor."""
+"""The report on structures: size, accuracy, nonlinear tips, a rotor."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reports.studies.pages.page import Page
 from reports.studies.structures.accuracy import ACCURACY
+from reports.studies.structures.modes import MODES
 from reports.studies.structures.peer import BESIDE
 from reports.studies.structures.rotor import ROTOR
 from reports.studies.structures.size import SIZE
@@ -14,5 +15,12 @@ from reports.studies.structures.tips import TIPS
 REPORT = Page(
     name="structures",
     folder=Path(__file__).parent,
-    sections={"size": SIZE, "accuracy": ACCURACY, "peer": BESIDE, "tips": TIPS, "rotor": ROTOR},
+    sections={
+        "size": SIZE,
+        "accuracy": ACCURACY,
+        "peer": BESIDE,
+        "tips": TIPS,
+        "modes": MODES,
+        "rotor": ROTOR,
+    },
 )

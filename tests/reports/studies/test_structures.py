@@ -9,7 +9,7 @@ import pytest
 from periodic import Label
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
-from reports.studies.structures import accuracy, peer, rotor, size
+from reports.studies.structures import accuracy, modes, peer, rotor, size
 from reports.studies.structures.page import REPORT
 
 FOLDER = REPORT.folder
@@ -48,6 +48,17 @@ def test_peer_is_fresh() -> None:
     kept = next(r for r in rows if r["freedoms"] == 20)
     assert peer.own(10, ours["method"])["folds"] == pytest.approx(kept["folds"], rel=1e-8)
     assert rows[2]["s"] < rows[0]["s"] and its["s"] > 30 * ours["s"]
+
+
+def test_stop_is_fresh() -> None:
+    """Assert the touches and folds of the stop's 20 degrees of freedom to 1e-6, and the truths that are kept."""
+    kept = REPORT.kept(FOLDER)["modes"]
+    first = next(row for row in kept.rows if row["name"] == "stop")
+    found = modes.row("stop", modes.ELEMENTS[0])["special"]
+    assert [label for label, _ in found] == [label for label, _ in first["special"]]
+    assert [at for _, at in found] == pytest.approx([at for _, at in first["special"]], rel=1e-6)
+    for name, value in kept.numbers.items():
+        assert value < modes.CASES[name.split(":")[0]].tolerance
 
 
 @pytest.mark.long
