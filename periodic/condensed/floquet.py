@@ -35,14 +35,11 @@ LIGHT = 0.8
 LASTING = 0.6
 """Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
-SMALL = 48
+SMALL = 64
 """Up to so many states all of them are computed and kept."""
 
 BLOCK, MOST = 4, 40
 """Vectors that a Krylov space grows by at a time, and its largest size."""
-
-DENSE = 64
-"""Up to so many states all multipliers are computed, if not kept."""
 
 CLOSE = 1e-12
 """Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
@@ -302,7 +299,7 @@ def _largest(floquet: Floquet, count: int) -> tuple[Complex, Complex]:
     size = len(floquet.kept)
     space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, BLOCK)))[0]
     images = np.zeros((size, 0))
-    while size > DENSE and space.shape[1] + BLOCK <= MOST:
+    while space.shape[1] + BLOCK <= MOST:
         image = floquet.once(space[:, -BLOCK:])
         images = np.concatenate([images, image], axis=1)
         known = space

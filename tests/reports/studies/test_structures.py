@@ -51,10 +51,10 @@ def test_peer_is_fresh() -> None:
 
 
 def test_stop_is_fresh() -> None:
-    """Assert the touches and folds of the stop's 20 degrees of freedom to 1e-6, and the truths that are kept."""
+    """Assert touches and folds of the stop, 20 degrees of freedom, to 1e-6, and the truths that are kept."""
     kept = REPORT.kept(FOLDER)["modes"]
     first = next(row for row in kept.rows if row["name"] == "stop")
-    found = modes.row("stop", modes.ELEMENTS[0])["special"]
+    found = modes.row("stop", modes.CASES["stop"].elements[0])["special"]
     assert [label for label, _ in found] == [label for label, _ in first["special"]]
     assert [at for _, at in found] == pytest.approx([at for _, at in first["special"]], rel=1e-6)
     for name, value in kept.numbers.items():
