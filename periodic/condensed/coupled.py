@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.flexibility import Flexibility
 from periodic.condensed.linearised import Linearised
+from periodic.condensed.modal.flexibility import Flexibility
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
+from periodic.condensed.modal.response import Response
 from periodic.condensed.operator import Condensed
-from periodic.condensed.response import Response
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
 from periodic.correction.error import LEAST_SPAN, SMALL, UNKNOWN, ErrorEstimate

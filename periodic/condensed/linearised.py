@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
-from periodic.condensed.flexibility import Flexibility
-from periodic.condensed.moments import Complex
-from periodic.condensed.reduction import audible, reduced, reduced_slope
-from periodic.condensed.response import Response
-from periodic.condensed.slopes import slopes
+from periodic.condensed.modal.flexibility import Flexibility
+from periodic.condensed.modal.moments import Complex
+from periodic.condensed.modal.reduction import audible, reduced, reduced_slope
+from periodic.condensed.modal.response import Response
+from periodic.condensed.modal.slopes import slopes
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, linear_of

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from periodic.condensed.moments import Moments
-from periodic.condensed.response import Response
+from periodic.condensed.modal.moments import Moments
+from periodic.condensed.modal.response import Response
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import as_read_by, transfer
 from periodic.orbit.mesh import uniform

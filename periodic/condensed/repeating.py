@@ -16,10 +16,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.condensed.coupled import Coupled, folded
-from periodic.condensed.flexibility import Flexibility
 from periodic.condensed.linearised import Linearised, answer
-from periodic.condensed.moments import Complex
-from periodic.condensed.slopes import slopes
+from periodic.condensed.modal.flexibility import Flexibility
+from periodic.condensed.modal.moments import Complex
+from periodic.condensed.modal.slopes import slopes
 from periodic.linear.variation import Tangent
 from periodic.orbit.gradients import Points, Slopes, collocation_points, gathered, solved
 from periodic.orbit.row import Row

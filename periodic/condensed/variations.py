@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
-from periodic.condensed.moments import Complex
+from periodic.condensed.modal.moments import Complex
 from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row

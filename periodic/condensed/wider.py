@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.condensed.response import Response
+from periodic.condensed.modal.response import Response
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit

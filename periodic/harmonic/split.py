@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.floquet import Floquet, Leading, LeadingSpectrum
 from periodic.condensed.linearised import Linearised, Local, local_rows
-from periodic.condensed.response import Response
+from periodic.condensed.modal.response import Response
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step

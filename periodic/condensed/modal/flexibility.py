@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.moments import Complex
-from periodic.condensed.response import Response, real_product
+from periodic.condensed.modal.moments import Complex
+from periodic.condensed.modal.response import Response, real_product
 from periodic.orbit.scheme import Array
 
 Matrix = NDArray[Any]

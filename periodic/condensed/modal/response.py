@@ -14,7 +14,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.moments import Complex, Moments, Table
+from periodic.condensed.modal.moments import Complex, Moments, Table
 from periodic.orbit.mesh import Grid
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import ModesLike

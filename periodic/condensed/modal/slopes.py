@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.condensed.moments import Complex
-from periodic.condensed.response import Response
+from periodic.condensed.modal.moments import Complex
+from periodic.condensed.modal.response import Response
 from periodic.orbit.scheme import Array
 from periodic.system import ModesLike
 

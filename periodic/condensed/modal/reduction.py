@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.condensed.moments import Complex
+from periodic.condensed.modal.moments import Complex
 from periodic.orbit.scheme import Array
 from periodic.system import ModesLike
 

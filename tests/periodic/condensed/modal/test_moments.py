@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from periodic.condensed.moments import NEAR, Moments
+from periodic.condensed.modal.moments import NEAR, Moments
 from periodic.orbit.scheme import Family, Scheme
 
 EXPONENTS = [0.0, 0.1j, -2 + 1j, (NEAR - 0.01) * 1j, (NEAR + 0.01) * 1j, 5j, -3.1 + 0.2j, 40j, -50 + 3j]

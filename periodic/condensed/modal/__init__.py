@@ -1,0 +1,1 @@
+"""Motion of the modes under forces that are polynomials in each interval: exact, whatever their number."""
