@@ -24,7 +24,10 @@ def noise(solution: Solution) -> float:
 
 
 def torus(solution: Solution) -> float:
-    """prod over i < j of (mu_i mu_j - 1) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost."""
+    """prod over i < j of (1 - mu_i mu_j) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost.
+
+    Damped multipliers alone change no sign, whichever of many are known.
+    """
     spectrum = solution.spectrum
     return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0
 
@@ -52,7 +55,7 @@ def torus_of(found: Complex, noise: float) -> float:
     products = _products(found)
     if (np.abs(products - 1) < noise).any():
         return 0.0
-    return float(np.prod((products - 1) / (1 + np.abs(products))).real)
+    return float(np.prod((1 - products) / (1 + np.abs(products))).real)
 
 
 def nearest_pair(found: Complex) -> list[int]:

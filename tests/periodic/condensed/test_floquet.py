@@ -30,3 +30,10 @@ def test_leading_multipliers_are_the_largest(elements: int, states: int) -> None
     apart = np.abs(found[:, None] - every).min(axis=1)
     assert apart.max() < 1e-12
     assert np.sort(np.abs(found))[2:] == pytest.approx(np.sort(np.abs(every))[-6:], abs=1e-10)
+
+
+def test_a_further_multiplier_kept_is_no_torus() -> None:
+    """Assert that where a pair of many becomes lightly damped, and is kept from there on, no NS is told."""
+    branch = per.trace(cantilever(50, cubic), "Omega", (56.0, 56.6), start=56.0, tol=1e-6)
+    assert len(branch[0].multipliers) < len(branch[-1].multipliers)
+    assert [point.label.value for point in branch.special_points] == ["EP", "EP"]
