@@ -17,7 +17,7 @@ VERTICAL = 1e-10
 STEEP = 1e-5
 """Slopes smaller than this, in ranges of the parameter, are those of a turn or of a vertical stretch."""
 
-REACH = 0.01
+REACH = 0.005
 """A turn in a vertical stretch is one if the parameter changes by more than its error in a step as long."""
 
 
@@ -48,9 +48,12 @@ def moves(base: Solution, new: Solution) -> float:
 
 
 def turns(base: Solution, new: Solution, ds: float) -> bool:
-    """Whether a slope that changes sign within a step is more than an error of the parameter along it."""
+    """Whether a slope that changes sign within a step is more than an error of the parameter along it.
+
+    It is if the arc rises above its chord by more than that.
+    """
     bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
-    return bend * max(ds, REACH) ** 2 / 2 > _blur(base, new)
+    return bend * max(ds, REACH) ** 2 / 8 > _blur(base, new)
 
 
 def _blur(base: Solution, new: Solution) -> float:
