@@ -26,7 +26,7 @@ from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, wanted_ntst
+from periodic.correction.meshes import Refinement, demand, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
@@ -226,7 +226,7 @@ class Collocation(Discretisation):
         if error is UNKNOWN:
             return error
         missing = np.inf if slide.wrong(system, orbit) else 0.0
-        rounding = self._rounding(system, orbit, spectrum)
+        rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
@@ -242,7 +242,7 @@ class Collocation(Discretisation):
         if not system.switches:
             return None
         found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
-        return min((c for c in found if c is not None), key=lambda c: c.part, default=None)
+        return min((c for c in found if c is not None), key=lambda c: (not c.strict, c.part), default=None)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""
@@ -304,6 +304,13 @@ class CollocationRefinement(Refinement):
             return self.orbit.mesh.ntst
         return wanted_ntst(self.orbit, self.error, method.tolerance, method.ntst_min, method.ntst_max)
 
+    @property
+    def _demand(self) -> Array | None:
+        """Where the multipliers need more intervals."""
+        if self._misplaced:
+            return None
+        return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
+
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
         return self._made(self.orbit.mesh.events, self.orbit.phases)
@@ -316,7 +323,7 @@ class CollocationRefinement(Refinement):
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
         """The mesh with such event nodes."""
-        return redistribute(self.orbit, self._ntst, events, phases, self.method.shortest)
+        return redistribute(self.orbit, self._ntst, events, phases, self.method.shortest, self._demand)
 
     def _choices(self) -> Iterator[list[Crossing]]:
         yield self.wanted

@@ -97,7 +97,10 @@ class Birth:
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two neighbouring event nodes come as near as `length`: an excursion ends, or they change places."""
+    """Two neighbouring event nodes come as near as `length`: an excursion ends, or they change places.
+
+    Or an excursion with an impact in its midst ends.
+    """
 
     system: System
     segment: int
@@ -130,13 +133,15 @@ class Meeting:
         k, (first, second) = len(orbit.phases), self.events
         i, j = self.segment, (self.segment + 1) % len(orbit.phases)
         begin, end = orbit.phases[i], orbit.phases[j] + (orbit.mesh.period if j < i else 0.0)
+        around = _around(self.system, orbit, self.segment)
         if first.switch == second.switch:
             condition = Clearance(first.switch, second.direction, (begin + end) / 2)
             for ended in dict.fromkeys((self._as_short(orbit), (i, j))):
-                kept = [m for m in range(k) if m not in ended]
-                events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
-                mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-                yield Beyond(mesh, phases, condition, True)
+                yield self._without(orbit, ended, condition)
+            return
+        if around is not None:
+            last = orbit.mesh.events[around[1]]
+            yield self._without(orbit, around, Clearance(last.switch, last.direction, (begin + end) / 2))
             return
         others = [(orbit.mesh.events[m], orbit.phases[m]) for m in range(k) if m not in (i, j)]
         middle = (begin + end) / 2
@@ -144,6 +149,13 @@ class Meeting:
         events, phases = ordered([*others, *pair], orbit)
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         yield Beyond(mesh, phases, Length(index_of(events, phases, pair[0], orbit), self.length), False)
+
+    def _without(self, orbit: Orbit, ended: tuple[int, ...], condition: Clearance) -> Beyond:
+        """The mesh without some event nodes."""
+        kept = [m for m in range(len(orbit.phases)) if m not in ended]
+        events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
+        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        return Beyond(mesh, phases, condition, True)
 
     def _as_short(self, orbit: Orbit) -> tuple[int, ...]:
         """Return the event nodes of all excursions as short as this one: by symmetry several end at once."""
@@ -231,15 +243,17 @@ def pattern(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
 def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Change | None:
     """Return the first change of pattern between two orbits on one mesh, where there is one.
 
-    `after` may be a guess, its event nodes out of order.
+    `after` may be a guess, its event nodes out of order. A touch is told before events that meet: an orbit
+    beyond it is none of the system, on this mesh.
     """
-    return _meeting(system, before, after, shortest) or _birth(system, before, after, shortest)
+    return _birth(system, before, after, shortest) or _meeting(system, before, after, shortest)
 
 
 def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Meeting | None:
+    impacts = resets_of(system)
     if not before.mesh.events:
         return None
-    own = [*exact(system), *(k for pair in slides_of(system).items() for k in (pair[0], *pair[1]))]
+    own = [*exact(system), *impacts, *(k for pair in slides_of(system).items() for k in (pair[0], *pair[1]))]
     now, then = before.mesh.segment_lengths(before.phases), after.mesh.segment_lengths(after.phases)
     found, about = [], {i for turn in turns(system, before) for i in (turn.begin, turn.inside[-1])}
     for i, first in enumerate(before.mesh.events):
@@ -247,7 +261,8 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
         same = first.switch == second.switch
         if first.switch not in own or second.switch not in own or _slide(system, first, second):
             continue
-        if i in about:
+        struck = first.switch in impacts or second.switch in impacts
+        if i in about or struck and (_around(system, before, i) is None or now[i] <= SHORT[-1]):
             continue
         half = VANISHING * float(now[i])
         nearest = next((length for length in SHORT if length < half), half)
@@ -258,6 +273,21 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
             part = (now[i] - nearest) / (now[i] - then[i])
         found.append(Meeting(system, i, (first, second), nearest, min(float(part), 1.0), shortest))
     return min(found, key=lambda meeting: meeting.part, default=None)
+
+
+def _around(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | None:
+    """The ends of an excursion in the midst of which there is an impact, at an end of a segment, if it is so.
+
+    The impact reverses the switch; the excursion ends in a corner, and all three events meet.
+    """
+    events, k = orbit.mesh.events, len(orbit.phases)
+    for m in (segment, (segment + 1) % k):
+        before, after = (m - 1) % k, (m + 1) % k
+        turns = events[before].direction != events[after].direction
+        same = events[before].switch == events[after].switch != events[m].switch
+        if events[m].switch in resets_of(system) and same and turns:
+            return before, after
+    return None
 
 
 def _slide(system: System, first: EventNode, second: EventNode) -> bool:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.linear.unknowns import Increment, metric_weights, node_phase_gradient
+from periodic.linear.unknowns import Increment, length_metric, metric_weights, node_phase_gradient
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -18,8 +18,9 @@ from periodic.system import System, jumps_of, resets_of
 class ArclengthConstraint:
     """<u - origin, direction> = distance, a hyperplane across `direction` (Keller 1977).
 
-    The scalar product is the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2
-    of the continuation parameter, whose index is `index`.
+    The scalar product is that of `Increment.dot`: the mean over the period of <x, y>/size^2, x and y at fixed
+    tau, plus p q / scale^2 of the continuation parameter, whose index is `index`, plus that of the lengths of
+    brief excursions.
     """
 
     origin: Orbit
@@ -34,6 +35,11 @@ class ArclengthConstraint:
         """Gradient in the states at the mesh points, shape (N+1, n)."""
         return (metric_weights(self.origin) / self.size**2)[:, None] * self.direction.profile
 
+    @cached_property
+    def lengths(self) -> Array:
+        """Gradient in the event nodes' phases by brief excursions' lengths, shape (k,)."""
+        return length_metric(self.origin, self.direction.phases)
+
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
         weighted, outer = self._gradient(self.origin, (self.index,), self.origin.node_rates)
@@ -47,6 +53,7 @@ class ArclengthConstraint:
         further = orbit.parameter[self.index] - self.origin.parameter[self.index]
         value = np.einsum("jn,jn->", weighted, orbit.nodes - state)
         value += self.direction.parameter / self.scale**2 * further
+        value += self.lengths @ (orbit.phases - self.origin.phases)
         return Row(float(value) - self.distance, weighted, outer)
 
     def _origin_at(self, system: System, orbit: Orbit) -> tuple[Array, Array]:
@@ -67,7 +74,7 @@ class ArclengthConstraint:
         weighted = self.weighted
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
-        outer[:k] = -np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
+        outer[:k] = self.lengths - np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
         outer[k + free.index(self.index)] = self.direction.parameter / self.scale**2
         return weighted, outer
 

@@ -7,7 +7,7 @@ mesh points, so its increment is the error of the orbit to first order.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -17,11 +17,13 @@ from periodic.correction.condition import SideCondition
 from periodic.correction.newton import USUAL, Linearise, Linearised, NewtonSettings, linearised, moved
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
+from periodic.correction.shares import shares
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
+from periodic.stability.spectrum import apart as powers_apart
 from periodic.system import System
 
 Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]
@@ -49,12 +51,18 @@ class ErrorEstimate:
         Error of the continuation parameter across the branch, so that of an LP its place, relative.
     rounding : float
         What of the multipliers' error is rounding of the states, about.
+    by_orbit : float
+        What of it the orbit's own error makes, where the equations change at events.
+    shares : ndarray, shape (N,), optional
+        What each interval adds to the rest of it, relative to each other.
     """
 
     orbit: float
     multiplier: float
     parameter: float = 0.0
     rounding: float = field(default=0.0, compare=False)
+    by_orbit: float = field(default=0.0, compare=False)
+    shares: Array | None = field(default=None, compare=False, repr=False, kw_only=True)
 
     @property
     def motion(self) -> float:
@@ -75,6 +83,11 @@ class ErrorEstimate:
         """The same without what no finer mesh betters."""
         return self.worst if self.multiplier > ROUNDED * self.rounding else self.motion
 
+    @property
+    def spread(self) -> float:
+        """The same without what single intervals add to the multipliers' error."""
+        return max(self.motion, SAFETY * self.by_orbit)
+
 
 EXACT = ErrorEstimate(0.0, 0.0)
 """Of what is not discretised."""
@@ -89,6 +102,9 @@ ROUNDED = 3.0
 SMALL = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
+
+BEST = 2e-12
+"""Relative error of an orbit that rounding may leave; beside a touch it is far more in the multipliers."""
 
 STEEP = 0.1
 """Part of a branch's direction that the parameter is, below which it is about a fold."""
@@ -135,13 +151,32 @@ def deferred(
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
     at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0
     apart = float(max(at_nodes.max(), between.max()))
-    return relative(problem, orbit, apart, abs(change.parameter), multiplier)
+    monodromy = beside.fundamental[-1]
+    halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)
+    return relative(problem, orbit, spectrum, halved)
 
 
-def relative(problem: Problem, orbit: Orbit, apart: float, shift: float, multiplier: float) -> ErrorEstimate:
-    """Return the estimate of errors `apart` of the states and `shift` of the parameter, relative to them."""
+@dataclass(frozen=True)
+class Halved:
+    """What the halved mesh says of an orbit: errors of its states, of the parameter and of the multipliers,
+    its fundamental matrices, (2N+1, n, n), and the monodromy matrix of the better orbit."""
+
+    apart: float
+    shift: float
+    multiplier: float
+    fundamental: Array
+    monodromy: Array
+
+
+def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) -> ErrorEstimate:
+    """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
-    return ErrorEstimate(apart / max(orbit.span(), LEAST_SPAN), multiplier, shift / largest)
+    own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
+    by_orbit = powers_apart(found.monodromy / spectrum.radius, found.fundamental[-1] / spectrum.radius)
+    rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))
+    sized = bool(problem.system.switches) and orbit.span() > LEAST_SPAN
+    each = shares(spectrum.fundamental, found.fundamental) if sized else None
+    return ErrorEstimate(own, found.multiplier, parameter, rounding, by_orbit, shares=each)
 
 
 def _along(found: Linearised, problem: Problem, size: float) -> Increment:
@@ -150,7 +185,8 @@ def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     None about a fold, where the orbit of the same parameter is far away, or there is none.
     """
     kernel = found.kernel
-    length = float(np.sqrt(kernel.dot(kernel, found.orbit, problem.scale, size)))
+    still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
+    length = float(np.sqrt(still.dot(still, found.orbit, problem.scale, size)))
     if abs(kernel.parameter) < STEEP * length * problem.scale:
         return kernel.scaled(0.0)
     return kernel.scaled(-found.increment.parameter / kernel.parameter)

@@ -6,13 +6,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from periodic.correction.error import ErrorEstimate
+from periodic.correction.error import ROUNDED, SAFETY, ErrorEstimate
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
 AIM = 0.1
 """The part of the tolerance that a new mesh aims at."""
+
+CLOSER = 0.03
+"""The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
+
+FINEST = 6.0
+"""Into how many pieces an interval is divided at the most."""
 
 
 class Refinement:
@@ -45,9 +51,30 @@ class Refinement:
         yield from ()
 
 
+def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> Array | None:
+    """Return how many intervals per rad the multipliers need about each interval, shape (N,).
+
+    None where it is not known from which intervals their error comes. An interval is divided as its share of
+    the error asks for, but joined with others no faster than on a smooth motion, where errors at mesh points
+    go with twice the power.
+    """
+    if error.shares is None or not np.isfinite(error.worst):
+        return None
+    largest = error.multiplier - error.by_orbit if error.multiplier > ROUNDED * error.rounding else 0.0
+    goal, total = AIM * tolerance / SAFETY, float(error.shares.sum())
+    part = error.shares / total * max(largest, 0.0) / goal * len(error.shares) if total > 0 else error.shares
+    ncol = orbit.mesh.scheme.ncol
+    pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))
+    wanted: Array = np.minimum(pieces, FINEST) / orbit.grid.width
+    intervals = float(wanted @ orbit.grid.width)
+    return wanted * min(1.0, most / intervals) if intervals > 0 else None
+
+
 def wanted_ntst(orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int, most: int) -> int:
-    """Return the number of intervals that brings the error estimate to its aim."""
+    """Return how many intervals bring the error estimate to its aim, but for what `demand` cures."""
     order = orbit.mesh.scheme.ncol + 1
-    ratio = error.curable / (AIM * tolerance) if np.isfinite(error.worst) else 4.0**order
+    known = error.shares is not None
+    curable = min(error.curable, error.spread) if known else error.curable
+    ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * orbit.mesh.ntst), least, most))

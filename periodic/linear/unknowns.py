@@ -13,6 +13,13 @@ from periodic.orbit.scheme import Array
 STEEP = 5.0
 """Rates of the states, in sizes a rad, from which on an orbit with kinks is steep."""
 
+BRIEF = 0.02
+"""Excursions (rad) about as short are told apart by their lengths as well: beside a touch an orbit hardly
+changes while they grow by decades."""
+
+E_FOLD = 0.03
+"""Distance of orbits whose brief excursions differ by a factor of e, in ranges of the parameter."""
+
 
 class Unknowns(Protocol):
     """A change of an orbit and of its free parameters: what continuation adds, scales, measures and carries.
@@ -147,10 +154,11 @@ class Increment:
     def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.
 
-        Beside kinks the mean is that of `metric_weights`.
+        Beside kinks the mean is that of `metric_weights`, and brief excursions add what `length_metric` has.
         """
         states = np.einsum("j,jn,jn->", metric_weights(orbit), self.profile, other.profile)
-        return float(states) / size**2 + self.parameter * other.parameter / scale**2
+        lengths = length_metric(orbit, self.phases) @ other.phases
+        return float(states) / size**2 + self.parameter * other.parameter / scale**2 + float(lengths)
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
         """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
@@ -193,6 +201,23 @@ def metric_weights(orbit: Orbit) -> Array:
         return weights
     steep = np.abs(orbit.node_rates).max(axis=1) / (STEEP * size_of(orbit))
     return weights / (1 + steep**4)
+
+
+def length_metric(orbit: Orbit, phases: Array) -> Array:
+    """Return what changes of the event nodes' phases (k,) are multiplied with in the metric, shape (k,).
+
+    It is the sum over excursions of their lengths' changes, relative where they are brief.
+    """
+    events = orbit.mesh.events
+    if len(orbit.mesh.exact_ends) == 0:
+        return np.zeros(len(events))
+    pairs = zip(events, (*events[1:], events[0]), strict=True)
+    returns = [a.switch == b.switch and a.direction != b.direction for a, b in pairs]
+    length = orbit.mesh.segment_lengths(orbit.phases)
+    weights = np.where(returns, (E_FOLD / length) ** 2 / (1 + (length / BRIEF) ** 4), 0.0)
+    change = weights * (np.roll(phases, -1) - phases)
+    found: Array = np.roll(change, 1) - change
+    return found
 
 
 def node_phase_gradient(orbit: Orbit) -> Array:

@@ -56,11 +56,17 @@ def _jumps(top: Array, width: Array, closed: bool) -> Array:
 
 
 def redistribute(
-    orbit: Orbit, ntst: int, events: tuple[EventNode, ...], phases: Array, shortest: float
+    orbit: Orbit,
+    ntst: int,
+    events: tuple[EventNode, ...],
+    phases: Array,
+    shortest: float,
+    demand: Array | None = None,
 ) -> Mesh:
     """Return a mesh of about `ntst` intervals for an orbit, with the given event nodes at `phases`.
 
-    No interval shorter than `shortest` (rad) is halved.
+    No interval shorter than `shortest` (rad) is halved. There are more where `demand` asks for more, in
+    intervals per rad about each of the orbit's intervals.
 
     Each segment is halved again and again where the density asks for it. Its intervals are therefore the
     same from one mesh to the next wherever the density has hardly changed, and the orbit is carried over
@@ -68,6 +74,9 @@ def redistribute(
     """
     wanted = density(orbit)
     wanted *= ntst / float(wanted @ orbit.grid.width)
+    if demand is not None:
+        wanted = np.maximum(wanted, demand)
+        ntst = round(float(wanted @ orbit.grid.width))
     for growth in GROWTHS:
         mesh = spread(orbit, growth * wanted, events, phases, shortest)
         if mesh.ntst >= ntst:

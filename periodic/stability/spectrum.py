@@ -32,6 +32,10 @@ DEPENDENT = 1e8
 """Left eigenvectors as long as this, of right ones of unit length, are those of dependent ones."""
 
 
+STRAIGHT = 1e-8
+"""A chord whose ends lie opposite by as little as this passes through 0."""
+
+
 class Stability(Enum):
     """What decides it: multipliers of an orbit on the unit circle, eigenvalues on the imaginary axis."""
 
@@ -126,7 +130,7 @@ class Spectrum:
         upper[np.abs(multipliers - 1).argsort()[: self.trivial]] = False
         chosen = np.flatnonzero(upper)
         solutions = self.fundamental @ self.vectors[:, chosen]
-        turns = np.angle((solutions[:-1].conj() * solutions[1:]).sum(axis=1)).sum(axis=0)
+        turns = _turns(solutions[:-1], solutions[1:]).sum(axis=0)
         both = zip(map(int, chosen), turns, self._sizes(solutions, chosen), strict=True)
         return [self._pair(k, float(turn), size) for k, turn, size in both]
 
@@ -177,16 +181,11 @@ class Spectrum:
         return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
-        """Distance from another spectrum in the sums of first and second powers, over the largest multiplier.
+        """Distance from another spectrum, over the largest multiplier.
 
         operator: the equations that it belongs to, where these say more than their monodromy matrix.
-
-        Unlike the multipliers themselves these stay smooth where two of them meet.
         """
-        own, other = self.monodromy / self.radius, monodromy / self.radius
-        first = abs(other.trace() - own.trace())
-        second = abs(np.vdot(other, other.T) - np.vdot(own, own.T)) / 2
-        return float(max(first, second))
+        return apart(self.monodromy / self.radius, monodromy / self.radius)
 
     def start(self, change: Increment) -> Array:
         """Return the states' part of a change of the orbit at the beginning of the period, (n,)."""
@@ -201,6 +200,28 @@ class Spectrum:
     def known(self) -> bool:
         """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
         return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST)
+
+
+def apart(one: Array, two: Array) -> float:
+    """Distance of two monodromy matrices in the sums of first and second powers of their multipliers.
+
+    Unlike the multipliers themselves these stay smooth where two of them meet.
+    """
+    first = abs(two.trace() - one.trace())
+    second = abs(np.vdot(two, two.T) - np.vdot(one, one.T)) / 2
+    return float(max(first, second))
+
+
+def _turns(begin: Complex, end: Complex) -> Array:
+    """The integral of Im(w* dw)/|w|^2 along the chords between vectors, shapes (K, n, k) and (K, k).
+
+    Where a contact reverses a velocity within an interval the chord passes between the two, not by +-pi.
+    """
+    product = (begin.conj() * end).sum(axis=1)
+    product = product / (np.linalg.norm(begin, axis=1) * np.linalg.norm(end, axis=1))
+    angle = np.arccos(np.clip(product.real, -1, 1))
+    found: Array = product.imag / np.sinc(angle / np.pi).clip(STRAIGHT)
+    return found
 
 
 def without_trivial(multipliers: Complex, count: int) -> Complex:

@@ -318,8 +318,7 @@ class Continuation:
                 tried = self._step(base, ds)
                 base, new, length = tried.base, tried.new, tried.ds
                 found = special_points(self.solver, base, new, length, sought)
-                if tried.change is None:
-                    self._check_balance(base, new, found, length)
+                self._check_balance(base, new, found, length)
                 further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
@@ -389,7 +388,7 @@ class Continuation:
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
             if found.touches:
                 self._counted(Label.GRAZING)
-            ds = self.control.ds if found.touches else found.distance
+            ds = self.control.ds if found.touches or at.change.touches else found.distance
             kept, last = len(self.collected), found.solution
             least = min(self.control.ds_min, NEARLY * ds)
             self.state = replace(self.state, last=last, ds=ds, kept=kept, least=least, course=Course())

@@ -15,6 +15,10 @@ Array = NDArray[np.float64]
 FOLD = 1e-4
 """Least singular value of M - 1 below which an orbit at a fixed parameter is not found anew: near a fold."""
 
+BESIDE = 1e-2
+"""Least singular value of M - 1 below which multipliers are those of the orbit as it is: beside a fold on a
+touch the last digit of the parameter changes them by 1e-3."""
+
 CIRCLE = 1e-4
 """Multipliers nearer to the unit circle decide nothing."""
 
@@ -50,8 +54,9 @@ def judged(exact: Contact, point: per.Point, names: list[str]) -> Verdict:
     gap = found.end - found.start
     singular = np.linalg.svd(found.monodromy - np.eye(len(begin)), compute_uv=False)
     if singular[-1] > FOLD:
-        found = periodic(exact, omega, begin, tau)
-        off = float(np.abs(found.start - begin).max())
+        again = periodic(exact, omega, begin, tau)
+        off = float(np.abs(again.start - begin).max())
+        found = again if singular[-1] > BESIDE else found
     else:
         off = float(np.abs(gap).max()) / found.growth
     theirs, own = np.poly(found.monodromy), np.poly(point.multipliers)

@@ -47,8 +47,8 @@ def _top(values: Array) -> float:
     return float(b - (a - c) ** 2 / (8 * curved) if curved else b)
 
 
-def shot(rates: Rates, guess: ArrayLike, size: ArrayLike, rtol: float = 1e-12) -> Shot:
-    """Newton on y(2 pi) = y(0) from a guess; `size` of each state scales tolerances and differences."""
+def shot(rates: Rates, guess: ArrayLike, size: ArrayLike, rtol: float = 1e-12, step: float = STEP) -> Shot:
+    """Newton on y(2 pi) = y(0) from a guess; tolerances and steps of differences are parts of `size`."""
     y, scale = np.array(guess, dtype=float), np.array(size, dtype=float)
 
     def end(begin: Array) -> Array:
@@ -56,7 +56,7 @@ def shot(rates: Rates, guess: ArrayLike, size: ArrayLike, rtol: float = 1e-12) -
 
     for _ in range(12):
         gap = end(y) - y
-        aside = STEP * np.diag(scale)
+        aside = step * np.diag(scale)
         monodromy = np.array([(end(y + e) - end(y - e)) / (2 * e.sum()) for e in aside]).T
         if np.abs(gap / scale).max() < 1e3 * rtol:
             return Shot(y, monodromy, _run(rates, y, scale, rtol, dense=True).sol)

@@ -48,7 +48,7 @@ _SETTINGS = (
 _NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length", "stretch")
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
-_ADDRESSES = (*_GIVEN, *FOUND, *SOLVED)
+_ADDRESSES = (*_GIVEN, "lengths", *FOUND, *SOLVED)
 
 Routine = Callable[..., int]
 """A function of the library, of the addresses of what it takes."""

@@ -7,7 +7,8 @@ struct estimate {
     const double *nodes, *stages, *algebraic, *phases, *parameter; /* the orbit, on its own mesh */
     const double *profile;                                         /* of its branch's direction, (count / 2 + 1, n) */
     const double *stages_of, *unknowns_of, *middle;                /* the scheme's halves */
-    double *monodromy;                                             /* that of the halved mesh, (n, n) */
+    double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
+    double *monodromy;                                             /* that of the better orbit, (n, n) */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
     double fold, steep, rounding, fast;                            /* limits: see estimate.py */
     double apart, shift;                                           /* errors of the states and of the parameter */
@@ -20,7 +21,7 @@ static double *own_room(struct call *c, double **next)
 {
     const whole n = c->n, k = c->k, points = c->count * c->ncol, ends = (c->count + 1) * n;
     const whole orbit = ends + points * (n + c->m) + k + c->parameters;
-    const whole held = 3 * ends + 2 * c->count * (c->ncol + 1) * n + 3 * c->count + 1 + 2 * k;
+    const whole held = 3 * ends + 2 * c->count * (c->ncol + 1) * n + 3 * c->count + 1 + 3 * k;
     double *all = malloc((3 * orbit + 2 + ends * (2 + n + k) + held) * sizeof(double));
     if (!all)
         return NULL;
@@ -105,6 +106,7 @@ static void hold(struct call *c, const struct estimate *e, struct room *r, const
     c->origin_parameter = c->parameter[c->free];
     c->slope = e->along / (e->scale * e->scale);
     c->distance = 0;
+    c->lengths = memset(taken(next, c->k), 0, c->k * sizeof(double));
 }
 
 /* Linearise with event nodes as far beside their levels as rounding may leave them: see rounding.py. */
@@ -222,6 +224,8 @@ static int estimated(struct call *c, struct estimate *e, struct room *r, double 
     code = linearised_beside(c, e, r, levels, beside);
     if (code != DONE)
         return code;
+    for (whole i = 0; i < (c->count + 1) * n; i++)
+        memcpy(e->fundamental + i * n, c->maps + i * w + 1, n * sizeof(double));
     e->unresolved = unresolved(c, e, r, r->work);
     e->apart = moved_by(c, &c->increment);
     e->shift = fabs(c->increment.outer[k]);

@@ -10,7 +10,7 @@ import numpy as np
 from periodic.collocation.multipliers.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.correction.error import STEEP, ErrorEstimate, relative
+from periodic.correction.error import STEEP, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP as STEEP_RATE
@@ -20,7 +20,7 @@ from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
-_ADDRESSES = (*FOUND, "profile", *_HALVES, "monodromy")
+_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy")
 _NUMBERS = ("along", "scale", "unit", "fold", "steep", "rounding", "fast", "apart", "shift")
 
 
@@ -55,13 +55,15 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     call, library = ready
     n, own = orbit.nodes.shape[1], Estimate()
     parts = [orbit.nodes, orbit.stages, orbit.algebraic, orbit.phases, orbit.parameter, tangent.profile]
+    fundamental: Array = np.empty((2 * orbit.mesh.ntst + 1, n, n))
     monodromy: Array = np.empty((n, n))
-    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, monodromy])
+    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
     own.fold, own.steep, own.rounding, own.fast = STEEP, STEEP_RATE, TERMS * EPSILON, FAST
     code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept
     if code:
         return None
-    error = relative(problem, orbit, own.apart, own.shift, spectrum.apart(monodromy))
+    halved = Halved(own.apart, own.shift, spectrum.apart(monodromy), fundamental, monodromy)
+    error = relative(problem, orbit, spectrum, halved)
     return Estimated(error, bool(own.unresolved))

@@ -60,9 +60,9 @@ def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
     origin = constraint.origin
     names, arrays = ["weighted", "origin_nodes"], [constraint.weighted, origin.nodes]
     if call.k:
-        names += [f"origin_{name}" for name in ORIGIN]
+        names += [*(f"origin_{name}" for name in ORIGIN), "lengths"]
         arrays += [origin.node_rates, origin.knots, origin.knot_rates, origin.phases]
-        arrays += [origin.grid.left, origin.grid.width]
+        arrays += [origin.grid.left, origin.grid.width, constraint.lengths]
     call.origin_parameter = origin.parameter[constraint.index]
     call.slope = constraint.direction.parameter / constraint.scale**2
     call.distance = constraint.distance

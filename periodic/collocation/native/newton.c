@@ -35,7 +35,7 @@ struct call {
     switch_at *switch_values;
     slope_at *switch_slopes;
     const double *weighted, *origin_nodes, *origin_node_rates;      /* of the arclength constraint */
-    const double *origin_knots, *origin_knot_rates, *origin_phases, *origin_left, *origin_width;
+    const double *origin_knots, *origin_knot_rates, *origin_phases, *origin_left, *origin_width, *lengths;
     double *nodes, *stages, *algebraic, *phases, *parameter;        /* the orbit: the guess, then what is found */
     double *maps;                                                   /* of the last linearisation */
     struct change increment, kernel;
@@ -249,6 +249,10 @@ static void constrain(const struct call *c, struct room *r, double *row)
         }
         for (whole a = 0; a < k; a++)
             row[1 + n + a] -= along * gradient[a];
+    }
+    for (whole a = 0; a < k; a++) {
+        row[1 + n + a] += c->lengths[a];
+        value += c->lengths[a] * (c->phases[a] - c->origin_phases[a]);
     }
     row[0] += value + c->slope * (c->parameter[c->free] - c->origin_parameter) - c->distance;
     row[1 + n + k] += c->slope;
