@@ -17,7 +17,10 @@ AIM = 0.1
 CLOSER = 0.03
 """The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
 
-FINEST = 6.0
+SHARED = 0.1
+"""The same for the multipliers, to whose error each interval adds its share."""
+
+FINEST = 3.0
 """Into how many pieces an interval is divided at the most."""
 
 
@@ -61,7 +64,7 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     if error.shares is None or not np.isfinite(error.worst):
         return None
     largest = error.multiplier - error.by_orbit if error.multiplier > ROUNDED * error.rounding else 0.0
-    goal, total = AIM * tolerance / SAFETY, float(error.shares.sum())
+    goal, total = SHARED * tolerance / SAFETY, float(error.shares.sum())
     part = error.shares / total * max(largest, 0.0) / goal * len(error.shares) if total > 0 else error.shares
     ncol = orbit.mesh.scheme.ncol
     pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))

@@ -133,7 +133,7 @@ def test_outside_the_domain(values: dict[str, float]) -> None:
 
 def test_out_of_the_domain() -> None:
     """Assert that a branch that is followed to where its equations end is cut there, with finite numbers."""
-    options = {"tol": per.Accuracy.DRAFT, "control": per.ArclengthControl(max_points=80, ds_min=1e-5)}
+    options = {"tol": per.Accuracy.DRAFT, "control": per.ArclengthControl(ds=0.1, max_points=80)}
     system = build(load("dry-810N"))
     values = {"speed": 40.0}
     branch = per.trace(system, "preload", (-100.0, 810.0), start=810.0, values=values, **options)
