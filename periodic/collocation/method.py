@@ -183,7 +183,7 @@ class Collocation(Discretisation):
         off = aside(orbit, event_rows(system, orbit, free))
         given = (system, orbit, free, conditions, settings)
         found = linearised(partial(self._equations, off=off), *given)
-        return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator))
+        return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
 
     @property
     def _plain(self) -> bool:

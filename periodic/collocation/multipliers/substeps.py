@@ -52,22 +52,22 @@ class SteppedCorrection(Correction):
 
 
 def stepping(
-    equations: Equations, system: System, orbit: Orbit, operator: Operator | None
+    equations: Equations, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
 ) -> Operator | None:
     """Return equations that resolve how perturbations of an orbit grow: `operator` where that does.
 
-    Raises FAILURES.
+    finer: in substeps so many times as short, as an error estimate has them. Raises FAILURES.
     """
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
         return operator
-    counts = substeps(system, orbit)
+    counts = substeps(system, orbit, finer)
     return operator if (counts == 1).all() else equations(system, divided(orbit, counts), ())
 
 
-def substeps(system: System, orbit: Orbit) -> NDArray[np.int_]:
+def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
     """Return into how many each interval is to be divided, shape (N,); one each where nothing grows fast."""
     one = np.ones(orbit.mesh.ntst, dtype=int)
-    jacobian = jacobians(system, orbit) * orbit.grid.width[:, None, None]
+    jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
         return one
     exponents = np.linalg.eigvals(jacobian)
