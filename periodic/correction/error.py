@@ -17,11 +17,11 @@ from periodic.correction.condition import SideCondition
 from periodic.correction.newton import USUAL, Linearise, Linearised, NewtonSettings, linearised, moved
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
-from periodic.correction.shares import shares
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.stability.shares import shares
 from periodic.stability.spectrum import Spectrum
 from periodic.stability.spectrum import apart as powers_apart
 from periodic.system import System

@@ -8,7 +8,7 @@ from support.traces import RPM, disc, user_points
 
 import periodic as per
 import symbolic as sym
-from periodic.correction.shares import shares
+from periodic.stability.shares import shares
 
 
 def test_they_are_what_the_intervals_add() -> None:
