@@ -20,6 +20,10 @@ TERMS = 4
 """How many times the rounding of the terms that cancel in it a switch may be off its level at the most."""
 
 
+LIKELY = 2
+"""How many times it may well be."""
+
+
 def aside(orbit: Orbit, rows: list[Row]) -> Array:
     """Return how far from their levels rounding leaves the switches of event nodes, shape (k,)."""
     sizes = [float(np.abs(row.nodes * orbit.nodes).sum()) for row in rows]
@@ -43,7 +47,7 @@ def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
         slope = abs(float(row.nodes[start] @ rate_before(orbit, i)) + float(row.outer[i]))
         late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
-    return _fastest(orbit, spectrum) * late / TERMS / spectrum.radius if late else 0.0
+    return _fastest(orbit, spectrum) * late * LIKELY / TERMS / spectrum.radius if late else 0.0
 
 
 def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:

@@ -106,7 +106,8 @@ class Way:
 
     residual is the largest one at that orbit, size the largest relative increment for the convergence test,
     length that for damping, and stretch the largest change of the distance between two event nodes, relative
-    to it where that is less than 1 rad.
+    to it where that is less than 1 rad. depth is about the same by which the states' own increment is felt
+    there: beside a touch the square of a contact's length goes with them.
     """
 
     orbit: Orbit
@@ -116,6 +117,12 @@ class Way:
     size: float
     length: float
     stretch: float
+    depth: float
+
+    @property
+    def unknown(self) -> float:
+        """By how much lengths of contacts may be off, relative."""
+        return max(self.stretch, self.depth)
 
 
 @dataclass(frozen=True)
@@ -128,7 +135,7 @@ class Step(Way):
     def way(self) -> Way:
         """Without them."""
         known = (self.orbit, self.residual, self.increment, self.kernel)
-        return Way(*known, self.size, self.length, self.stretch)
+        return Way(*known, self.size, self.length, self.stretch, self.depth)
 
 
 def correct(
@@ -209,7 +216,7 @@ class _Equations:
             orbit = self._moved(last, factor)
             if last.size < settings.tolerance:
                 outcome = Outcome.CONVERGED if in_order(orbit) else Outcome.EVENTS_CROSSED
-                close = max(last.length, last.stretch) <= settings.close * settings.tolerance
+                close = max(last.length, last.unknown) <= settings.close * settings.tolerance
                 return _Iterated(orbit, outcome, iteration, last, trial.operator if close else None)
         return _Iterated(orbit, Outcome.TOO_MANY, settings.max_iterations, last)
 
@@ -222,7 +229,7 @@ class _Equations:
             return orbit, last, operator
         close = self.settings.close * self.settings.tolerance
         step = self.step(orbit)
-        while close < step.stretch < last.stretch / 4:
+        while close < step.unknown < last.unknown / 4:
             last, step = step.way, self.step(self._moved(step, 1.0))
         return step.orbit, step.way, step.operator
 
@@ -246,8 +253,9 @@ def newton_step(
     found = operator.solve(rows, right)
     size, length = sizes(system, operator, found[0], free, settings)
     kernel, stretch = found[1] if rows else None, stretched(orbit, found[0])
+    depth = size / briefest(orbit) ** 2 if orbit.mesh.events else 0.0
     size = max(size, stretch**2)
-    return Step(orbit, operator.residual, found[0], kernel, size, length, stretch, operator)
+    return Step(orbit, operator.residual, found[0], kernel, size, length, stretch, depth, operator)
 
 
 def stretched(orbit: Orbit, increment: Increment) -> float:
@@ -259,6 +267,11 @@ def stretched(orbit: Orbit, increment: Increment) -> float:
         return 0.0
     change = np.diff(np.append(increment.phases, increment.phases[0]))
     return float(np.abs(change / np.minimum(orbit.mesh.segment_lengths(orbit.phases), 1.0)).max())
+
+
+def briefest(orbit: Orbit) -> float:
+    """Return the least distance between two event nodes, at most 1 rad."""
+    return min(1.0, float(np.abs(orbit.mesh.segment_lengths(orbit.phases)).min()))
 
 
 @dataclass(frozen=True)

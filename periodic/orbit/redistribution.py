@@ -26,7 +26,10 @@ SPLIT = 1.4
 """An interval is halved where it would hold more than this many intervals of the wanted density."""
 
 GROWTHS = tuple(1.1**k for k in range(8))
-"""Factors tried on the density until halving gives as many intervals as wanted."""
+"""Factors tried on the density until halving gives about as many intervals as wanted."""
+
+ABOUT = 0.95
+"""What part of them is enough where there were more: equal ones come in powers of 2."""
 
 
 def density(orbit: Orbit) -> Array:
@@ -77,9 +80,10 @@ def redistribute(
     if demand is not None:
         wanted = np.maximum(wanted, demand)
         ntst = round(float(wanted @ orbit.grid.width))
+    enough = ABOUT * ntst if ntst <= orbit.mesh.ntst else ntst
     for growth in GROWTHS:
         mesh = spread(orbit, growth * wanted, events, phases, shortest)
-        if mesh.ntst >= ntst:
+        if mesh.ntst >= enough:
             break
     return mesh
 

@@ -10,6 +10,9 @@ import numpy as np
 
 from periodic.orbit.scheme import Array
 
+WORST = 1e12
+"""Condition of fundamental matrices beyond which what damping has left of motions is rounding."""
+
 
 def shares(fundamental: Array, halved: Array) -> Array | None:
     """Return the norm of what each interval adds to the error of the monodromy matrix, shape (N,).
@@ -25,14 +28,27 @@ def shares(fundamental: Array, halved: Array) -> Array | None:
     Returns
     -------
     ndarray or None
-        None where motions are damped so well that nothing is left of them to tell it by, or where matrices
-        are of other places.
+        None where motions are damped so well that nothing but rounding is left of them to tell it by, or
+        where matrices are of other places.
     """
     if len(halved) != 2 * len(fundamental) - 1:
         return None
+    with np.errstate(all="ignore"):  # growth by hundreds of decades is too much for shares, no error
+        return _shares(fundamental, halved[::2] - fundamental)
+
+
+def _shares(fundamental: Array, late: Array) -> Array | None:
     try:
-        late = np.linalg.solve(fundamental, halved[::2] - fundamental)
+        inverse: Array = np.asarray(np.linalg.inv(fundamental), dtype=float)
     except np.linalg.LinAlgError:
         return None
-    found: Array = np.linalg.norm(fundamental[-1] @ np.diff(late, axis=0), axis=(1, 2))
+    condition = _norms(inverse) * _norms(fundamental)
+    if not condition.max() < WORST:
+        return None
+    steps: Array = fundamental[-1] @ np.diff(inverse @ late, axis=0)
+    found = _norms(steps)
     return found if np.isfinite(found).all() else None
+
+
+def _norms(matrices: Array) -> Array:
+    return np.asarray(np.linalg.norm(matrices, axis=(1, 2)))

@@ -212,15 +212,25 @@ def apart(one: Array, two: Array) -> float:
     return float(max(first, second))
 
 
+SMALLEST = float(np.finfo(float).tiny)
+"""Length below which nothing is left of a motion."""
+
+
 def _turns(begin: Complex, end: Complex) -> Array:
     """The integral of Im(w* dw)/|w|^2 along the chords between vectors, shapes (K, n, k) and (K, k).
 
     Where a contact reverses a velocity within an interval the chord passes between the two, not by +-pi.
     """
-    product = (begin.conj() * end).sum(axis=1)
-    product = product / (np.linalg.norm(begin, axis=1) * np.linalg.norm(end, axis=1))
+    product = (_directions(begin).conj() * _directions(end)).sum(axis=1)
     angle = np.arccos(np.clip(product.real, -1, 1))
     found: Array = product.imag / np.sinc(angle / np.pi).clip(STRAIGHT)
+    return found
+
+
+def _directions(vectors: Complex) -> Complex:
+    """Vectors (K, n, k) of length 1; those that have died out, and turn no more, as they are."""
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    found: Complex = vectors / np.where(size > SMALLEST, size, 1.0)
     return found
 
 

@@ -141,7 +141,7 @@ def shot(omega: float, near: list[float]) -> np.ndarray:
     def half(start: np.ndarray) -> np.ndarray:
         return path(rates_of_two_masses, [*start, 0, 0], np.pi / omega)[2:, -1]
 
-    return fsolve(half, near, xtol=1e-12)
+    return fsolve(half, near, xtol=1e-11)
 
 
 @pytest.mark.parametrize("which", [0, 1])

@@ -45,7 +45,8 @@ _SETTINGS = (
     "negligible",
     "growth",
 )
-_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", "residual", "size", "length", "stretch")
+_MEASURED = ("residual", "size", "length", "stretch", "depth")
+_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", *_MEASURED)
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
 _ADDRESSES = (*_GIVEN, "lengths", *FOUND, *SOLVED)

@@ -41,7 +41,7 @@ struct call {
     struct change increment, kernel;
     double period, nominal, tolerance, close, max_change, shortest, narrow, negligible, growth;
     double origin_parameter, slope, distance;
-    double residual, size, length, stretch;
+    double residual, size, length, stretch, depth;
     whole iterations;
 };
 
@@ -331,12 +331,15 @@ static int measure(struct call *c, struct room *r)
         left = fmax(left, unknowns * unknowns);
         felt = fmax(felt, fmin(1, r->width[j] / c->narrow) * unknowns);
     }
+    double briefest = 1;
     c->stretch = 0;
     for (whole a = 0; a < k; a++) { /* of segments, relative where they are shorter than 1 rad */
         const whole next = a + 1 < k ? a + 1 : 0;
         const double own = (next ? c->phases[next] : c->phases[0] + c->period) - c->phases[a];
         c->stretch = fmax(c->stretch, fabs(d->outer[next] - d->outer[a]) / fmin(own, 1));
+        briefest = fmin(briefest, fabs(own));
     }
+    c->depth = k ? fmax(regular, left) / (briefest * briefest) : 0;
     c->size = fmax(fmax(regular, left), c->stretch * c->stretch);
     c->length = fmax(regular, felt);
     const int finite = finite_all((c->count + 1) * n, d->nodes) && finite_all(points * n, d->stages)
@@ -441,17 +444,20 @@ static int iterate(struct call *c, struct room *r)
     return found ? DONE : TOO_MANY;
 }
 
+/* By how much lengths of contacts may be off, relative. */
+static double unknown(const struct call *c) { return fmax(c->stretch, c->depth); }
+
 /* Linearise at the orbit found, or at one still closer where a contact is so short that its length is not known
    well enough. */
 static int closer(struct call *c, struct room *r)
 {
     const double close = c->close * c->tolerance;
-    if (c->length <= close && c->stretch <= close)
+    if (c->length <= close && unknown(c) <= close)
         return DONE;
-    double last = c->stretch;
+    double last = unknown(c);
     int code = linearised(c, r);
-    while (code == DONE && close < c->stretch && c->stretch < last / 4) {
-        last = c->stretch;
+    while (code == DONE && close < unknown(c) && unknown(c) < last / 4) {
+        last = unknown(c);
         keep(c, r);
         move(c, r, 1);
         code = linearised(c, r);

@@ -72,5 +72,7 @@ def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = np.concatenate([[0.0], np.cumsum(np.maximum(chords, 1e-9))])
     parts = np.arange(len(x) - 1)[:, None] + np.arange(PER_SEGMENT) / PER_SEGMENT
     where = np.interp(np.append(parts, len(x) - 1), np.arange(len(x)), length)
-    curve = PchipInterpolator(length, np.column_stack([x, y]))(where)
+    points = np.column_stack([x, y])
+    curve = PchipInterpolator(length, points)(where)
+    curve[::PER_SEGMENT] = points
     return curve[:, 0], curve[:, 1]
