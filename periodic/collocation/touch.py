@@ -24,7 +24,7 @@ from periodic.collocation.turns import held, short_of, turns
 from periodic.correction.change import Beyond, Change
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
+from periodic.orbit.redistribution import MIN_INTERVALS, redistribute
 from periodic.orbit.scheme import Array
 from periodic.system import System, resets_of, slides_of
 
@@ -154,7 +154,8 @@ class Meeting:
         """The mesh without some event nodes."""
         kept = [m for m in range(len(orbit.phases)) if m not in ended]
         events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
-        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        gone = MIN_INTERVALS * (len(orbit.mesh.events) - len(events)) // 2  # of excursions that are no more
+        mesh = redistribute(orbit, orbit.mesh.ntst - gone, events, phases, self.shortest)
         return Beyond(mesh, phases, condition, True)
 
     def _as_short(self, orbit: Orbit) -> tuple[int, ...]:

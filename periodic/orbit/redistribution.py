@@ -26,10 +26,7 @@ SPLIT = 1.4
 """An interval is halved where it would hold more than this many intervals of the wanted density."""
 
 GROWTHS = tuple(1.1**k for k in range(8))
-"""Factors tried on the density until halving gives about as many intervals as wanted."""
-
-ABOUT = 0.95
-"""What part of them is enough where there were more: equal ones come in powers of 2."""
+"""Factors tried on the density until halving gives as many intervals as wanted."""
 
 
 def density(orbit: Orbit) -> Array:
@@ -80,10 +77,9 @@ def redistribute(
     if demand is not None:
         wanted = np.maximum(wanted, demand)
         ntst = round(float(wanted @ orbit.grid.width))
-    enough = ABOUT * ntst if ntst <= orbit.mesh.ntst else ntst
     for growth in GROWTHS:
         mesh = spread(orbit, growth * wanted, events, phases, shortest)
-        if mesh.ntst >= enough:
+        if mesh.ntst >= ntst:
             break
     return mesh
 
