@@ -35,6 +35,12 @@ def test_singular_matrices_tell_nothing() -> None:
     assert shares(gone, np.repeat(gone, 2, axis=0)[:-1]) is None
 
 
+def test_what_rounding_has_left_tells_nothing() -> None:
+    """Assert that there is no answer either where a motion is known to 1e-16 of the largest alone."""
+    left = np.array([np.eye(2), np.diag([1.0, 1e-15]), np.diag([1.0, 1e-15])])
+    assert shares(left, np.repeat(left, 2, axis=0)[:-1]) is None
+
+
 def sums(point: per.Point) -> tuple[complex, complex]:
     """Sums of the multipliers and of their squares, over the largest."""
     size = max(1.0, float(np.abs(point.multipliers).max()))
