@@ -116,10 +116,10 @@ def neighbour(way: Adaptive, problem: Problem) -> per.Orbit:
     return found.orbit
 
 
-def tolerance(orbit: float, newton: float | None = None) -> per.Tolerance:
-    """Return a tolerance of orbits with Newton's as the dial has it, or another one."""
+def tolerance(orbit: float, newton: float | None = None, most: int = NEWTON.max_iterations) -> per.Tolerance:
+    """Return a tolerance of orbits with Newton's as the dial has it, or another one, and its iterations."""
     limit = newton or max(1e-2 * orbit, 1e-10) ** 0.75
-    return per.Tolerance(orbit=orbit, newton=replace(NEWTON, tolerance=limit))
+    return per.Tolerance(orbit=orbit, newton=replace(NEWTON, tolerance=limit, max_iterations=most))
 
 
 def shooting(integrator: float) -> Adaptive:
