@@ -78,7 +78,6 @@ def wanted_ntst(orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int
     order = orbit.mesh.scheme.ncol + 1
     known = error.shares is not None
     curable = min(error.curable, error.spread) if known else error.curable
-    aim = CLOSER if known or orbit.mesh.events else AIM
-    ratio = curable / (aim * tolerance) if np.isfinite(error.worst) else 4.0**order
+    ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * orbit.mesh.ntst), least, most))

@@ -29,7 +29,7 @@ from reports.studies.trade.words import advice, failures, meshes, seconds, tiers
 Solver = Callable[[Problem], Correction]
 
 TIGHT = Adaptive(per.Collocation(scheme=per.Scheme(per.Family.RADAU, 7)), tolerance(1e-11, most=30)).solve
-"""Collocation of the 13th order, anchored; on meshes this fine beside a loss of contact, Newton may take 22."""
+"""Collocation of the 13th order, anchored; on fine meshes beside a kink Newton takes up to 22 iterations."""
 
 SHOT = Adaptive(per.Shooting(tolerance=1e-12, scheme=per.Scheme(per.Family.RADAU, 6)), tolerance(1e-6)).solve
 """Shooting with CVODES at its tightest; its mesh points are the integrator's own."""
