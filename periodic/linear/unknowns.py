@@ -206,17 +206,17 @@ def metric_weights(orbit: Orbit) -> Array:
 def length_metric(orbit: Orbit, phases: Array) -> Array:
     """Return what changes of the event nodes' phases (k,) are multiplied with in the metric, shape (k,).
 
-    It is the sum over excursions of their lengths' changes, relative where they are brief.
+    It is the sum over excursions of their lengths' changes, relative where they are brief. Within one the
+    motion may be turned by friction.
     """
-    events = orbit.mesh.events
+    found = np.zeros(len(orbit.mesh.events))
     if len(orbit.mesh.exact_ends) == 0:
-        return np.zeros(len(events))
-    pairs = zip(events, (*events[1:], events[0]), strict=True)
-    returns = [a.switch == b.switch and a.direction != b.direction for a, b in pairs]
-    length = orbit.mesh.segment_lengths(orbit.phases)
-    weights = np.where(returns, (E_FOLD / length) ** 2 / (1 + (length / BRIEF) ** 4), 0.0)
-    change = weights * (np.roll(phases, -1) - phases)
-    found: Array = np.roll(change, 1) - change
+        return found
+    lengths = orbit.mesh.segment_lengths(orbit.phases)
+    for i, j in orbit.mesh.excursions:
+        length = float(sum(lengths[m % len(lengths)] for m in range(i, j if i < j else j + len(lengths))))
+        weight = (E_FOLD / length) ** 2 / (1 + (length / BRIEF) ** 4)
+        found[[i, j]] += weight * (phases[j] - phases[i]) * np.array([-1.0, 1.0])
     return found
 
 

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array, Scheme
 
+INSIDE = 2
+"""Most event nodes within a brief excursion: friction turns or holds the motion there, and lets it go."""
+
 
 @dataclass(frozen=True)
 class EventNode:
@@ -101,6 +104,17 @@ class Mesh:
         ends = np.append(self.starts[1:], self.ntst) - 1 if self.events else np.zeros(0, dtype=int)
         following = self.events[1:] + self.events[:1]
         return np.array([j for j, a in zip(ends, following, strict=True) if a.level == 0.0], dtype=int)
+
+    @cached_property
+    def excursions(self) -> list[tuple[int, int]]:
+        """Event nodes at which a switch passes its level and returns, at most `INSIDE` others between."""
+        k, found = len(self.events), list[tuple[int, int]]()
+        for i, first in enumerate(self.events):
+            ahead = ((i + m) % k for m in range(1, min(k, INSIDE + 2)))
+            j = next((j for j in ahead if self.events[j].switch == first.switch), None)
+            if j is not None and self.events[j].direction != first.direction:
+                found.append((i, j))
+        return found
 
     @cached_property
     def segments(self) -> tuple[NDArray[np.int_], Array, Array]:

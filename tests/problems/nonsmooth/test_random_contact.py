@@ -50,6 +50,7 @@ SAMPLE = [
     ("friction", 3),
     ("chains", 4),
     ("friction", 119),
+    ("friction", 100),
 ]
 
 
