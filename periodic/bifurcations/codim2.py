@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.bifurcations.branch import BRANCHING, branching
+from periodic.bifurcations.curves.contour import CONTOUR
+from periodic.bifurcations.curves.resting import HOPFS, RESTING_FOLDS
 from periodic.bifurcations.doubling import DOUBLING, doubling, passing
 from periodic.bifurcations.fold import FOLD
 from periodic.bifurcations.label import Label
@@ -21,8 +23,6 @@ from periodic.conditions.augmented import DoublingCondition, FoldCondition, Hopf
 from periodic.correction.condition import Condition
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
-from periodic.equilibrium.method import Equilibrium
-from periodic.equilibrium.normalform import first_lyapunov
 from periodic.linear.unknowns import mean_weights
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Complex, Stability
@@ -76,19 +76,6 @@ def _complex_beside(solution: Solution) -> bool:
     return complex_pair(_beside(solution))
 
 
-def _lyapunov(solution: Solution) -> float:
-    """The first Lyapunov coefficient: orbits are born on the other side beyond where it vanishes (Bautin)."""
-    method = solution.discretisation
-    assert isinstance(method, Equilibrium)
-    return first_lyapunov(solution.problem.system, solution.orbit, method.frequency)
-
-
-def _determinant(solution: Solution) -> float:
-    """The product of the eigenvalues, each over the largest one: a real one passes 0 beside the pair."""
-    found = solution.spectrum.multipliers
-    return float(np.prod(found / np.abs(found).max()).real)
-
-
 FOLDS = (
     TestFunction(label=Label.RESONANCE_1, value=lambda solution: second_at(solution, 1.0)),
     TestFunction(label=Label.FOLD_DOUBLING, value=doubling),
@@ -107,28 +94,27 @@ TORI = (
     TestFunction(label=Label.FOLD_TORUS, value=lambda solution: _passing_beside(solution, 1)),
     TestFunction(label=Label.DOUBLING_TORUS, value=lambda solution: _passing_beside(solution, -1)),
 )
-HOPFS = (
-    TestFunction(label=Label.BAUTIN, value=_lyapunov),
-    TestFunction(label=Label.ZERO_HOPF, value=_determinant),
-)
 CURVES: dict[type, tuple[TestFunction, ...]] = {
     FoldCondition: FOLDS,
     DoublingCondition: DOUBLINGS,
     TorusCondition: TORI,
-    HopfCondition: HOPFS,
 }
+OF_EQUILIBRIA: dict[type, tuple[TestFunction, ...]] = {FoldCondition: RESTING_FOLDS, HopfCondition: HOPFS}
+CRITICAL = {*CURVES, *OF_EQUILIBRIA}
+"""Conditions that hold a multiplier on the unit circle, or an eigenvalue on the imaginary axis."""
+
 HELD: dict[type, float] = {FoldCondition: 1.0, DoublingCondition: -1.0}
 
 
 def picked(problem: Problem) -> Condition | None:
     """Return the condition that picks the orbits of a curve, if there is one."""
     chosen = [c for c in problem.conditions if not c.intrinsic]
-    return next((c for c in chosen if type(c) in CURVES), chosen[0] if chosen else None)
+    return next((c for c in chosen if type(c) in CRITICAL), chosen[0] if chosen else None)
 
 
 def marginal(problem: Problem) -> bool:
     """Whether a multiplier is held on the unit circle."""
-    return type(picked(problem)) in CURVES
+    return type(picked(problem)) in CRITICAL
 
 
 def along(solution: Solution) -> tuple[TestFunction, ...]:
@@ -139,16 +125,13 @@ def along(solution: Solution) -> tuple[TestFunction, ...]:
 def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
     """Return the tests for special points in a step to a solution; `turned` if the parameter turns in it.
 
-    On a curve of orbits at a level, or of peaks, the folds of the branches that it crosses are where a
-    multiplier is 1.
+    On a curve of orbits at a level, or of peaks, they are those of the branches that it crosses.
     """
     condition, decides = picked(solution.problem), solution.discretisation.stability
     if condition is None:
         return PASSAGES[decides] + (() if turned else BESIDE_TURNS[decides])
-    if type(condition) in CURVES:
-        of_equilibria = type(condition) is HopfCondition
-        return CURVES[type(condition)] if of_equilibria or decides is Stability.MULTIPLIERS else ()
-    return (*PASSAGES[decides], TestFunction(label=Label.FOLD, value=branching))
+    known = CURVES if decides is Stability.MULTIPLIERS else OF_EQUILIBRIA
+    return known.get(type(condition), CONTOUR[decides])
 
 
 def alignment(base: Solution, new: Solution) -> float:

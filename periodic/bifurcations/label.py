@@ -50,6 +50,7 @@ class Label(str):
     DOUBLING_TORUS: ClassVar[Label]
     BAUTIN: ClassVar[Label]
     ZERO_HOPF: ClassVar[Label]
+    BOGDANOV_TAKENS: ClassVar[Label]
 
     def __new__(cls, text: str) -> Label:
         found = cls._registered.get(text)
@@ -118,3 +119,4 @@ Label.FOLD_TORUS = Label.register("LPNS")
 Label.DOUBLING_TORUS = Label.register("PDNS")
 Label.BAUTIN = Label.register("GH")
 Label.ZERO_HOPF = Label.register("ZH")
+Label.BOGDANOV_TAKENS = Label.register("BT")

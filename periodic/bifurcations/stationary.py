@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.equilibrium.linearise import crossing, rows_at
+from periodic.equilibrium.linearise import crossing, flat, rows_at
 from periodic.orbit.scheme import Array
 
 Complex = NDArray[np.complex128]
@@ -28,11 +28,15 @@ VERTICAL = 1e-5
 
 
 def hopf(solution: Solution) -> float:
+    """Return the test function of HB."""
+    return balance(solution.spectrum.multipliers)
+
+
+def balance(found: Complex) -> float:
     """prod over i < j of (lambda_i + lambda_j) / (|lambda_i| + |lambda_j|); 0 where energy is conserved."""
-    found = solution.spectrum.multipliers
     first, second = np.triu_indices(len(found), 1)
     sums = found[first] + found[second]
-    if (np.abs(sums) <= CONSERVED * np.abs(found).max()).any():
+    if (np.abs(sums) <= CONSERVED * np.abs(found).max(initial=0.0)).any():
         return 0.0
     return float(np.prod(sums / (np.abs(found[first]) + np.abs(found[second]))).real)
 
@@ -63,13 +67,23 @@ def _growth(solution: Solution) -> float:
     return float(np.sign(value) * parts.min()) if len(parts) else value
 
 
+def product(solution: Solution) -> float:
+    """The product of the eigenvalues over the largest one: it changes sign where a real one passes 0."""
+    found = solution.spectrum.multipliers
+    return float(np.prod(found / np.abs(found).max()).real)
+
+
 def _matrix(solution: Solution) -> tuple[Array, Array]:
-    """R_u and the tangent of length 1, u = (x, z, p), p in ranges of the parameter."""
+    """R_u with what determines u besides, and the tangent of length 1, u = (x, z, p), p in ranges."""
     problem, orbit, tangent = solution.problem, solution.orbit, solution.tangent
     rows = rows_at(problem.system, orbit, problem.free).balanced(problem.scale)
     outer = tangent.parameters / problem.scale
     along = np.concatenate([tangent.nodes[0], tangent.algebraic[0, 0], outer])
-    return rows, along / np.linalg.norm(along)
+    units = np.append(np.ones(len(along) - len(outer)), np.full(len(outer), problem.scale))
+    closing = [c.linearise(problem.system, orbit, problem.free) for c in problem.side_conditions(orbit)]
+    held = [units * flat(orbit, row) for row in closing]
+    matrix = np.vstack([rows, *(row / np.linalg.norm(row) for row in held)])
+    return matrix, along / np.linalg.norm(along)
 
 
 def branching(solution: Solution) -> float:
@@ -84,7 +98,12 @@ def _on_its_way(solution: Solution) -> bool:
 
 def crosses(turn: Solution, base: Solution, new: Solution) -> bool:
     """Whether two branches cross where one of them turns."""
-    return branching(base) * branching(new) < 0 and crossing(_matrix(turn)[0])
+    return branching(base) * branching(new) < 0 and is_crossed(turn)
+
+
+def is_crossed(solution: Solution) -> bool:
+    """Whether two branches cross at a solution."""
+    return crossing(_matrix(solution)[0])
 
 
 def _touches_twice(base: Solution, new: Solution) -> bool:

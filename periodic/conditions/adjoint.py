@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy
 
 from periodic.collocation.condensation import Condensed, condense
 from periodic.collocation.jumping.impacts import jumps
@@ -25,6 +24,7 @@ from periodic.collocation.jumping.saltation import at_fixed_phase, saltation_gra
 from periodic.collocation.residual import evaluated
 from periodic.conditions.curvature import beside, curvature
 from periodic.linear.bordering import Chain, chain, onto_start
+from periodic.linear.pair import subspaces, within
 from periodic.linear.variation import Complex, Tangent
 from periodic.orbit.gradients import Points, collocation_points, gathered, solved
 from periodic.orbit.jump import Jump
@@ -255,27 +255,9 @@ def _subspaces(matrix: Array, basis: Array | None) -> tuple[Array, Array]:
 
     The pair is the one whose product is nearest to 1, or whose subspace is nearest to `basis`.
     """
-    chosen = _nearest(matrix, basis)
-
-    def wanted(real: float, imag: float) -> bool:
-        return bool(np.abs(chosen - complex(real, imag)).min() < SAME * np.abs(chosen).max())
-
-    right = scipy.linalg.schur(matrix, sort=wanted)[1][:, :2]
-    left = scipy.linalg.schur(matrix.T, sort=wanted)[1][:, :2]
-    return right, left @ np.linalg.inv(right.T @ left)
-
-
-SAME = 1e-6
-"""Multipliers nearer to each other than this, relatively, belong to one pair."""
-
-
-def _nearest(matrix: Array, basis: Array | None) -> Array:
     values, vectors = np.linalg.eig(matrix)
+    if basis is not None:
+        return subspaces(matrix, within(basis, vectors), values)
     first, second = np.triu_indices(len(values), 1)
-    if basis is None:
-        partners = np.abs(values[first] * values[second] - 1)
-    else:
-        outside = np.linalg.norm(vectors - basis @ (basis.T @ vectors), axis=0)
-        partners = outside[first] + outside[second]
-    k = partners.argmin()
-    return np.array([values[first[k]], values[second[k]]])
+    k = int(np.abs(values[first] * values[second] - 1).argmin())
+    return subspaces(matrix, [int(first[k]), int(second[k])], values)

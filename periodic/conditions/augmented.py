@@ -17,7 +17,7 @@ import numpy as np
 
 from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
-from periodic.equilibrium.held import oscillating_row, singular_row
+from periodic.equilibrium.held import oscillating_row, oscillation, singular_row
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -77,7 +77,7 @@ def of_orbits(condition: Condition, origin: Orbit) -> None:
 
 @dataclass(frozen=True)
 class HopfCondition(Condition):
-    """The equilibrium is a Hopf point (HB): a pair of eigenvalues is on the imaginary axis."""
+    """A pair of eigenvalues of the equilibrium has the sum 0: a Hopf point (HB) while it is complex."""
 
     def at(self, origin: Orbit, given: Given) -> SideCondition:
         """Return the side condition near an equilibrium. Raises ValueError for an orbit that is none."""
@@ -85,19 +85,21 @@ class HopfCondition(Condition):
             raise ValueError(
                 "determined has HopfCondition(), which holds equilibria; it must be left out of orbits"
             )
-        return _Oscillating()
+        return _Oscillating(origin)
 
 
 @dataclass
 class _Oscillating:
-    """The real part of a pair of eigenvalues is 0, the one nearest the axis at first, then followed."""
+    """The sum of a pair of eigenvalues is 0, of the one nearest the axis at the origin, then followed."""
 
-    near: complex | None = None
+    origin: Orbit
+    near: Array | None = None
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return the real part and its gradient."""
-        row, self.near = oscillating_row(system, orbit, free, self.near)
-        return row
+        """Return half the sum and its gradient."""
+        if self.near is None:
+            self.near = oscillation(system, self.origin)
+        return oscillating_row(system, orbit, free, self.near)
 
 
 @dataclass

@@ -1,12 +1,13 @@
 """Equilibria held at a fold or a Hopf point while two parameters vary.
 
 A fold is where R_v, v = (x, z), is singular: the corner of a bordered matrix vanishes, as of orbits (see
-`periodic.conditions.augmented`). At a Hopf point a pair of eigenvalues has the sum 0: with R_v v + lambda
-R_x' v / omega = 0 and w the left eigenvector,
+`periodic.conditions.augmented`). At a Hopf point a pair of eigenvalues has the sum 0: with V a basis of its
+invariant subspace, R_v V + R_x' V B = 0, and W the left one, W R_x' V = I,
 
-    d lambda = -w (dR_v + lambda dR_x' / omega) v / (w R_x' v / omega),
+    d tr B = -tr W (dR_v V + dR_x' V B),
 
-by differences of the equations' derivatives; what is held to be zero is exact.
+which stays smooth where the pair becomes real, by differences of the equations' derivatives; what is held to
+be zero is exact.
 """
 
 from __future__ import annotations
@@ -15,10 +16,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import scipy
-from numpy.typing import NDArray
 
 from periodic.equilibrium.linearise import Rows, rows_at
+from periodic.linear.pair import subspaces, within
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -27,7 +27,8 @@ from periodic.system import System
 STEP = 1e-5
 """Step of central differences in scaled states, and in parameters as a part of their size."""
 
-Complex = NDArray[np.complex128]
+NEUTRAL = 1e-6
+"""Sum of two real eigenvalues, in parts of their sizes, that is 0."""
 
 
 def singular_row(
@@ -46,33 +47,42 @@ def singular_row(
     return _gathered(system, orbit, free, value, slope)
 
 
-def oscillating_row(
-    system: System, orbit: Orbit, free: tuple[int, ...], near: complex | None
-) -> tuple[Row, complex]:
-    """Return Re lambda per unit of tau with its gradient, and lambda, of the pair nearest to `near`.
+def oscillating_row(system: System, orbit: Orbit, free: tuple[int, ...], near: Array) -> Row:
+    """Return half the sum of a pair of eigenvalues per unit of tau and its gradient.
 
-    Without one it is the complex pair nearest to the imaginary axis. Raises numpy.linalg.LinAlgError where
-    no pair is complex.
+    The pair is the one whose subspace is nearest to the basis `near` (n, 2).
     """
     n, m = orbit.nodes.shape[1], orbit.algebraic.shape[2]
     rows = rows_at(system, orbit, ())
-    rate = np.hstack([rows.d_rate, np.zeros((n + m, m))])
-    values, left, right = scipy.linalg.eig(-_derivative(rows, n + m), rate, left=True, right=True)
-    upper = np.flatnonzero(np.isfinite(values) & (values.imag > 0))
-    if len(upper) == 0:
-        raise np.linalg.LinAlgError("no pair of eigenvalues is complex: the Hopf point has become a saddle")
-    away = (
-        np.abs(values[upper].real) / np.abs(values[upper]) if near is None else np.abs(values[upper] - near)
-    )
-    k = int(upper[away.argmin()])
-    v, w, found = right[:, k], left[:, k].conj(), complex(values[k])
-    size = w @ rate @ v
+    values, vectors = np.linalg.eig(rows.jacobian)
+    right, left = subspaces(rows.jacobian, within(near, vectors), values)
+    block = left.T @ rows.jacobian @ right
+    v = np.vstack([right, rows.unknowns @ right])
+    w = np.linalg.solve(rows.d_motion.T, np.vstack([left, np.zeros((m, 2))]))
 
     def slope(rows: Rows) -> float:
-        moved = _derivative(rows, n + m) @ v + found * (rows.d_rate @ v[:n])
-        return float((-(w @ moved) / size).real)
+        moved = _derivative(rows, n + m) @ v + rows.d_rate @ (right @ block)
+        return -float(np.sum(w * moved)) / 2
 
-    return _gathered(system, orbit, free, found.real, slope), found
+    return _gathered(system, orbit, free, float(np.trace(block)) / 2, slope)
+
+
+def oscillation(system: System, orbit: Orbit) -> Array:
+    """Return a basis (n, 2) of the subspace of the complex pair of eigenvalues nearest to the imaginary axis.
+
+    Of the real pair whose sum is 0, where there is one. Raises numpy.linalg.LinAlgError where there is
+    neither.
+    """
+    jacobian = rows_at(system, orbit, ()).jacobian
+    values = np.linalg.eigvals(jacobian)
+    first, second = np.triu_indices(len(values), 1)
+    sums = np.abs(values[first] + values[second]) / (np.abs(values[first]) + np.abs(values[second]))
+    pairs = np.isclose(values[first], values[second].conj(), rtol=1e-12, atol=0) & (values[first].imag != 0)
+    sums[~pairs & (sums > NEUTRAL)] = np.inf
+    if not np.isfinite(sums).any():
+        raise np.linalg.LinAlgError("no pair of eigenvalues is complex: the equilibrium is no Hopf point")
+    k = int(sums.argmin())
+    return subspaces(jacobian, [int(first[k]), int(second[k])], values)[0]
 
 
 def _derivative(rows: Rows, size: int) -> Array:

@@ -110,19 +110,20 @@ class Constant:
 
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
-        border = [self._flat(row) for row in rows]
+        border = [flat(self.orbit, row) for row in rows]
         matrix = np.vstack([self.rows.d_unknown, *border])
         size = len(self.rows.residual)
         aim = -np.append(self.rows.residual, [row.value for row in rows])[:, None] * right[:1]
         aim[size:] += right[1:]
         return tuple(direction(self.orbit, vector) for vector in np.linalg.solve(matrix, aim).T)
 
-    def _flat(self, row: Row) -> Array:
-        """A row's gradient in (x, z, p)."""
-        state = row.nodes.sum(axis=0)
-        if row.stages is not None:
-            state = state + row.stages.sum(axis=(0, 1))
-        return np.concatenate([state, np.zeros(self.orbit.algebraic.shape[2]), row.outer])
+
+def flat(orbit: Orbit, row: Row) -> Array:
+    """Return a row's gradient in (x, z, p) of an equilibrium."""
+    state = row.nodes.sum(axis=0)
+    if row.stages is not None:
+        state = state + row.stages.sum(axis=(0, 1))
+    return np.concatenate([state, np.zeros(orbit.algebraic.shape[2]), row.outer])
 
 
 def linearise(system: System, orbit: Orbit, free: tuple[int, ...]) -> Constant:

@@ -29,6 +29,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "PDNS": ("p", "doubling and torus"),
     "GH": ("*", "Bautin"),
     "ZH": ("p", "zero and Hopf"),
+    "BT": ("h", "Bogdanov-Takens"),
 }
 """Sign and meaning of each label; other labels have a sign of their own without a meaning."""
 

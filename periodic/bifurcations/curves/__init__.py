@@ -1,0 +1,1 @@
+"""Special points of curves in two parameters."""
