@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
 
-Complex = NDArray[np.complex128]
+Numbers = NDArray[np.inexact]
 
 
-def subspaces(matrix: Array, which: list[int], values: Complex) -> tuple[Array, Array]:
+def subspaces(matrix: Array, which: list[int], values: Numbers) -> tuple[Array, Array]:
     """Return right and left bases (n, 2) of the invariant subspace of two eigenvalues, left.T right = I.
 
     `which` are their indices among all eigenvalues `values` (n,) of the matrix. Raises
@@ -28,7 +28,7 @@ def subspaces(matrix: Array, which: list[int], values: Complex) -> tuple[Array, 
     return right, left @ np.linalg.inv(right.T @ left)
 
 
-def within(basis: Array, vectors: Complex) -> list[int]:
+def within(basis: Array, vectors: Numbers) -> list[int]:
     """Return which two of some vectors of unit length (n, k) lie nearest to an orthonormal basis' span."""
     outside = np.linalg.norm(vectors - basis @ (basis.T @ vectors), axis=0)
     first, second = np.triu_indices(vectors.shape[1], 1)
