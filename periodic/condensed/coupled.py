@@ -8,6 +8,7 @@ states there; the states of the linear part are those that the forces of the who
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -54,12 +55,29 @@ class Coupled:
         self.columns = [0, *range(1 + 2 * n, local.forces.shape[2])]
 
     @cached_property
+    def _own(self) -> bool:
+        """Whether there are own states: their rows are everywhere."""
+        return len(self.others) > 0
+
+    @cached_property
+    def felt(self) -> NDArray[np.int_]:
+        """Which of the linear part's states forces depend on; all of them where there are own states."""
+        if self._own:
+            return np.arange(len(self.places))
+        by_place = self.given.local.forces[:, :, [1 + self.n + place for place in self.places]]
+        return np.flatnonzero(by_place.any(axis=(0, 1)))
+
+    @cached_property
     def _by_active(self) -> Array:
-        """States at the points by the active forces, (P, s, C a ka)."""
-        found = self.flexibility.columns(self.held)
-        if len(self.active) < self.k:
-            found = found[..., self.active]
-        return np.asarray(found.reshape(self.points, len(self.places), self.count))
+        """States that are felt by the active forces, where equations are: (R, s, C a ka)."""
+        if self.count == 0:
+            return np.zeros((self.points, len(self.felt), 0))
+        found = self.flexibility.between(self.felt, self.active).block(self.held, everywhere=self._own)
+        return np.asarray(found.reshape(-1, len(self.felt), self.count))
+
+    def _at(self, at: NDArray[np.int_]) -> Array:
+        """Rows of these states at points where equations are, (R, s, C a ka)."""
+        return self._by_active[at] if len(at) < len(self._by_active) else self._by_active
 
     @cached_property
     def _rows_of_forces(self) -> Array:
@@ -92,9 +110,9 @@ class Coupled:
         return found.reshape(self.intervals, self.ncol, self.k, u.shape[1])
 
     def asked(self, states: Array) -> Array:
-        """Return the active forces (C a ka, r) that the places ask for where their states are (P, s, r)."""
+        """Return the active forces (C a ka, r) that the places ask for where their states are (C a, s, r)."""
         by_place = self._rows_of_forces[:, :, [1 + self.n + place for place in self.places]]
-        return np.asarray((by_place @ states[self.at]).reshape(self.count, states.shape[2]))
+        return np.asarray((by_place @ states).reshape(self.count, states.shape[2]))
 
     def _rate_blocks(self, rates: Array, at: NDArray[np.int_]) -> Array:
         """Rows (R, r, o) that multiply the own states' rates, as rows in the own states, (R, r, P, o)."""
@@ -112,8 +130,8 @@ class Coupled:
     def _inner(self, rows: Array, at: NDArray[np.int_]) -> Array:
         """Rows at some points, (R, r, w) of (1, d rate, d state, dy), as rows in u, (R r, size)."""
         n, others = self.n, self.others
-        by_place = rows[:, :, [1 + n + k for k in self.places]]
-        inner = by_place @ self._by_active[at]
+        by_place = rows[:, :, [1 + n + self.places[k] for k in self.felt]]
+        inner = by_place @ self._at(at)
         if len(others):
             own = self._rate_blocks(rows[:, :, 1 + others], at)
             own[np.arange(len(at)), :, at] += rows[:, :, 1 + n + others]
@@ -154,19 +172,23 @@ class Coupled:
             right = np.concatenate([right, -self._outer(self.given.local.own, np.arange(self.points))])
         return right
 
-    def restricted(self, states: Array, outer: Array) -> tuple[Array, Array]:
-        """Return a row in the states at the points (P, n) and (1, dy) as one in u and (1, dy)."""
-        by_place = states[:, self.places].ravel()
-        inner = by_place @ self._by_active.reshape(len(by_place), self.count)
-        inner = np.concatenate([inner, states[:, self.others].ravel()])
-        return inner, outer + by_place @ self.affine.reshape(len(by_place), -1)
+    def restricted(self, rows: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+        """Return rows in the states at the points (P, n) and (1, dy) as rows in u and in (1, dy)."""
+        states = np.array([row[0] for row in rows]).reshape(len(rows), self.points, self.n)
+        outer = np.array([row[1] for row in rows]).reshape(len(rows), len(self.columns))
+        by_place = np.ascontiguousarray(states[:, :, self.places].transpose(1, 2, 0))
+        weights = self.flexibility.pulled(by_place.reshape(self.intervals, self.ncol, *by_place.shape[1:]))
+        weights = weights.reshape(self.points, self.k, len(rows))[self.at[:, None], self.active]
+        own = states[:, :, self.others].reshape(len(rows), self.points * len(self.others))
+        inner = [weights.reshape(self.count, len(rows)).T, own]
+        outer = outer + np.tensordot(by_place, self.affine, axes=([0, 1], [0, 1]))
+        return np.concatenate(inner, axis=1), outer
 
     def stages(self, inner: Array, given: Array) -> Array:
         """Return the states at the points, (P, n), of u and (1, dy)."""
         found = np.empty((self.points, self.n), dtype=np.result_type(self.kind, inner))
-        found[:, self.places] = self._by_active @ inner[: self.count]
-        if given.any():
-            found[:, self.places] += self.affine @ given
+        made = self.flexibility.applied(self.forces(inner[:, None])).reshape(self.points, -1)
+        found[:, self.places] = made + self.affine @ given
         found[:, self.others] = inner[self.count :].reshape(self.points, len(self.others))
         return found
 

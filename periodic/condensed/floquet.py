@@ -79,16 +79,21 @@ class Floquet:
         """How free motion drives forces and own states at the points, (P ka + P o, coordinates)."""
         given, system = self.given, self._system
         n, modes = system.n, 2 * len(given.response.modes.exponents)
-        ahead = given.response.ahead.reshape(system.points, len(system.places), -1)
-        shown = np.concatenate([ahead.real, -ahead.imag], axis=2)
         right = np.zeros((system.size, modes + len(system.others)))
-        right[: system.count, :modes] = system.asked(shown)
+        right[: system.count, :modes] = system.asked(self._ahead(system.held))
         if len(system.others):
+            shown = self._ahead(np.arange(system.intervals))
             places = [1 + n + k for k in system.places]
             own = given.local.own
             right[system.count :, :modes] = -(own[:, :, places] @ shown).reshape(-1, modes)
             right[system.count :, modes:] = -self._begun(own[:, :, 1 + system.others])
         return right[:, self.kept]
+
+    def _ahead(self, intervals: NDArray[np.int_]) -> Array:
+        """States at the points of some intervals by the modes at the beginning, (R, s, 2 J)."""
+        shown = self.given.response.ahead(intervals)
+        shown = shown.reshape(-1, *shown.shape[2:])
+        return np.concatenate([shown.real, -shown.imag], axis=2)
 
     @cached_property
     def _left(self) -> Array:
@@ -139,7 +144,8 @@ class Floquet:
         """
         system = self._system
         flat = states.reshape(system.points, len(system.places), -1)
-        answer = scipy.linalg.lu_solve(self._factors, system.asked(flat), check_finite=False)
+        asked = system.asked(flat[system.at])
+        answer = scipy.linalg.lu_solve(self._factors, asked, check_finite=False)
         return np.concatenate([modes.real, modes.imag])[self.kept] + self._left @ answer
 
     def once(self, basis: Array) -> Array:

@@ -77,9 +77,7 @@ class Condensed:
     def _bordered(self, rows: Sequence[Row]) -> tuple[Array, Array]:
         """The equations with the rows of event nodes and side conditions, and these rows' constants."""
         system = self.system
-        border = [system.restricted(*folded(self.orbit, row)) for row in (*self.own, *rows)]
-        inner = np.array([row[0] for row in border]).reshape(len(border), system.size)
-        outer = np.array([row[1] for row in border]).reshape(len(border), system.right.shape[1])
+        inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
         return np.block([[system.matrix, -system.right[:, 1:]], [inner, outer[:, 1:]]]), outer[:, 0]
 
     def answered(self, rows: Sequence[Row], states: Array) -> Increment:
@@ -90,7 +88,7 @@ class Condensed:
         system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
         flat = states.reshape(system.points, -1)
         missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
-        aim: list[Any] = [system.asked(flat[..., None])[:, 0], [-float(np.vdot(m, flat)) for m in missed]]
+        aim: list[Any] = [system.asked(flat[system.at, :, None])[:, 0], [-float(np.vdot(m, flat)) for m in missed]]
         found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
         outer = found[system.size :]
         stages = system.stages(found[: system.size], np.append(0.0, outer))

@@ -78,8 +78,8 @@ class CondensedRepeating:
     def functional(self, row: Row) -> Array:
         """Return a row as a functional of (u, v_y)."""
         orbit = self.given.orbit
-        inner, outer = self.coupled.restricted(*folded(orbit, row, (1 / self.mu).real))
-        return np.concatenate([inner, outer[1 + len(orbit.phases) :]])
+        inner, outer = self.coupled.restricted([folded(orbit, row, (1 / self.mu).real)])
+        return np.concatenate([inner[0], outer[0, 1 + len(orbit.phases) :]])
 
     def tangent(self, unknown: Array) -> Tangent:
         """Return the motion of (u, v_y)."""
@@ -134,8 +134,8 @@ class CondensedRepeating:
         if source is not None:
             pull = pull + folded(given.orbit, source, (1 / self.mu).real)[0]
         pull = pull[:, coupled.places]
-        whole = coupled.flexibility.whole.reshape(pull.size, -1)
-        driven = np.where(coupled.passive, (pull.ravel() @ whole).reshape(coupled.points, -1), 0.0)
+        felt = coupled.flexibility.pulled(self._by_interval(pull))
+        driven = np.where(coupled.passive, felt.reshape(coupled.points, -1), 0.0)
         onto = np.zeros_like(onto, dtype=driven.dtype)
         onto[:, forces] = driven
         return np.concatenate([own, weights + _solved(line, onto)], axis=1), pull
@@ -188,10 +188,13 @@ class CondensedRepeating:
         size, ends = self._step(tangent), []
         for step in (size, -size):
             beside, _ = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, ())
-            whole = Flexibility.repeating(beside).whole
-            ends.append(pull.ravel() @ whole.reshape(pull.size, -1))
+            ends.append(Flexibility.repeating(beside).pulled(self._by_interval(pull)))
         found: Array = np.asarray((ends[0] - ends[1]) / (2 * size)).reshape(len(pull), -1)
         return found
+
+    def _by_interval(self, pull: Array) -> Array:
+        """Weights of states at the points (P, s) as (N, a, s, 1)."""
+        return pull.reshape(*self.given.orbit.stages.shape[:2], -1, 1)
 
     def _step(self, tangent: Tangent) -> float:
         parameter = self.given.orbit.parameter

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -66,53 +66,74 @@ class Flexibility:
         closing = self.response.closing if self.closing is None else self.closing[0]
         if self.response.uniform and self.past and closing is self.response.closing:
             return self._circulant()
-        return self._columns(self.intervals)
+        return self._block(self.intervals, self.intervals)
 
-    def columns(self, intervals: NDArray[np.int_]) -> Matrix:
-        """Return the columns of the forces of some intervals, in order: (N, a, s, C, b, k)."""
+    def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Flexibility:
+        """Return that of some of the states by some of the forces."""
+        return replace(self, response=self.response.between(states, forces))
+
+    def block(self, intervals: NDArray[np.int_], *, everywhere: bool) -> Matrix:
+        """Return what forces of some intervals, in order, do there, (C, a, s, C, b, k).
+
+        Or what they do everywhere, (N, a, s, C, b, k).
+        """
+        rows = self.intervals if everywhere else intervals
         if len(intervals) == len(self.intervals):
             return self.whole
-        return self.whole[:, :, :, intervals] if self.response.uniform else self._columns(intervals)
+        return self.whole[rows][:, :, :, intervals] if self.response.uniform else self._block(rows, intervals)
+
+    @property
+    def _chained_up(self) -> bool:
+        """Whether motion follows from interval to interval, without the matrix."""
+        return self.real and self.past
 
     def applied(self, forces: Array) -> Matrix:
         """Return the states at the points, (N, a, s, r), by forces (N, b, k, r)."""
         response = self.response
-        if response.uniform or not self.real or not self.past:
+        if not self._chained_up or np.iscomplexobj(forces):
             found = self.whole.reshape(-1, forces[..., 0].size) @ forces.reshape(-1, forces.shape[3])
             return np.asarray(found.reshape(*self.whole.shape[:3], forces.shape[3]))
-        if self.closing is not None:
-            begun = self.closing[0][:, None] * response.driven(forces)[-1]
-        else:
-            begun = np.zeros((len(response.modes.exponents), forces.shape[3]), dtype=complex)
-        return response.motions(forces, begun)[0]
+        return response.stages(forces, 0.0 if self.closing is None else self.closing[0])
 
-    def _columns(self, intervals: NDArray[np.int_]) -> Matrix:
-        count, points = len(self.intervals), self.response.scheme.ncol
+    def pulled(self, weights: Array) -> Matrix:
+        """Return the weights of forces, (N, b, k, r), in those (N, a, s, r) of the states that they make."""
+        if not self._chained_up or np.iscomplexobj(weights):
+            found = self.whole.reshape(weights[..., 0].size, -1).T @ weights.reshape(-1, weights.shape[3])
+            return np.asarray(found.reshape(*self.whole.shape[3:], weights.shape[3]))
+        return self.response.pulled(weights, 0.0 if self.closing is None else self.closing[0])
+
+    def _block(self, rows: NDArray[np.int_], intervals: NDArray[np.int_]) -> Matrix:
+        points = self.response.scheme.ncol
         s, k = self.response.modes.direct.shape
         kind = float if self.real else complex
-        found = np.zeros((count, points, s, len(intervals), points, k), dtype=kind)
+        found = np.zeros((len(rows), points, s, len(intervals), points, k), dtype=kind)
         if self.past:
             gaps = np.flatnonzero(np.diff(intervals) > 1) + 1
             for run in np.split(np.arange(len(intervals)), gaps) if len(intervals) else ():
-                self._run(found[:, :, :, run[0] : run[-1] + 1], intervals[run[0]])
+                self._run(found[:, :, :, run[0] : run[-1] + 1], rows, intervals[run[0]])
         if self.closing is not None:
-            found += self._earlier(intervals, *self.closing).reshape(found.shape)
+            found += self._earlier(rows, intervals, *self.closing).reshape(found.shape)
         return found
 
-    def _earlier(self, intervals: NDArray[np.int_], own: Complex, other: Complex) -> Matrix:
+    def _earlier(
+        self, at: NDArray[np.int_], intervals: NDArray[np.int_], own: Complex, other: Complex
+    ) -> Matrix:
         """The response to the periods before."""
         size = len(own)
-        rows, columns = self.response.ahead.reshape(-1, size), self.response.left(intervals).reshape(size, -1)
+        rows = self.response.ahead(at).reshape(-1, size)
+        columns = self.response.left(intervals).reshape(size, -1)
         if self.real:
             return real_product(rows, own[:, None] * columns)
         plain, conjugate = rows @ (own[:, None] * columns), rows @ (other.conj()[:, None] * columns)
         return np.asarray((plain + conjugate.conj()) / 2)
 
-    def _run(self, found: Matrix, first: int) -> None:
-        """Add the response within the period to a run of intervals, (N, a, s, C, b, k)."""
+    def _run(self, found: Matrix, rows: NDArray[np.int_], first: int) -> None:
+        """Add the response within the period to a run of intervals, in rows with all of these."""
         response, count = self.response, found.shape[3]
         inside, size = slice(first, first + count), len(response.modes.exponents)
-        start, end = response.start[first + count :], response.end[inside]
+        here = int(np.searchsorted(rows, first))
+        own, after = slice(here, here + count), rows[here + count :]
+        start, end = response.start[after], response.end[inside]
         each = np.arange(count)
         if count > 1:
             later = np.tril(np.ones((count, count), dtype=bool), -1)[:, None, None, :, None, None]
@@ -120,16 +141,16 @@ class Flexibility:
             slow = np.abs(response.modes.exponents.real) * duration <= SPREAD
             for chosen, way in ((slow, self._spread), (~slow, self._chained)):
                 if chosen.any():
-                    found[inside] += np.where(later, way(np.flatnonzero(chosen), inside), 0.0)
-        found[first + each, :, :, each] += response.local[inside]
+                    found[own] += np.where(later, way(np.flatnonzero(chosen), inside), 0.0)
+        found[here + each, :, :, each] += response.local[inside]
         if len(start):
             exponents = response.modes.exponents
             ahead = np.exp(exponents * (start - end[-1])[:, None])
             back = np.exp(exponents * (end[-1] - end)[:, None])
-            rows = (response.shown[first + count :] * ahead[:, None, None]).reshape(-1, size)
+            shown = (response.shown[after] * ahead[:, None, None]).reshape(-1, size)
             columns = response.impulse[inside] * back[:, :, None, None]
             columns = np.moveaxis(columns, 1, 0).reshape(size, -1)
-            found[first + count :] += real_product(rows, columns).reshape(len(start), *found.shape[1:])
+            found[here + count :] += real_product(shown, columns).reshape(len(start), *found.shape[1:])
 
     def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
         """Responses of some modes to earlier intervals of a run by one product."""

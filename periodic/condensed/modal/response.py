@@ -8,13 +8,14 @@ of the interval.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.condensed.modal.moments import Complex, Moments, Table
+from periodic.condensed.modal.reduction import Modes
 from periodic.orbit.mesh import Grid
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import ModesLike
@@ -57,6 +58,21 @@ class Response:
         rounded = np.round(self.grid.width / self.period, 13)
         _, first, which = np.unique(rounded, return_index=True, return_inverse=True)
         return self.grid.width[first], which
+
+    def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Response:
+        """Return that of some of the states to some of the forces."""
+        modes = self.modes
+        chosen = Modes(
+            modes.exponents,
+            modes.inputs[:, forces],
+            modes.outputs[states],
+            modes.direct[np.ix_(states, forces)],
+            modes.direct_rate[np.ix_(states, forces)],
+        )
+        found = replace(self, modes=chosen)
+        # these depend on mesh and exponents alone
+        vars(found).update({name: getattr(self, name) for name in ("_distinct", "_table", "closing")})
+        return found
 
     @property
     def uniform(self) -> bool:
@@ -128,10 +144,32 @@ class Response:
         found = self.closed(self._kicks(forces), self.closing if closing is None else closing)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
 
-    def stages(self, forces: Array) -> Array:
-        """Return the states at the points in periodic motion, (N, a, s, ...); forces (N, b, k, ...)."""
-        history = self.closed(self._kicks(forces), self.closing)
+    def stages(self, forces: Array, closing: Complex | float | None = None) -> Array:
+        """Return the states at the points in periodic motion, (N, a, s, ...); forces (N, b, k, ...).
+
+        With a `closing` of 0 the modes begin at rest.
+        """
+        history = self.closed(self._kicks(forces), self.closing if closing is None else np.asarray(closing))
         return self._states(forces, history[:-1])
+
+    def pulled(self, weights: Array, closing: Complex | float) -> Array:
+        """Return the weights of forces, (N, b, k, r), in those of the states that `stages` makes of them.
+
+        It is the adjoint, and goes from interval to interval backwards.
+        """
+        count, points, s, r = weights.shape
+        flat = weights.reshape(count, points * s, r)
+        size = len(self.modes.exponents)
+        seen = np.swapaxes(self.shown.reshape(count, -1, size), 1, 2) @ flat
+        driven, grown = _joined(seen[::-1].copy(), self.table.growth[::-1, :, -1].copy())
+        ends = np.zeros_like(driven)
+        # the period before takes what all of this one asks for at its beginning
+        ends[0] = np.asarray(closing).reshape(-1, 1) * driven[-1]
+        ends[1:] = driven[:-1] + grown[:-1, :, None] * ends[0]
+        impulse = np.swapaxes(self.impulse.reshape(count, size, -1), 1, 2)
+        own = np.swapaxes(self.local.reshape(count, points * s, -1), 1, 2) @ flat
+        found = own + (impulse @ ends[::-1]).real
+        return np.asarray(found.reshape(count, points, -1, r))
 
     def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
         """Return states at the points (N, a, s, r) and modes at the end (J, r) of motions from z(0).
@@ -198,33 +236,36 @@ class Response:
         return found
 
     def _chain(self, left: Complex) -> tuple[Complex, Complex]:
-        """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J).
-
-        Neighbours are joined in pairs, pairs in fours, and so on.
-        """
-        driven, grown = left.copy(), self.table.growth[:, :, -1].copy()
-        size, step = [1] * (left.ndim - 2), 1
-        while step < len(left):
-            driven[step:] += grown[step:].reshape(-1, left.shape[1], *size) * driven[:-step]
-            grown[step:] = grown[step:] * grown[:-step]
-            step *= 2
-        return driven, grown
+        """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J)."""
+        return _joined(left.copy(), self.table.growth[:, :, -1].copy())
 
     @cached_property
     def growth(self) -> Complex:
         """How the modes have grown at the mesh points, (N+1, J)."""
         return np.exp(self.modes.exponents * np.append(self.start, self.period)[:, None])
 
-    @cached_property
-    def ahead(self) -> Complex:
-        """States at the points by the modes at the beginning, (N, a, s, J)."""
-        return self.shown * self.growth[:-1, None, None]
+    def ahead(self, intervals: NDArray[np.int_]) -> Complex:
+        """Return the states at the points of some intervals by the modes at the beginning, (R, a, s, J)."""
+        return np.asarray(self.shown[intervals] * self.growth[intervals, None, None])
 
     def left(self, intervals: NDArray[np.int_]) -> Complex:
         """Return what forces of some intervals leave in the modes at the end of the period, (J, C, b, k)."""
         after = self.period - self.end[intervals]
         left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse[intervals]
         return np.moveaxis(left, 1, 0)
+
+
+def _joined(driven: Complex, grown: Complex) -> tuple[Complex, Complex]:
+    """Add up what intervals leave in the modes, (N, J, ...), while these grow by (N, J) in each.
+
+    Neighbours are joined in pairs, pairs in fours, and so on.
+    """
+    size, step = [1] * (driven.ndim - 2), 1
+    while step < len(driven):
+        driven[step:] += grown[step:].reshape(*grown[step:].shape, *size) * driven[:-step]
+        grown[step:] = grown[step:] * grown[:-step]
+        step *= 2
+    return driven, grown
 
 
 def real_product(rows: Complex, columns: Complex) -> Array:
