@@ -119,6 +119,11 @@ class Floquet:
         swapped = np.concatenate([np.arange(count) + count, np.arange(count), np.zeros(len(own), dtype=int)])
         return factor[:, None], across[:, None], place[swapped[self.kept]]
 
+    @property
+    def light(self) -> int:
+        """How many coordinates are damped lightly where the modes are left alone."""
+        return int((np.abs(self.given.response.growth[-1]) > LIGHT).sum() * 2)
+
     def answers(self, basis: Array) -> Array:
         """Return forces and own states at the points in free motion from the columns of a basis."""
         return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
@@ -285,12 +290,12 @@ def invariant(floquet: Floquet, count: int) -> Array:
     Of more where more are lightly damped: all of these then. Where the last would tear a pair apart it takes
     real ones below, else what is left.
     """
-    values, vectors = _largest(floquet, count)
-    order = np.argsort(-np.abs(values), kind="stable")
-    if np.abs(values[order[count - 1]]) > LIGHT:
+    # where the linear part alone has more, so has the whole, mostly
+    values, vectors = _largest(floquet, count) if floquet.light <= count else (np.zeros(0), np.zeros(0))
+    if len(values) < count or np.sort(np.abs(values))[-count] > LIGHT:
         values, vectors = _all(floquet)
-        order = np.argsort(-np.abs(values), kind="stable")
         count = max(count, int((np.abs(values) > LIGHT).sum()))
+    order = np.argsort(-np.abs(values), kind="stable")
     columns: list[Array] = []
     for k in order:
         if values[k].imag == 0 and len(columns) < count:

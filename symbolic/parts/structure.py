@@ -11,6 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from symbolic.arrays import Array
 from symbolic.checks import mapping, positive, refusal, text, whole
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
@@ -19,6 +20,10 @@ from symbolic.equations.variables import Coordinate
 from symbolic.structures.damping import ModalDamping
 from symbolic.structures.matrices import DENSE, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
+from symbolic.structures.modalslope import ModalSlope, modal_slope
+
+STEP = 1e-5
+"""Relative step of differences in the speed."""
 
 Freedoms = int | Sequence[int]
 Given = Any
@@ -135,11 +140,11 @@ class Structure(Part):
         Matrices
             The matrices, without what is damped mode by mode.
         """
-        key = float(speed) if self.varying else 0.0
+        given = (self.M, self.C, self.K, self.G)
+        key = float(speed) if any(callable(g) for g in given) else 0.0
         if key not in self._known:
             self._known.clear()
-            given = [_at(g, key) for g in (self.M, self.C, self.K, self.G)]
-            self._known[key] = Matrices(*given)
+            self._known[key] = Matrices(*(_at(g, key) for g in given))
         return self._known[key]
 
     def __getitem__(self, place: str) -> Any:
@@ -226,6 +231,34 @@ class Structure(Part):
             given = self.matrices(speed), self.modal_damping, speed, self.modes
             self._forms[key] = modal_form(self.name, *given, self._held)
         return self._forms[key]
+
+    def modal_slope(self, speed: float) -> ModalSlope | None:
+        """Return how the modes change with the speed; None where that is not known in closed form.
+
+        Parameters
+        ----------
+        speed : float
+            Omega in rad/s.
+
+        Returns
+        -------
+        ModalSlope or None
+            Derivatives in SI.
+
+        Raises
+        ------
+        ArithmeticError
+            Where two modes meet.
+        """
+        form = self.modal(speed)
+        if not form.own or self._held and not self.modal_damping.none:
+            return None
+        mass, damping, stiffness, gyroscopic = (
+            _steepness(given, speed, self.size) for given in (self.M, self.C, self.K, self.G)
+        )
+        if self.G is not None:
+            damping = damping + dense(_at(self.G, speed)) + speed * gyroscopic
+        return modal_slope(form, mass, damping, stiffness)
 
     @cached_property
     def _forms(self) -> dict[float, ModalForm]:
@@ -315,6 +348,15 @@ class Structure(Part):
 
 def _at(given: Given, speed: float) -> Given:
     return given(speed) if callable(given) else given
+
+
+def _steepness(given: Given, speed: float, size: int) -> Array:
+    """The derivative of a matrix in the speed, (n, n)."""
+    if not callable(given):
+        return np.zeros((size, size))
+    step = STEP * max(abs(speed), STEP)
+    after, before = (dense(given(speed + sign * step)) for sign in (1, -1))
+    return np.asarray((after - before) / (2 * step))
 
 
 def _constant(matrix: Any) -> ca.DM:

@@ -12,6 +12,7 @@ from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, refusal
 from symbolic.structures.matrices import index
 from symbolic.structures.modal import ModalForm
+from symbolic.structures.modalslope import ModalSlope
 
 STEP = 1e-5
 """Relative step of differences in the speed."""
@@ -32,6 +33,9 @@ class Modal(Protocol):
 
     def modal(self, speed: float) -> ModalForm:
         """Return the modes at a speed in rad/s."""
+
+    def modal_slope(self, speed: float) -> ModalSlope | None:
+        """Return how they change with the speed, None where only differences tell."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +130,11 @@ class LinearPart:
         at = self._at(omega)
         scale = -rate / omega
         if any(structure.varying for structure in self.structures):
-            return self._difference(omega, rate)
+            changes = [_change(structure, omega) for structure in self.structures]
+            known = [change for change in changes if change is not None]
+            if len(known) < len(changes):
+                return self._difference(omega, rate)
+            return self._product(omega, rate, known)
         velocity = np.zeros((len(self.states), 1))
         velocity[1::2] = scale
         zero = np.zeros_like(at.direct)
@@ -181,6 +189,23 @@ class LinearPart:
             raise refusal("structure", name, f"one of {', '.join(names)}")
         return self.structures[names.index(one_of("structure", name, names))]
 
+    def _product(self, omega: float, rate: float, changes: list[ModalSlope]) -> Modes:
+        """The same from the derivatives of the structures' own modes by the product rule."""
+        at, k, first = self._at(omega), len(self.places), 0
+        exponents = np.concatenate([change.exponents for change in changes]) / omega - at.exponents / omega
+        inputs, outputs = -at.inputs / omega, np.zeros_like(at.outputs)
+        for structure, change in zip(self.structures, changes, strict=True):
+            own = slice(first, first + len(change.exponents))
+            first = own.stop
+            for i, place in enumerate(self.places):
+                if place.structure is structure:
+                    inputs[own, i] += change.inputs[:, place.freedom] * place.unit_force / omega
+                    outputs[2 * i, own] = change.shapes[place.freedom] / place.scale
+        # velocities are exponents times displacements
+        outputs[1::2] = outputs[::2] * at.exponents + at.outputs[::2] * exponents
+        zero = np.zeros((2 * k, k))
+        return Modes(rate * exponents, rate * inputs, rate * outputs, zero, zero)
+
     def _difference(self, omega: float, rate: float) -> Modes:
         """The same by differences, the modes of the two sides matched and normalised alike."""
         middle = self._at(omega)
@@ -227,6 +252,14 @@ class LinearPart:
             direct,
             direct_rate,
         )
+
+
+def _change(structure: Modal, omega: float) -> ModalSlope | None:
+    """How the modes of a structure change, not at all where its matrices do not."""
+    if structure.varying:
+        return structure.modal_slope(omega)
+    form = structure.modal(omega)
+    return ModalSlope(*(np.zeros_like(a) for a in (form.exponents, form.shapes, form.inputs)))
 
 
 def like(given: Modes, other: Modes) -> Modes:

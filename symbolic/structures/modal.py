@@ -9,7 +9,7 @@ their static flexibility.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
@@ -53,6 +53,8 @@ class ModalForm:
         The matrices that they are of.
     complete : bool
         Whether they are all.
+    own : bool
+        Whether they are of M, C and K (and G) alone, nothing damped mode by mode.
     """
 
     exponents: Complex
@@ -60,6 +62,7 @@ class ModalForm:
     inputs: Complex
     matrices: Matrices
     complete: bool = True
+    own: bool = False
     _residuals: dict[tuple[int, ...], Array] = field(default_factory=dict, init=False, repr=False)
 
     def residual(self, freedoms: Sequence[int]) -> Array:
@@ -124,7 +127,7 @@ def modal_form(
         )
     if not damping.none:
         own = dense(own) + damping.matrix(matrices)
-    return _coupled(name, matrices, dense(own))
+    return replace(_coupled(name, matrices, dense(own)), own=damping.none)
 
 
 def stiffened(matrices: Matrices, held: Mapping[int, float]) -> Matrices:
