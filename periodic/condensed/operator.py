@@ -88,7 +88,10 @@ class Condensed:
         system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
         flat = states.reshape(system.points, -1)
         missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
-        aim: list[Any] = [system.asked(flat[system.at, :, None])[:, 0], [-float(np.vdot(m, flat)) for m in missed]]
+        aim: list[Any] = [
+            system.asked(flat[system.at, :, None])[:, 0],
+            [-float(np.vdot(m, flat)) for m in missed],
+        ]
         found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
         outer = found[system.size :]
         stages = system.stages(found[: system.size], np.append(0.0, outer))

@@ -2,8 +2,8 @@
 
 Of modes (M lambda^2 + C lambda + K) phi = 0 with inputs w,
 
-    T_ij = -w_i' (M' lambda_j^2 + C' lambda_j + K') phi_j,   dlambda_j = T_jj,   c_ij = T_ij/(lambda_j - lambda_i),
-    dphi_j = sum_i phi_i c_ij,   dw_i = -sum_j c_ij w_j - w_i' M' M^-1,
+    T_ij = -w_i' (M' lambda_j^2 + C' lambda_j + K') phi_j,   dlambda_j = T_jj,
+    dphi_j = sum_i phi_i c_ij,   dw_i = -sum_j c_ij w_j - w_i' M' M^-1,   c_ij = T_ij/(lambda_j - lambda_i),
 
 with all modes, their conjugates included (R. B. Nelson, AIAA Journal 14, 1976, 1201, of the state matrix).
 """

@@ -1,0 +1,56 @@
+"""How modes change with the speed: against the derivative of the dynamic flexibility."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symbolic as sym
+from symbolic.arrays import Complex
+
+
+def flexibility(parts: tuple[Complex, Complex, Complex], frequency: complex) -> Complex:
+    """What modes with exponents, shapes and inputs make of forces exp(s t), both of each pair."""
+    total = 0.0
+    for exponents, shapes, inputs in (parts, tuple(part.conj() for part in parts)):
+        total = total + shapes / 2 @ (inputs / (frequency - exponents)[:, None])
+    return np.asarray(total)
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_flexibility_changes_as_its_matrices_do(loaded: bool) -> None:
+    """Assert dH = -H (s^2 M' + s C' + K') H to 8 digits, of gyroscopic terms alone and of all matrices."""
+    n, speed, step = 4, 3.0, 1e-4
+    random = np.random.default_rng(3)
+    one, two, three, four = random.standard_normal((4, n, n))
+    mass, stiffness, gyroscopic = np.eye(n) + 0.1 * one @ one.T, 9 * np.eye(n) + two @ two.T, four - four.T
+    damping = 0.2 * np.eye(n) + 0.05 * three @ three.T
+    if loaded:
+        structure = sym.Structure(
+            lambda w: mass * (1 + 0.01 * w),
+            lambda w: damping + 0.02 * w * three,
+            lambda w: stiffness + w * one,
+        )
+        slopes = 0.01 * mass, 0.02 * three, one
+    else:
+        structure = sym.Structure(mass, damping, stiffness, gyroscopic)
+        slopes = np.zeros((n, n)), gyroscopic, np.zeros((n, n))
+    form, slope = structure.modal(speed), structure.modal_slope(speed)
+    assert slope is not None
+    names = ("exponents", "shapes", "inputs")
+    ends = [
+        flexibility(
+            tuple(getattr(form, name) + sign * step * getattr(slope, name) for name in names), 0.1 + 2.3j
+        )
+        for sign in (1, -1)
+    ]
+    value = flexibility(tuple(getattr(form, name) for name in names), 0.1 + 2.3j)
+    dynamic = (0.1 + 2.3j) ** 2 * slopes[0] + (0.1 + 2.3j) * slopes[1] + slopes[2]
+    exact = -value @ dynamic @ value
+    assert np.abs((ends[0] - ends[1]) / (2 * step) - exact).max() < 1e-7 * np.abs(exact).max()
+
+
+def test_modes_damped_one_by_one_are_left_to_differences() -> None:
+    """Assert that no closed form is given where a ratio of each mode's damping changes with the speed."""
+    structure = sym.Structure(np.eye(2), None, lambda w: np.diag([4.0, 9.0]) + w, damping=0.01)
+    assert structure.modal_slope(1.0) is None
