@@ -11,6 +11,7 @@ import numpy as np
 
 from periodic.bifurcations.branch import BRANCHING, branching
 from periodic.bifurcations.curves.contour import CONTOUR
+from periodic.bifurcations.curves.flips import GENERALISED
 from periodic.bifurcations.curves.resting import HOPFS, RESTING_FOLDS
 from periodic.bifurcations.doubling import DOUBLING, doubling, passing
 from periodic.bifurcations.fold import FOLD
@@ -85,6 +86,7 @@ DOUBLINGS = (
     TestFunction(label=Label.RESONANCE_2, value=lambda solution: second_at(solution, -1.0)),
     TestFunction(label=Label.FOLD_DOUBLING, value=branching),
     TestFunction(label=Label.DOUBLING_TORUS, value=_torus_beside, genuine=_complex_beside),
+    GENERALISED,
 )
 TORI = (
     TestFunction(label=Label.RESONANCE_1, value=lambda solution: _cosine(solution) - 1.0),

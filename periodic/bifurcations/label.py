@@ -51,6 +51,7 @@ class Label(str):
     BAUTIN: ClassVar[Label]
     ZERO_HOPF: ClassVar[Label]
     BOGDANOV_TAKENS: ClassVar[Label]
+    GENERALISED_DOUBLING: ClassVar[Label]
 
     def __new__(cls, text: str) -> Label:
         found = cls._registered.get(text)
@@ -120,3 +121,4 @@ Label.DOUBLING_TORUS = Label.register("PDNS")
 Label.BAUTIN = Label.register("GH")
 Label.ZERO_HOPF = Label.register("ZH")
 Label.BOGDANOV_TAKENS = Label.register("BT")
+Label.GENERALISED_DOUBLING = Label.register("GPD")

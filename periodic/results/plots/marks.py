@@ -30,6 +30,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "GH": ("*", "Bautin"),
     "ZH": ("p", "zero and Hopf"),
     "BT": ("h", "Bogdanov-Takens"),
+    "GPD": ("*", "generalised doubling"),
 }
 """Sign and meaning of each label; other labels have a sign of their own without a meaning."""
 

@@ -19,7 +19,7 @@ def test_a_label_is_its_text_and_there_is_one_of_each() -> None:
 def test_labels_with_a_multiplier_on_the_unit_circle() -> None:
     """Assert which labels mean a multiplier on the unit circle."""
     named = {"EP", "LP", "PD", "NS", "BP", "HB", "UZ", "MX", "CP", "R1", "R2", "R3", "R4"}
-    named |= {"LPPD", "LPNS", "PDNS", "GH", "ZH", "BT"}
+    named |= {"LPPD", "LPNS", "PDNS", "GH", "ZH", "BT", "GPD"}
     critical = {label for label in named if per.Label(label).critical}
     assert named <= set(per.Label.known()) and critical == {"LP", "PD", "NS", "BP", "HB"}
 

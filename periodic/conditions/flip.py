@@ -1,0 +1,108 @@
+"""The normal form of a period doubling: whether the doubled orbits that begin there are stable."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.collocation.condensation import condensed
+from periodic.conditions.adjoint import polynomial
+from periodic.correction.newton import moved_unknowns
+from periodic.linear.bordering import chain
+from periodic.linear.unknowns import mean_weights
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, linear_of
+
+STEP = 3e-3
+"""Length of the differences, which are of fourth order, as a part of the motion q."""
+
+NO_SIZE = 1e-6
+"""Orbits that are smaller than this (scaled) are at rest; states of order one are the unit then."""
+
+SETTLED = 1e-12
+ITERATIONS = 12
+
+
+def flip_coefficient(system: System, orbit: Orbit) -> float:
+    """Return the cubic coefficient of the period map P on the centre manifold of a period doubling.
+
+    With A = P'(x_0), A q = -q, A^T p = -p, p q = 1, and the second and third derivatives B, C of P,
+
+        c = p (C(q, q, q) + 3 B(q, (I - A)^-1 B(q, q))) / 6;   xi -> -xi + c xi^3.
+
+    The derivatives are differences of monodromy matrices of motions that begin beside the orbit, by the
+    orbit's own collocation. The root mean square
+    of q over the period, on the mesh points, is the orbit's largest peak to peak (scaled states).
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    orbit : Orbit
+        The orbit at the doubling, a piecewise polynomial without event nodes.
+
+    Returns
+    -------
+    float
+        c. Positive: stable doubled orbits on the side where the orbit is unstable (supercritical); negative:
+        unstable ones on the other side (subcritical).
+
+    Raises
+    ------
+    ValueError
+        For a Fourier series, an orbit with event nodes and a system that is condensed.
+    FloatingPointError, numpy.linalg.LinAlgError
+        Where a motion beside the orbit is not found.
+
+    References
+    ----------
+    Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.48.
+    """
+    polynomial(orbit)
+    if len(orbit.phases) or linear_of(system) is not None:
+        raise ValueError("orbit has event nodes, or its system is condensed; it must be a smooth one")
+    fundamental = chain(condensed(system, orbit, ()))[:, :, 1:]
+    A = fundamental[-1]
+    q, p = _critical(A), _critical(A.T)
+    size = orbit.span() if orbit.span() > NO_SIZE else 1.0
+    motion = np.einsum("j,jn->", mean_weights(orbit), (fundamental @ q) ** 2)
+    q = q * size / np.sqrt(motion)
+    p = p / (p @ q)
+    beside = {k: monodromy(system, orbit, k * STEP * q) for k in (-2, -1, 1, 2)} | {0: A}
+    first = (beside[-2] - 8 * beside[-1] + 8 * beside[1] - beside[2]) / (12 * STEP)
+    second = (-beside[-2] + 16 * beside[-1] - 30 * A + 16 * beside[1] - beside[2]) / (12 * STEP**2)
+    still = np.linalg.solve(np.eye(len(A)) - A, first @ q)
+    return float(p @ (second @ q + 3 * first @ still)) / 6
+
+
+def _critical(matrix: Array) -> Array:
+    """The real eigenvector of the eigenvalue nearest to -1."""
+    values, vectors = np.linalg.eig(matrix)
+    found = vectors[:, np.abs(values + 1).argmin()]
+    return np.asarray(found.real)
+
+
+def monodromy(system: System, orbit: Orbit, shift: Array) -> Array:
+    """Return the derivative (n, n) of the period map at a distance (n,) from where an orbit begins.
+
+    Raises FloatingPointError where Newton's iteration does not find the motion on the orbit's mesh.
+    """
+    still, change = np.zeros(0), np.append(1.0, shift)
+    allowed = SETTLED * max(orbit.span(), 1.0)
+    for _ in range(ITERATIONS):
+        local = condensed(system, orbit, ())
+        maps = chain(local)
+        nodes = maps @ change
+        stages, algebraic = local.recover(nodes, still, 1.0)
+        orbit = replace(
+            orbit,
+            nodes=orbit.nodes + nodes,
+            stages=orbit.stages + stages,
+            algebraic=moved_unknowns(system, orbit.algebraic, algebraic),
+        )
+        if np.abs(nodes).max() <= allowed:
+            return np.asarray(maps[-1, :, 1:])
+        change[1:] = 0.0
+    raise FloatingPointError("a motion beside the orbit was not found")
