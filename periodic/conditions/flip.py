@@ -21,6 +21,9 @@ STEP = 3e-3
 NO_SIZE = 1e-6
 """Orbits that are smaller than this (scaled) are at rest; states of order one are the unit then."""
 
+DEPENDENT = 1e-8
+"""Least cosine of left and right eigenvectors of a simple multiplier."""
+
 SETTLED = 1e-12
 ITERATIONS = 12
 
@@ -54,7 +57,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     ValueError
         For a Fourier series, an orbit with event nodes and a system that is condensed.
     FloatingPointError, numpy.linalg.LinAlgError
-        Where a motion beside the orbit is not found.
+        Where a motion beside the orbit is not found, and where -1 is no simple multiplier.
 
     References
     ----------
@@ -69,6 +72,8 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     size = orbit.span() if orbit.span() > NO_SIZE else 1.0
     motion = np.einsum("j,jn->", mean_weights(orbit), (fundamental @ q) ** 2)
     q = q * size / np.sqrt(motion)
+    if abs(p @ q) < DEPENDENT * np.linalg.norm(p) * np.linalg.norm(q):
+        raise FloatingPointError("the multiplier -1 is no simple one")
     p = p / (p @ q)
     beside = {k: monodromy(system, orbit, k * STEP * q) for k in (-2, -1, 1, 2)} | {0: A}
     first = (beside[-2] - 8 * beside[-1] + 8 * beside[1] - beside[2]) / (12 * STEP)

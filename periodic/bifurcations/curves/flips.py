@@ -5,6 +5,8 @@ There the cubic coefficient of the period map vanishes; a fold of doubled orbits
 
 from __future__ import annotations
 
+import numpy as np
+
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.conditions.flip import flip_coefficient
@@ -12,11 +14,20 @@ from periodic.correction.outcome import FAILURES
 from periodic.correction.solution import Solution
 from periodic.system import linear_of
 
+SIMPLE = 1e-3
+"""Distance of a second multiplier from -1 up to which the coefficient is not known: it is infinite at R2."""
+
+
+def _simple(solution: Solution) -> bool:
+    """Whether one multiplier alone is -1."""
+    beside = np.sort(np.abs(solution.spectrum.multipliers + 1))[1:]
+    return bool(beside.min(initial=np.inf) > SIMPLE)
+
 
 def _coefficient(solution: Solution) -> float:
-    """The cubic coefficient; 0 where it is not known: beside kinks, and of condensed systems."""
+    """The cubic coefficient; 0 where it is not known: also beside kinks, and of condensed systems."""
     system, orbit = solution.problem.system, solution.orbit
-    if len(orbit.phases) or linear_of(system) is not None:
+    if len(orbit.phases) or linear_of(system) is not None or not _simple(solution):
         return 0.0
     try:
         return flip_coefficient(system, orbit)
@@ -24,4 +35,4 @@ def _coefficient(solution: Solution) -> float:
         return 0.0
 
 
-GENERALISED = TestFunction(label=Label.GENERALISED_DOUBLING, value=_coefficient)
+GENERALISED = TestFunction(label=Label.GENERALISED_DOUBLING, value=_coefficient, genuine=_simple)
