@@ -28,6 +28,12 @@ HARDENING = 3e15
 UNBALANCE = (32.6, 3e-6)
 """Mass (kg) and eccentricity (m) at the first disc."""
 
+STATOR, GAP, SLIP = 1e6, 1e-4, 0.1
+"""The ring about the second disc: stiffness (N/m), gap (m), coefficient of friction."""
+
+SAG = 20.0
+"""Load on the second disc in N, downwards."""
+
 KEPT = 16
 """Modes of the reduced rotor."""
 
@@ -47,25 +53,33 @@ def matrices() -> sym.Matrices:
     return sym.Matrices(bare.M, damping, stiffness, bare.G, at=bare.at)
 
 
-def reduced() -> sym.Reduction:
-    """Return the rotor by some of its modes, and what its places add to them statically."""
-    first, _ = DISCS
-    ends = [f"{way}{node}" for node in (first, ELEMENTS) for way in "xy"]
+def reduced(other: int = ELEMENTS) -> sym.Reduction:
+    """Return the rotor by some of its modes, and what first disc and another node add to them statically."""
+    ends = [f"{way}{node}" for node in (DISCS[0], other) for way in "xy"]
     return sym.residual_modes(matrices(), ends, KEPT)
 
 
-def system(reduction: sym.Reduction) -> sym.CompiledSystem:
-    """Return the rotor with a hardening bearing and its unbalance."""
+def unbalanced(reduction: sym.Reduction, name: str, node: int) -> tuple[sym.Model, Any, Any]:
+    """Return the rotor with its unbalance, and the displacements of a node that gets a name."""
     at = reduction.matrices.at
-    names = {"disc": DISCS[0], "bearing": ELEMENTS}
-    places = {name: (at[f"x{node}"], at[f"y{node}"]) for name, node in names.items()}
+    names = {"disc": DISCS[0], name: node}
+    places = {place: (at[f"x{k}"], at[f"y{k}"]) for place, k in names.items()}
     rotor = sym.Structure(reduction.matrices, at=places, scale=1e-4)
     x, y = rotor["disc"]
     mass, eccentricity = UNBALANCE
-    model = rotor + sym.Unbalance(x, y, mass, eccentricity)
-    for place in rotor["bearing"]:
-        model = model + sym.CubicSpring(place, HARDENING)
-    return sym.compile(model)
+    return rotor + sym.Unbalance(x, y, mass, eccentricity), *rotor[name]
+
+
+def system(reduction: sym.Reduction) -> sym.CompiledSystem:
+    """Return the rotor with a hardening bearing."""
+    model, x, y = unbalanced(reduction, "bearing", ELEMENTS)
+    return sym.compile(model + sym.CubicSpring(x, HARDENING) + sym.CubicSpring(y, HARDENING))
+
+
+def rubbing(reduction: sym.Reduction) -> sym.CompiledSystem:
+    """Return the rotor with a ring about its second disc, which sags in it."""
+    model, x, y = unbalanced(reduction, "ring", DISCS[1])
+    return sym.compile(model + sym.Rub(x, y, STATOR, GAP, SLIP) + sym.ConstantForce(y, -SAG))
 
 
 def branch(rotor: sym.CompiledSystem) -> Branch:
@@ -78,40 +92,58 @@ def revolutions(point: Point) -> float:
     return point.parameter / RPM
 
 
+def timed(rotor: sym.CompiledSystem) -> tuple[Branch, float]:
+    """Return its branch and the seconds of the processor it took."""
+    begin = time.process_time()
+    found = branch(rotor)
+    return found, time.process_time() - begin
+
+
+def special(found: Branch) -> list[tuple[str, float]]:
+    """Return labels and speeds (rev/min) of the special points."""
+    points = [point for point in found.special_points if point.label is not Label.END]
+    return [(point.label.value, revolutions(point)) for point in points]
+
+
 def compute(tell: Tell) -> Found:
-    """Return the Campbell diagram of the linear rotor and the branch of the nonlinear one."""
+    """Return the Campbell diagram of the linear rotor and the branches of the nonlinear ones."""
     tell("Campbell diagram")
     speeds = np.linspace(0.0, 650.0, 53)
     diagram = sym.campbell(matrices(), speeds.tolist(), 6)
-    reduction = reduced()
-    tell("branch")
-    begin = time.process_time()
-    found = branch(system(reduction))
-    took = time.process_time() - begin
-    figure, (left, right) = panels(1, 2, height=3.2)
+    figure, (left, middle, right) = panels(1, 3, height=3.2)
     left.plot(speeds / RPM, diagram.frequencies / (2 * np.pi), color=TRUSTED)
     left.plot(speeds / RPM, speeds / (2 * np.pi), "--", color=PAPER, label="once a revolution")
     left.set(xlabel="speed (rev/min)", ylabel="natural frequency (Hz)", ylim=(0, 130))
     left.legend(frameon=False)
-    across = np.array([revolutions(point) for point in found])
-    swing = found.peak_to_peak("disc 1") * 1e6
-    draw_curve(right, across, swing, found.stable_between, color=TRUSTED)
-    right.set(xlabel="speed (rev/min)", ylabel="disc, x peak to peak (µm)", yscale="log")
-    folds = found.labelled(Label.FOLD)
+    reductions = {"hardening bearing": reduced(), "rub": reduced(DISCS[1])}
+    made = {"hardening bearing": system, "rub": rubbing}
+    rows, errors = [], []
+    for (name, reduction), axes in zip(reductions.items(), (middle, right), strict=True):
+        tell(name)
+        found, took = timed(made[name](reduction))
+        across = np.array([revolutions(point) for point in found])
+        swing = found.peak_to_peak("disc 1") * 1e6
+        draw_curve(axes, across, swing, found.stable_between, color=TRUSTED)
+        axes.set(xlabel="speed (rev/min)", ylabel="disc, x peak to peak (µm)", yscale="log", title=name)
+        ends = {"points": len(found), "seconds": took, "stop": str(found.stop)}
+        rows.append({"name": name, "special": special(found), **ends})
+        errors.append(reduction.error(*SPEEDS))
     numbers = {f"critical speed {k} (rev/min)": value / RPM for k, value in enumerate(diagram.critical(), 1)}
-    numbers |= {f"fold {k} (rev/min)": revolutions(point) for k, point in enumerate(folds, 1)}
-    numbers |= {"points": float(len(found)), "seconds": took, "error": reduction.error(*SPEEDS)}
-    return Found(numbers=numbers, figures={"rotor": figure})
+    return Found(numbers=numbers | {"error": max(errors)}, rows=rows, figures={"rotor": figure})
 
 
 def context(kept: Kept) -> Mapping[str, Any]:
-    """Return the critical speeds and the folds."""
+    """Return the critical speeds and the special points as text."""
     names = kept.numbers
+    told = [", ".join(f"{label} {place:.7g}" for label, place in row["special"]) for row in kept.rows]
     return {
         "critical": [value for name, value in names.items() if name.startswith("critical")],
-        "folds": [value for name, value in names.items() if name.startswith("fold")],
+        "told": told,
         "freedoms": 4 * (ELEMENTS + 1),
         "kept": KEPT,
+        "gap": 1e6 * GAP,
+        "stator": STATOR,
+        "slip": SLIP,
     }
 
 

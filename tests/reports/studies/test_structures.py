@@ -6,7 +6,6 @@ import re
 
 import pytest
 
-from periodic import Label
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
 from reports.studies.structures import accuracy, modes, peer, rotor, size
@@ -63,11 +62,14 @@ def test_stop_is_fresh() -> None:
 
 @pytest.mark.long
 def test_rotor_is_fresh() -> None:
-    """Assert the folds of the rotor anew to 1e-7."""
-    numbers = REPORT.kept(FOLDER)["rotor"].numbers
-    found = rotor.branch(rotor.system(rotor.reduced())).labelled(Label.FOLD)
-    kept = [value for name, value in numbers.items() if name.startswith("fold")]
-    assert [rotor.revolutions(point) for point in found] == pytest.approx(kept, rel=1e-7)
+    """Assert the special points of both rotors anew to 1e-7, those of the rub to 1e-6."""
+    hardening, rub = REPORT.kept(FOLDER)["rotor"].rows
+    other = rotor.rubbing(rotor.reduced(rotor.DISCS[1]))
+    made = (hardening, rotor.system(rotor.reduced()), 1e-7), (rub, other, 1e-6)
+    for row, system, close in made:
+        found = rotor.special(rotor.branch(system))
+        assert [label for label, _ in found] == [label for label, _ in row["special"]]
+        assert [at for _, at in found] == pytest.approx([at for _, at in row["special"]], rel=close)
 
 
 def test_page_is_that_of_its_sections() -> None:
