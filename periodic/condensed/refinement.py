@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +26,54 @@ FEWEST = 16
 """Intervals a period at the least beside contacts: forces that drive the structure are polynomials there."""
 
 
+LARGEST = 3000
+"""Unknowns at the most: their equations are dense, and the error estimate doubles them (288 MB)."""
+
+
 class CondensedRefinement(CollocationRefinement):
     """Equal intervals where no kink asks for others: there all is known of one interval.
 
     Else the motion is exact for its forces, so that intervals without any need but show it, and those with
     forces that depend on it are as short as the multipliers ask for too.
     """
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the orbit has the largest number of intervals, or nearly so many as it may have."""
+        return super().exhausted or (self._limited and 2 * self.orbit.mesh.ntst > self._most)
+
+    @property
+    def shortfall(self) -> str:
+        """Why the error exceeds its bound."""
+        more = f"; more would be over {LARGEST} unknown forces and own states" if self._limited else ""
+        return super().shortfall + more
+
+    @property
+    def _limited(self) -> bool:
+        """Whether the orbit needs more intervals than there may be unknowns for."""
+        if self._misplaced or self._most == self.method.ntst_max:
+            return False
+        wanted = float(self._wanted @ self.orbit.grid.width) if self.system.switches else super()._ntst
+        return wanted > self._most
+
+    @cached_property
+    def _most(self) -> int:
+        """Intervals at the most."""
+        part, most = linear_of(self.system), self.method.ntst_max
+        assert part is not None
+        points, own = self.orbit.mesh.scheme.ncol, self.orbit.nodes.shape[1] - len(part.states)
+        if most * points * (len(part.forces) + own) <= LARGEST:
+            return most
+        # the next mesh is FINER at the most
+        if self.orbit.mesh.ntst * points * (len(part.forces) + own) <= LARGEST / FINER:
+            return most
+        active = self._felt[1]
+        each = points * (len(part.forces) * max(float(active.mean()), 1 / len(active)) + own)
+        return max(self.method.ntst_min, min(most, int(LARGEST / each)))
+
+    @property
+    def _ntst(self) -> int:
+        return min(super()._ntst, self._most)
 
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
@@ -50,7 +93,7 @@ class CondensedRefinement(CollocationRefinement):
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
         wanted = self._wanted
         total = float(wanted @ self.orbit.grid.width)
-        scale = np.clip(total, self.method.ntst_min, self.method.ntst_max) / total
+        scale = np.clip(total, self.method.ntst_min, self._most) / total
         return spread(self.orbit, scale * wanted, events, phases, self.method.shortest)
 
     @property
@@ -76,7 +119,7 @@ class CondensedRefinement(CollocationRefinement):
         ratio = error / (AIM * self.method.tolerance)
         return float(np.clip(ratio, COARSER**-order, FINER**order)) ** (1 / order)
 
-    @property
+    @cached_property
     def _felt(self) -> tuple[list[int], NDArray[np.bool_]]:
         """States that are heard or that forces depend on, and the intervals with such forces, (N,)."""
         orbit, part = self.orbit, linear_of(self.system)

@@ -10,6 +10,7 @@ from support.cantilevers import cantilever
 
 import periodic as per
 import symbolic as sym
+from periodic.condensed import refinement
 
 
 def stop(tip: Any) -> list[sym.Part]:
@@ -39,3 +40,12 @@ def test_motion_is_that_of_all_states(
     assert ours.minimum["tip"] == pytest.approx(full.minimum["tip"], abs=digits * span)
     assert abs(max(abs(ours.multipliers)) - max(abs(full.multipliers))) < 10 * digits
     assert len(ours.orbit.phases) == len(full.orbit.phases) > 0
+
+
+def test_too_many_unknowns_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that meshes grow to no more unknowns than there may be, and that the reason is said."""
+    monkeypatch.setattr(refinement, "LARGEST", 60)
+    system = cantilever(1, stop, damping=0.05)
+    found = per.trace(system, "Omega", (3.2, 3.3), start=3.2, tol=1e-9)
+    assert found.stop.reason is per.Reason.INACCURATE
+    assert "over 60 unknown forces and own states" in str(found.stop)
