@@ -12,11 +12,11 @@ from periodic.correction.solution import Solution
 from periodic.stability.winding import passages
 
 TOUCHED = 0.01
-"""What a touch leaves of prod (mu - 1), as a part of that at the step's ends."""
+"""What a touch leaves of prod (1 - mu), as a part of that at the step's ends."""
 
 
 def branching(solution: Solution) -> float:
-    """prod (mu - 1) / (1 + |mu|); 0 where it is not known."""
+    """prod (1 - mu) / (1 + |mu|); 0 where it is not known."""
     spectrum = solution.spectrum
     return passing(spectrum.nontrivial, 1) if spectrum.known else 0.0
 

@@ -17,7 +17,11 @@ NEGATIVE = 1e-3
 
 
 def passing(found: Complex, at: int) -> float:
-    """prod (mu - at) / (1 + |mu|) of given multipliers; each factor over its size, so that none overflows."""
+    """prod (1 - at mu) / (1 + |mu|) of given multipliers, at = 1 or -1.
+
+    Each factor is over its size, so that none overflows. Of real multipliers only those past `at` change the
+    sign: how many damped ones are among the leading of many does not matter.
+    """
     return float(math.prod(_factors(found, at)).real)
 
 
@@ -31,7 +35,7 @@ def nearest(found: Complex, at: int) -> float:
 
 
 def _factors(found: Complex, at: int) -> list[complex]:
-    return [(mu - at) / (1 + abs(mu)) for mu in found.tolist()]
+    return [(1 - at * mu) / (1 + abs(mu)) for mu in found.tolist()]
 
 
 def dips(base: Solution, new: Solution, at: int) -> list[tuple[float, float]]:

@@ -9,6 +9,8 @@ import pytest
 from support.cantilevers import cantilever, cubic
 
 import periodic as per
+import symbolic as sym
+from periodic.condensed import floquet
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import Condensed
 
@@ -37,3 +39,20 @@ def test_a_further_multiplier_kept_is_no_torus() -> None:
     branch = per.trace(cantilever(50, cubic), "Omega", (56.0, 56.6), start=56.0, tol=1e-6)
     assert len(branch[0].multipliers) < len(branch[-1].multipliers)
     assert [point.label.value for point in branch.special_points] == ["EP", "EP"]
+
+
+def test_of_many_alike_the_leading_tell_the_fold_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that multipliers of one size, of which some are kept, make no BP beside a fold.
+
+    At the fold a pair of them has become real: one of the two leads, the other may be kept or not.
+    """
+    monkeypatch.setattr(floquet, "SMALL", 10)
+    places = [sym.coordinate(f"q{k}") for k in range(12)]
+    model = sym.CubicSpring(places[0], 0.1) + sym.HarmonicForce(places[0], 0.6, 1.6)
+    for k, place in enumerate(places):
+        model = model + sym.Mass(place, 1.0) + sym.Spring(place, 1.0) + sym.Damper(place, 0.1)
+        model = model + sym.Coupling(places[k - 1], place, 0.05) if k else model
+    system, method = sym.compile(model), per.Collocation(condense=True)
+    found = per.trace(system, "Omega", (1.0, 2.2), start=2.2, tol=1e-6, method=method)
+    assert {7, 8} < {len(point.multipliers) for point in found}
+    assert [point.label.value for point in found.special_points] == ["EP", "LP", "LP", "EP"]
