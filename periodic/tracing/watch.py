@@ -12,12 +12,13 @@ import numpy as np
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.checks import named
-from periodic.conditions.functionals import Functional, Value, apart
+from periodic.conditions.functionals import Functional, Value
 from periodic.conditions.levels import Level
 from periodic.correction.solution import Solution
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, index_of
+from periodic.tracing.passing import called, finite, passing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,9 +97,9 @@ class Watch:
         tuple of TestFunction
             In this order.
         """
-        events = [_passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
+        events = [passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
         limits = [
-            _passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
+            passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
@@ -121,7 +122,7 @@ class Watch:
         """
         found = {}
         for name, functional in self.columns.items():
-            value = _called(f"column {name}", functional, system, orbit)
+            value = called(f"column {name}", functional, system, orbit)
             if not isinstance(value, int | float | np.number):
                 raise ValueError(f"column {name} gave {value!r}; it must give a number")
             found[name] = float(value)
@@ -161,38 +162,12 @@ def slack(limit: float) -> float:
     return 1e-12 * abs(limit)
 
 
-def _called(what: str, functional: Functional, system: System, orbit: Orbit) -> object:
-    """Return what a functional of the user's gives. Raises ValueError that names the one that fails."""
-    try:
-        return functional(system, orbit)
-    except (ArithmeticError, LookupError, TypeError, AttributeError) as error:
-        why = f"{type(error).__name__}: {error}"
-        raise ValueError(f"{what} failed with {why}; it must give a number for each orbit") from error
-
-
 def _checked(test: TestFunction) -> TestFunction:
     """The same test function, refused where its value is no finite number."""
     name = f"special point {test.label.value or test.name}"
 
     def value(solution: Solution) -> float:
         found = test.value(solution)
-        return _finite(name, found, solution)
+        return finite(name, found, solution)
 
     return replace(test, value=value)
-
-
-def _finite(what: str, found: object, solution: Solution) -> float:
-    """A finite number. Raises ValueError that says where there is none."""
-    if not (isinstance(found, int | float | np.number) and math.isfinite(found)):
-        place = f"{solution.problem.parameter} = {solution.value:.10g}"
-        raise ValueError(f"{what} gave {found!r} at {place}; it must be a finite number")
-    return float(found)
-
-
-def _passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
-    def value(solution: Solution) -> float:
-        problem = solution.problem
-        found = _called(f"event {name}", functional, problem.shown, problem.seen(solution.orbit))
-        return apart(functional, _finite(f"event {name}", found, solution), level)
-
-    return TestFunction(label=label, value=value, name=name)
