@@ -14,6 +14,7 @@ class Reason(Enum):
     ASKED = "stopped as asked"
     EQUILIBRIUM = "equilibrium reached"
     HOMOCLINIC = "homoclinic orbit reached"
+    VANISHED = "orbits without size reached"
     MAX_POINTS = "largest number of points reached"
     MAX_NEWTON = "largest number of Newton iterations reached"
     SMALL_STEP = "step size below its minimum"
@@ -129,6 +130,17 @@ class Stop:
             The last one's (s).
         """
         return cls(Reason.HOMOCLINIC, f"the period grows without bound, {period:.4g} s here")
+
+    @classmethod
+    def vanished(cls, span: float) -> Stop:
+        """Return that the orbits have shrunk until their motion is rounding, at one parameter.
+
+        Parameters
+        ----------
+        span : float
+            The last one's largest peak to peak (scaled).
+        """
+        return cls(Reason.VANISHED, f"the motion has shrunk to rounding, {span:.2g} peak to peak (scaled)")
 
     @classmethod
     def interrupted(cls, count: int) -> Stop:

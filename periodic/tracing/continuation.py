@@ -33,7 +33,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
-from periodic.tracing import homoclinic
+from periodic.tracing import ending
 from periodic.tracing.passage import Reached, crossed, reached, standing
 from periodic.tracing.start import Start, collapsed
 from periodic.tracing.stepsize import ArclengthControl
@@ -290,10 +290,10 @@ class Continuation:
                 if self.stop is not None:
                     return
             self._completed(step)
-            longest = None if self.stop else homoclinic.period(self.solver.problem, self.collected)
-            if longest is not None:
-                self.stop = Stop.homoclinic(longest)
-                self.collected[-1] = replace(self.collected[-1], label=Label.END)
+            if self.stop is None:
+                self.stop = ending.reached(self.solver.problem, self.collected)
+                if self.stop is not None:
+                    self.collected[-1] = replace(self.collected[-1], label=Label.END)
             yield self.collected[-1]
             if self.stop is None and step.change is not None:
                 yield from self._crossed(step.change)

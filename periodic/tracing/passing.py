@@ -53,8 +53,9 @@ def comes_back(ends: tuple[float, float], rates: tuple[float, float]) -> bool:
     sign = math.copysign(1.0, ends[0])
     (a, b), (slope, last) = (sign * end for end in ends), (sign * rate for rate in rates)
     cubic = np.polynomial.Polynomial([a, slope, 3 * (b - a) - 2 * slope - last, 2 * (a - b) + slope + last])
-    flat = [root.real for root in cubic.deriv().roots() if root.imag == 0 and 0 < root.real < 1]
-    return bool(min((cubic(place) for place in flat), default=math.inf) < LEFT * min(a, b))
+    flat = np.asarray(cubic.deriv().roots(), dtype=np.complex128)
+    inside = flat.real[(flat.imag == 0) & (flat.real > 0) & (flat.real < 1)]
+    return bool(cubic(inside).min(initial=np.inf) < LEFT * min(a, b))
 
 
 def _rate_of(functional: Smooth) -> Callable[[Solution], float]:
@@ -62,9 +63,9 @@ def _rate_of(functional: Smooth) -> Callable[[Solution], float]:
         """d functional / d arclength."""
         problem, tangent = solution.problem, solution.tangent
         row = functional.linearise(problem.system, solution.orbit, problem.free)
-        found = np.vdot(row.nodes, tangent.nodes)
-        found += row.outer @ np.append(tangent.phases, tangent.parameters)
-        return float(found if row.stages is None else found + np.vdot(row.stages, tangent.stages))
+        found = float(np.vdot(row.nodes, tangent.nodes))
+        found += float(row.outer @ np.append(tangent.phases, tangent.parameters))
+        return found if row.stages is None else found + float(np.vdot(row.stages, tangent.stages))
 
     return rate
 

@@ -1,0 +1,44 @@
+"""Where nothing of a branch is left that its arclength could find: the parameter stands still."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from periodic.bifurcations.fold import VERTICAL
+from periodic.correction.problem import Problem
+from periodic.results.point import Point
+from periodic.results.stop import Stop
+from periodic.tracing import homoclinic
+
+ROUNDED = 1e2
+"""Motion of so many units of rounding of its states is none."""
+
+SMALLER = 1e2
+"""How many times as large orbits were when the parameter was the same but for rounding."""
+
+
+def reached(problem: Problem, points: Sequence[Point]) -> Stop | None:
+    """Return why a branch ends at its last point, if it does."""
+    longest = homoclinic.period(problem, points)
+    if longest is not None:
+        return Stop.homoclinic(longest)
+    return Stop.vanished(points[-1].orbit.span()) if vanished(problem, points) else None
+
+
+def vanished(problem: Problem, points: Sequence[Point]) -> bool:
+    """Whether orbits have shrunk to rounding of their states while the parameter stood still.
+
+    Those that only pass through a rest, or stay at rest from there on, do so along the parameter.
+    """
+    last = points[-1]
+    span = last.orbit.span()
+    if last.orbit.equilibrium or span > ROUNDED * np.finfo(float).eps * np.abs(last.orbit.nodes).max():
+        return False
+    for point in reversed(points):
+        if abs(point.parameter - last.parameter) > VERTICAL * problem.scale:
+            return False
+        if point.orbit.span() > SMALLER * span:
+            return True
+    return False
