@@ -33,7 +33,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
-from periodic.tracing import ending
+from periodic.tracing.ends import ending
 from periodic.tracing.passage import Reached, crossed, reached, standing
 from periodic.tracing.start import Start, collapsed
 from periodic.tracing.stepsize import ArclengthControl

@@ -10,7 +10,7 @@ from periodic.bifurcations.fold import VERTICAL
 from periodic.correction.problem import Problem
 from periodic.results.point import Point
 from periodic.results.stop import Stop
-from periodic.tracing import homoclinic
+from periodic.tracing.ends import homoclinic
 
 ROUNDED = 1e2
 """Motion of so many units of rounding of its states is none."""
