@@ -32,6 +32,17 @@ def test_shapes_of_scenes(name: str, expected: list[tuple[str, str]]) -> None:
     assert json.loads(json.dumps(shapes)) == shapes
 
 
+@pytest.mark.parametrize("name", ["jeffcott-rub", "ball-bearing"])
+def test_rotor_lies_in_the_middle_of_its_ring(name: str) -> None:
+    """Assert that a rotor and its ring have one centre, from which the rotor alone moves."""
+    shapes = {shape["look"]: shape for shape in sym.scene(name).sketch}
+    rotor, ring = shapes["body"], shapes["fixed"]
+    assert rotor["x"] == {"fixed": 0.0, "moved": [["x", 1.0]]}
+    assert rotor["y"] == {"fixed": 0.0, "moved": [["y", 1.0]]}
+    assert ring["x"] == ring["y"] == {"fixed": 0.0, "moved": []}
+    assert ring["size"]["moved"] == [["clearance", 1.0]]  # type: ignore[index]
+
+
 def test_names_of_what_moves() -> None:
     """Assert that coordinates and parameters are called as the system calls them."""
     p, q = sym.coordinate("p"), sym.coordinate("q")

@@ -2,9 +2,43 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
 import pytest
 
-from periodic.bifurcations.stretch import second_change
+from periodic.bifurcations import locate
+from periodic.bifurcations.stretch import RejectedError, Stretch, _through, second_change
+
+
+class Line:
+    """Stands for a stretch whose solutions are their distances."""
+
+    root = Stretch.root
+
+    def __init__(self, *given: object) -> None:
+        self.given = given
+
+    def at(self, distance: float) -> Any:
+        """A solution that tells its distance."""
+        return SimpleNamespace(place=distance, once=lambda function: function(self.at(distance)))
+
+
+@pytest.mark.parametrize("zero", [-0.01, 0.03, 0.3])
+def test_special_point_is_found_again(zero: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the zero of a test function within half a step of where it was on a coarser mesh."""
+    monkeypatch.setattr(locate, "Stretch", Line)
+    test: Any = SimpleNamespace(value=lambda at: at.place - zero, singular=False, precision=1e-12)
+    assert locate._again(Line(), Line().at(0.0), 1.0, test).place == pytest.approx(zero, abs=1e-11)  # type: ignore[arg-type, attr-defined]
+
+
+def test_special_point_that_is_lost_is_not_looked_for_afar(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the step is rejected where the test function has no zero within half a step."""
+    monkeypatch.setattr(locate, "Stretch", Line)
+    test: Any = SimpleNamespace(value=lambda at: at.place - 0.8, singular=False, precision=1e-12)
+    with pytest.raises(RejectedError, match="not found again"):
+        locate._again(Line(), Line().at(0.0), 1.0, test)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("end", [0.0, 1.0])
@@ -22,3 +56,9 @@ def test_dip_below_zero_is_found(place: float) -> None:
 
     found = second_change(value, {0.0: value(0.0), 1.0: value(1.0)}, place)
     assert found is not None and value(found) < 0
+
+
+def test_parabola_through_three_points() -> None:
+    """Assert the values at points that are not evenly spaced, to rounding."""
+    at, values = [0.5, 1.0, 2.5], [3.0, -1.0, 0.25]
+    assert _through(at, values)(np.array(at)) == pytest.approx(values, rel=1e-14)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -30,8 +31,8 @@ import periodic as per
 import symbolic as sym
 from periodic.correction.newton import NewtonSettings, correct
 from periodic.correction.outcome import Outcome
-from periodic.orbit.construction import transfer
-from periodic.orbit.mesh import uniform
+from periodic.orbit.construction import at_rest, transfer
+from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.scheme import Array
 from periodic.shooting import flow as shooting
 from periodic.stability.product import multipliers
@@ -264,6 +265,32 @@ def small_orbit(scheme: per.Scheme, ntst: int = 8) -> per.Orbit:
     """The disc's orbit at 360 rev/min on a mesh of equal intervals."""
     (point,) = collocated(360.0)
     return transfer(point.orbit, uniform(scheme, ntst), np.zeros(0))
+
+
+@pytest.mark.parametrize("place", [1e-13, 1 - 1e-13])
+def test_breaks_beside_the_ends_of_the_period(place: float) -> None:
+    """Assert that a break of another mesh that is within rounding of an end is that end."""
+    system, breaks = duffing_system(*DUFFING_A), np.sort([0.0, place, 0.4, 1.0])
+    near = at_rest(system, Mesh(per.Scheme(), (breaks,), (), 2 * np.pi), system.nominal)
+    found = per.Shooting().guess(system, system.nominal, near)
+    assert found.mesh.breaks[0] == pytest.approx([0.0, 0.4, 1.0], abs=1e-15)
+
+
+def test_unknowns_a_million_times_as_large_as_states() -> None:
+    """Assert that their rounding does not keep shooting from its start: as collocation to 1e-8."""
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        force = 1e6 * (x.x + 0.1 * x.x**3)
+        return {"x": x.v, "v": wave.cos - 0.2 * x.v - x.force / 1e6, "force": x.force - force}
+
+    given = sym.Equations(
+        rates, {"x": 1.0, "v": 0.0}, {"Omega": 0.7}, unknowns={"force": 1.0}, frequency="Omega"
+    )
+    system, found = sym.compile(given), []
+    for method in (per.Collocation(), per.Shooting()):
+        branch = per.trace(system, "Omega", (0.7, 0.71), method=method, tol=1e-8, control=FEW_STEPS)
+        found.append([branch[0].peak_to_peak("x"), *branch[0].multipliers])
+    assert found[1] == pytest.approx(found[0], rel=1e-8)
 
 
 def test_failed_integration_is_named() -> None:

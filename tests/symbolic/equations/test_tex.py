@@ -63,6 +63,7 @@ def test_time_is_time() -> None:
         (lambda x, p: F.fabs(x.q) * F.exp(-x.v), r"\left|q\right| e^{-v}"),
         (lambda x, p: F.if_else(x.v > 0, p.c, x.q), r"\left[0 < v\right] c + \left[0 \ge v\right] q"),
         (lambda x, p: F.sin(x.q) ** 2, r"\left(\sin\left(q\right)\right)^{2}"),
+        (lambda x, p: x.q**0.25 - x.v**0.5, r"q^{0.25} - \sqrt{v}"),
         (lambda x, p: (x.q - x.v) ** 2, r"\left(q - v\right)^{2}"),
         (lambda x, p: 0.0, "0"),
     ],

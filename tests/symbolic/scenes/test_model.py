@@ -6,6 +6,7 @@ import pickle
 import re
 from dataclasses import dataclass, fields
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -419,6 +420,23 @@ class Point:
         if isinstance(self.gives, Exception):
             raise self.gives
         return self.gives
+
+
+@dataclass(frozen=True)
+class _Septic(Quintic):
+    """A part that its module keeps to itself."""
+
+
+def test_entry_point_of_a_module(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a module gives the parts that it defines, but none that it keeps to itself or imports."""
+    module = SimpleNamespace(__name__=__name__, Quintic=Quintic, _Septic=_Septic, Imported=sym.Mass)
+    monkeypatch.setattr("symbolic.scenes.model.catalogue.entry_points", lambda group: [Point("mine", module)])
+    catalogue.cache_clear()
+    try:
+        assert "Quintic" in catalogue() and "_Septic" not in catalogue()
+    finally:
+        monkeypatch.undo()
+        catalogue.cache_clear()
 
 
 def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
