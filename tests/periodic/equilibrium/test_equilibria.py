@@ -58,7 +58,7 @@ def convection() -> per.Branch:
 def test_pitchfork_of_lorenz() -> None:
     """Assert that the origin branches at rho = 1 and is stable up to there, with its known eigenvalues."""
     assert labels(origin()) == ["BP", "UZ"]
-    assert origin().labelled(per.Label.BRANCH)[0].parameter == pytest.approx(1.0, abs=1e-10)
+    assert origin().labelled(per.Label.BRANCH)[0].parameter == pytest.approx(1.0, abs=1e-12)
     assert all(p.stable == (p.parameter < 1) for p in origin() if p.label is per.Label.NONE)
     (point,) = origin().labelled(per.Label.USER)
     root = np.sqrt(11**2 + 4 * 10 * 27)
@@ -73,7 +73,7 @@ def test_other_branch_of_the_pitchfork(side: float) -> None:
     found = per.branched(lorenz(), point.orbit, "rho", distance=side)
     rho = float(found.parameter[1])
     x = np.sqrt(8 / 3 * (rho - 1))
-    assert 10 * np.abs(found.nodes[0]) == pytest.approx([x, x, rho - 1], rel=1e-9)
+    assert 10 * np.abs(found.nodes[0]) == pytest.approx([x, x, rho - 1], rel=1e-12)
     back = per.branched(lorenz(), point.orbit, "rho", leaving=found)
     assert np.abs(back.nodes).max() < 1e-12 and back.parameter[1] != pytest.approx(1)
 
@@ -93,7 +93,7 @@ def test_pitchfork_seen_from_the_branch_that_turns() -> None:
     """Assert that the pitchfork is a BP, and no LP, on the branch that turns there."""
     branch = per.equilibria(lorenz(), "rho", (0, 30), start=28, guess={"x": 8.0, "y": 8.0, "z": 27.0})
     assert labels(branch) == ["HB", "BP", "HB"]
-    assert places(branch) == pytest.approx([HOPF, 1, HOPF], rel=1e-10)
+    assert places(branch) == pytest.approx([HOPF, 1, HOPF], rel=1e-12)
     assert branch[0].maximum["x"] == pytest.approx(-branch[-1].maximum["x"], rel=1e-12)
 
 
@@ -107,7 +107,7 @@ def test_unstable_orbits_of_lorenz() -> None:
     assert [(abs(p.nontrivial) > 1).sum() for p in branch] == [1] * len(branch)
     end = branch[0]
     rho, omega = end.orbit.parameter[1], end.orbit.parameter[3]
-    assert np.prod(end.nontrivial).real == pytest.approx(np.exp(-41 / 3 * 2 * np.pi / omega), rel=1e-6)
+    assert np.prod(end.nontrivial).real == pytest.approx(np.exp(-41 / 3 * 2 * np.pi / omega), rel=1e-10)
 
     def rates(t: float, x: Any) -> list[float]:
         return [10 * (x[1] - x[0]), x[0] * (rho - x[2]) - x[1], x[0] * x[1] - 8 / 3 * x[2]]
@@ -150,7 +150,7 @@ def test_reaction_of_auto() -> None:
     branch = per.equilibria(reaction(), "p1", (0, 0.15))
     assert labels(branch) == ["LP", "LP", "HB"]
     u1 = np.array([(1 - np.sqrt(1 / 7)) / 2, (1 + np.sqrt(1 / 7)) / 2, (17 + np.sqrt(65)) / 28])
-    assert [p.maximum["u1"] for p in branch.special_points[1:-1]] == pytest.approx(u1, rel=1e-6)
+    assert [p.maximum["u1"] for p in branch.special_points[1:-1]] == pytest.approx(u1, rel=1e-12)
     assert places(branch) == pytest.approx(u1 / (1 - u1) * np.exp(-14 * u1 / 3), rel=1e-11)
     assert places(branch)[:2] == pytest.approx([1.05739e-1, 8.89318e-2], rel=1e-5)  # AUTO's manual
 
@@ -184,7 +184,7 @@ def test_orbits_of_stuart_and_landau(sign: float) -> None:
         orbit = per.hopf(system, point.orbit, "mu", distance=distance)
         mu, omega = orbit.parameter
         size = np.sqrt((orbit.nodes**2).sum(axis=1))
-        assert size == pytest.approx(np.full(25, distance or 0.02), rel=1e-7)
+        assert size == pytest.approx(np.full(25, distance or 0.02), rel=1e-12)
         assert mu == pytest.approx(-sign * size[0] ** 2, rel=1e-6)
         assert omega == pytest.approx(1, rel=1e-9)
 
@@ -198,7 +198,7 @@ def hopf_point(system: sym.CompiledSystem, parameter: str, bounds: tuple[float, 
 def test_lyapunov_coefficient_of_stuart_and_landau(sign: float) -> None:
     """Assert l1 = 2 sign: for z' = i z + sign |z|^2 z and <q, q> = 1, c1 = 2 sign, omega = 1."""
     point = hopf_point(stuart_landau(sign), "mu", (-1, 1))
-    assert per.first_lyapunov(stuart_landau(sign), point.orbit) == pytest.approx(2 * sign, rel=1e-9)
+    assert per.first_lyapunov(stuart_landau(sign), point.orbit) == pytest.approx(2 * sign, rel=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -221,7 +221,7 @@ def test_lyapunov_coefficient_from_the_orbits(
 def test_known_lyapunov_coefficients() -> None:
     """Assert MatCont's -0.3 for the feedback system, and that Lorenz's orbits are born unstable."""
     point = hopf_point(feedback(), "alpha", (2, 0.5))
-    assert per.first_lyapunov(feedback(), point.orbit) == pytest.approx(-0.3, rel=1e-9)
+    assert per.first_lyapunov(feedback(), point.orbit) == pytest.approx(-0.3, rel=1e-11)
     assert per.first_lyapunov(lorenz(), convection().labelled(per.Label.HOPF)[0].orbit) > 0
 
 
@@ -252,7 +252,7 @@ def test_two_changes_within_a_step(label: str) -> None:
 
     branch = per.equilibria(equations(rates, {"x": 0.0, "y": 0.0}, mu=0.0), "mu", (0, 1))
     assert labels(branch) == [label] * 2
-    assert places(branch) == pytest.approx([0.49, 0.51], rel=1e-9)
+    assert places(branch) == pytest.approx([0.49, 0.51], rel=1e-11)
 
 
 def test_fold_and_branch_point_within_a_step() -> None:
@@ -260,7 +260,7 @@ def test_fold_and_branch_point_within_a_step() -> None:
     system = equations(lambda x, p: {"x": (p.mu - x.x**2) * (x.x - p.a)}, {"x": 0.0}, mu=0.0, a=0.01)
     branch = per.equilibria(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0})
     assert labels(branch) == ["BP", "LP"]
-    assert places(branch) == pytest.approx([1e-4, 0], abs=1e-6)
+    assert places(branch) == pytest.approx([1e-4, 0], abs=1e-9)
 
 
 def test_pitchfork_of_one_state_seen_from_the_branch_that_turns() -> None:
@@ -268,7 +268,7 @@ def test_pitchfork_of_one_state_seen_from_the_branch_that_turns() -> None:
     system = equations(lambda x, p: {"x": p.mu * x.x - x.x**3}, {"x": 0.0}, mu=0.0)
     branch = per.equilibria(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0})
     assert labels(branch) == ["BP"]
-    assert places(branch) == pytest.approx([0], abs=1e-9)
+    assert places(branch) == pytest.approx([0], abs=1e-12)
 
 
 def test_branch_points_of_curved_branches() -> None:

@@ -74,7 +74,7 @@ def test_linear_oscillator_is_exact(system: LinearOscillator) -> None:
     assert branch.stop.reason is per.Reason.BOUND
     assert point.orbit.state(tau) == pytest.approx(system.exact_state(tau), abs=1e-12)
     assert point.orbit.rate(tau)[:, 0] == pytest.approx(system.exact_state(tau)[:, 1], abs=1e-12)
-    assert point.maximum["x"] == pytest.approx(np.hypot(*system.exact_state(np.zeros(1))[0]), rel=1e-9)
+    assert point.maximum["x"] == pytest.approx(np.hypot(*system.exact_state(np.zeros(1))[0]), rel=1e-12)
     assert distance(point.multipliers, system.exact_multipliers()) < 1e-12
 
 
@@ -118,7 +118,7 @@ def test_agrees_with_collocation() -> None:
         assert len(ours) == len(theirs) == (3 if value > 1.5 else 1)
         for a, b in zip(ours, theirs, strict=True):
             assert a.maximum["x"] == pytest.approx(b.maximum["x"], rel=1e-9)
-            assert distance(a.multipliers, b.multipliers) < 1e-10 * max(1.0, abs(b.multipliers[0]))
+            assert distance(a.multipliers, b.multipliers) < 1e-12 * max(1.0, abs(b.multipliers[0]))
             assert a.stable == b.stable
 
 
@@ -224,7 +224,7 @@ def test_doubling_of_a_flow_and_its_branch() -> None:
     (mine,), (other,) = (b.labelled(per.Label.DOUBLING) for b in (ours, theirs))
     assert mine.orbit.periods == 2
     assert mine.parameter == pytest.approx(other.parameter, rel=1e-10)
-    assert period(mine) == pytest.approx(period(other), rel=1e-8)
+    assert period(mine) == pytest.approx(period(other), rel=1e-10)
 
 
 class Mathieu(LinearOscillator):
@@ -246,7 +246,7 @@ def test_mathieu(q: float, a: float) -> None:
     Omega = 2 / np.sqrt(a)
     branch = per.trace(Mathieu(q / a), "Omega", (0.97 * Omega, 1.03 * Omega), method=HB(), tol=FINE)
     (doubling,) = branch.labelled(per.Label.DOUBLING)
-    assert doubling.parameter == pytest.approx(Omega, rel=1e-9)
+    assert doubling.parameter == pytest.approx(Omega, rel=1e-11)
 
 
 def test_subharmonics_of_a_forced_oscillator() -> None:

@@ -85,7 +85,7 @@ def test_neighbours_spare_work() -> None:
     given = per.Task(system, "speed", (470 * rpm, 500 * rpm), start=500 * rpm, numbers={"peak": height})
     grid = {"preload": [800.0, 820.0, 840.0]}
     warm, cold = (per.map(given, grid, 1, store=None, chunk=size) for size in (3, 1))
-    assert warm["peak"].values == pytest.approx(cold["peak"].values, rel=1e-6)
+    assert warm["peak"].values == pytest.approx(cold["peak"].values, rel=1e-12)
     assert int(warm["newton"].sum()) < int(cold["newton"].sum())
 
 

@@ -54,8 +54,8 @@ def test_peak_is_exact_between_points(kind: Any, method: Any) -> None:
         kind(), "Omega", (0.5, 1.6), numbers={"peak": per.Highest(SWING)}, method=method, tol=1e-8
     )
     peak = numbers_of(task)["peak"]
-    assert peak[""] == pytest.approx(PEAK, rel=1e-7)
-    assert peak["at"] == pytest.approx(AT, rel=1e-7)
+    assert peak[""] == pytest.approx(PEAK, rel=1e-9)
+    assert peak["at"] == pytest.approx(AT, rel=1e-9)
     samples = task.traced({}).peak_to_peak("x").max()
     assert abs(samples / PEAK - 1) > 1e-6  # no point of the branch lies there
 

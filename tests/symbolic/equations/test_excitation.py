@@ -85,7 +85,7 @@ def test_response_to_several_orders(forces: list[tuple[float, float, float]]) ->
     assert branch[0].orbit.omega == pytest.approx(common * omega, rel=1e-14)
     # Multipliers are those of the smallest common period.
     decay = math.exp(-C / (2 * M) * t[-1])
-    assert abs(branch[0].multipliers[0]) == pytest.approx(decay, rel=1e-8)
+    assert abs(branch[0].multipliers[0]) == pytest.approx(decay, rel=1e-12)
 
 
 def test_static_load() -> None:

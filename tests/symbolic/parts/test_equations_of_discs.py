@@ -58,7 +58,7 @@ def test_forced_equations_are_the_mechanical_model() -> None:
         )
     )
     branch = per.trace(system, "Omega", (0.3, 3.0), tol=FINE)
-    assert fold_speeds(branch) == pytest.approx(fold_speeds(duffing(accuracy=FINE)), rel=1e-9)
+    assert fold_speeds(branch) == pytest.approx(fold_speeds(duffing(accuracy=FINE)), rel=1e-12)
 
 
 def test_sine_of_the_excitation() -> None:

@@ -80,8 +80,8 @@ def test_stiffness_and_damping(e: float) -> None:
     axes = np.array([[along[1], -along[0]], along])  # u across, v along, the shaft turning from u to v
     stiffness, damping = (-axes @ part @ axes.T / size for part in (by[:, :2], by[:, 2:]))
     printed = coefficients(e)
-    assert stiffness == pytest.approx(printed[0], rel=1e-10)
-    assert damping == pytest.approx(printed[1], rel=1e-10)
+    assert stiffness == pytest.approx(printed[0], rel=1e-12)
+    assert damping == pytest.approx(printed[1], rel=1e-12)
 
 
 def test_internal_damping_destabilises_where_it_should() -> None:
@@ -106,8 +106,8 @@ def test_unbalance_turns_from_x_to_y() -> None:
     exact = m * e * w**2 * np.exp(1j * phi) / (k - m * w**2 + 1j * c * w)
     tau = np.linspace(0, 2 * np.pi, 9)
     turning = exact * np.exp(1j * tau)
-    assert orbit.state(tau)[:, 0] == pytest.approx(turning.real, abs=1e-7)
-    assert orbit.state(tau)[:, 2] == pytest.approx(turning.imag, abs=1e-7)
+    assert orbit.state(tau)[:, 0] == pytest.approx(turning.real, abs=1e-12)
+    assert orbit.state(tau)[:, 2] == pytest.approx(turning.imag, abs=1e-12)
 
 
 def test_gyroscopic_split() -> None:
@@ -117,7 +117,7 @@ def test_gyroscopic_split() -> None:
     system = sym.compile(sym.combine([*parts, sym.GyroscopicMoment(a, b, 2.0, sym.parameter("speed", 1.5))]))
     found = np.sort(sym.modes(system).frequencies)
     expected = [math.sqrt(1.5**2 + 4) - 1.5, math.sqrt(1.5**2 + 4) + 1.5]
-    assert found == pytest.approx(expected, rel=1e-9)
+    assert found == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(
