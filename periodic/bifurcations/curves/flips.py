@@ -18,6 +18,10 @@ SIMPLE = 1e-3
 """Distance of a second multiplier from -1 up to which the coefficient is not known: it is infinite at R2."""
 
 
+ROUNDING = 1e-8
+"""What is left of the coefficient of a linear system, about, in norms of the monodromy matrix."""
+
+
 def _simple(solution: Solution) -> bool:
     """Whether one multiplier alone is -1."""
     beside = np.sort(np.abs(solution.spectrum.multipliers + 1))[1:]
@@ -30,9 +34,10 @@ def _coefficient(solution: Solution) -> float:
     if len(orbit.phases) or linear_of(system) is not None or not _simple(solution):
         return 0.0
     try:
-        return flip_coefficient(system, orbit)
+        found = flip_coefficient(system, orbit)
     except FAILURES:
         return 0.0
+    return found if abs(found) > ROUNDING * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
 
 
 GENERALISED = TestFunction(label=Label.GENERALISED_DOUBLING, value=_coefficient, genuine=_simple)

@@ -102,3 +102,17 @@ def test_coefficient_by_integration() -> None:
     second = (-maps[-2] + 16 * maps[-1] - 30 * A + 16 * maps[1] - maps[2]) / (12 * h**2)
     expected = p @ (second @ q + 3 * first @ np.linalg.solve(np.eye(2) - A, first @ q)) / 6 / (p @ q)
     assert flip_coefficient(system, point.orbit) == pytest.approx(expected, rel=1e-6)
+
+
+def test_linear_systems_have_none() -> None:
+    """Assert no GPD along the doublings of a damped Mathieu equation, whose coefficient is rounding."""
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        return {"x": x.v, "v": -0.05 * x.v - (1 - 2 * p.depth * wave.cos) * x.x}
+
+    names, values = {"x": 0.0, "v": 0.0}, {"depth": 0.2, "Omega": 1.9}
+    system = sym.compile(sym.Equations(rates, names, values, frequency="Omega"))
+    (doubling,) = per.trace(system, "Omega", (1.5, 1.9)).labelled("PD")
+    held = {"Omega": per.DoublingCondition()}
+    curve = per.trace(system, "depth", (0.1, 0.5), guess=doubling.orbit, determined=held)
+    assert len(curve) > 5 and special(curve) == []
