@@ -185,11 +185,11 @@ class Coupled:
         return np.concatenate(inner, axis=1), outer
 
     def stages(self, inner: Array, given: Array) -> Array:
-        """Return the states at the points, (P, n), of u and (1, dy)."""
-        found = np.empty((self.points, self.n), dtype=np.result_type(self.kind, inner))
-        made = self.flexibility.applied(self.forces(inner[:, None])).reshape(self.points, -1)
-        found[:, self.places] = made + self.affine @ given
-        found[:, self.others] = inner[self.count :].reshape(self.points, len(self.others))
+        """Return the states at the points, (P, n, r), of u (size, r) and (1, dy), (1+q, r)."""
+        found = np.empty((self.points, self.n, inner.shape[1]), dtype=np.result_type(self.kind, inner))
+        made = self.flexibility.applied(self.forces(inner))
+        found[:, self.places] = made.reshape(self.points, -1, inner.shape[1]) + self.affine @ given
+        found[:, self.others] = inner[self.count :].reshape(self.points, len(self.others), inner.shape[1])
         return found
 
 

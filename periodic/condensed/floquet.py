@@ -291,7 +291,7 @@ def invariant(floquet: Floquet, count: int) -> Array:
     real ones below, else what is left.
     """
     # where the linear part alone has more, so has the whole, mostly
-    values, vectors = _largest(floquet, count) if floquet.light <= count else (np.zeros(0), np.zeros(0))
+    values, vectors = _largest(floquet, count) if floquet.light < count else (np.zeros(0), np.zeros(0))
     if len(values) < count or np.sort(np.abs(values))[-count] > LIGHT:
         values, vectors = _all(floquet)
         count = max(count, int((np.abs(values) > LIGHT).sum()))

@@ -71,8 +71,9 @@ class Condensed:
         aim = np.concatenate([system.right[:, :1], -constant[:, None]]) * right[:1]
         aim[system.size + len(self.own) :] += right[1:]
         found = _finite(np.linalg.solve(matrix, aim))
-        pairs = zip(right[0], found.T, strict=True)
-        return tuple(self._recovered(float(s), u[: system.size], u[system.size :], k) for s, u in pairs)
+        stages = system.stages(found[: system.size], np.concatenate([right[:1], found[system.size :]]))
+        each = zip(right[0], np.moveaxis(stages, 2, 0), found[system.size :].T, strict=True)
+        return tuple(self._recovered(float(constant), at, outer, k) for constant, at, outer in each)
 
     def _bordered(self, rows: Sequence[Row]) -> tuple[Array, Array]:
         """The equations with the rows of event nodes and side conditions, and these rows' constants."""
@@ -94,17 +95,16 @@ class Condensed:
         ]
         found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
         outer = found[system.size :]
-        stages = system.stages(found[: system.size], np.append(0.0, outer))
+        stages = system.stages(found[: system.size, None], np.append(0.0, outer)[:, None])[..., 0]
         stages[:, system.places] += flat
         stages = stages.reshape(orbit.stages.shape)
         nodes = np.concatenate([stages[-1:, -1], stages[:, -1]])
         return Increment.of(orbit, nodes, stages, np.zeros_like(orbit.algebraic), outer[:k], outer[k:])
 
-    def _recovered(self, constant: float, inner: Array, outer: Array, k: int) -> Increment:
-        """The increment of forces and own states, and dy."""
+    def _recovered(self, constant: float, stages: Array, outer: Array, k: int) -> Increment:
+        """The increment of states at the points, (P, n), and dy."""
         orbit, scheme = self.orbit, self.orbit.mesh.scheme
-        given = np.append(constant, outer)
-        stages = self.system.stages(inner, given).reshape(orbit.stages.shape)
+        stages = stages.reshape(orbit.stages.shape)
         gap = constant * (orbit.stages[:, -1] - orbit.nodes[1:])
         nodes = np.empty_like(orbit.nodes)
         nodes[1:] = stages[:, -1] + gap

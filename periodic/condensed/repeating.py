@@ -85,8 +85,8 @@ class CondensedRepeating:
         """Return the motion of (u, v_y)."""
         orbit, size = self.given.orbit, self.coupled.size
         head = np.zeros(1 + len(orbit.phases))
-        stages = self.coupled.stages(unknown[:size], np.concatenate([head, unknown[size:]]))
-        stages = stages.reshape(orbit.stages.shape)
+        given = np.concatenate([head, unknown[size:]])
+        stages = self.coupled.stages(unknown[:size, None], given[:, None]).reshape(orbit.stages.shape)
         nodes = np.concatenate([stages[-1:, -1] / self.mu, stages[:, -1]])
         parameter = np.zeros_like(orbit.parameter)
         parameter[list(self.free)] = unknown[size:].real

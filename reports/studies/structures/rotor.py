@@ -34,7 +34,7 @@ STATOR, GAP, SLIP = 1e6, 1e-4, 0.1
 SAG = 20.0
 """Load on the second disc in N, downwards."""
 
-KEPT = 16
+KEPT = 12
 """Modes of the reduced rotor."""
 
 SPEEDS = (60.0, 550.0)
