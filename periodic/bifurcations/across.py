@@ -18,6 +18,7 @@ from periodic.correction.solution import Between, Solution
 from periodic.linear.root import root
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 
 NEARER = (1 / 8, 1 / 64, 1 / 256, 1 / 512)
 """How far from it orbits are solved for in each round, as parts of the stretch."""
@@ -74,8 +75,8 @@ def _between(
     found = Correction(orbit, *ended)
     accepted = method.accepted(problem.system, found) if found.ok else found
     beside = max((stretch.at(end) for end in ends), key=lambda solution: solution.error.worst)
-    return Between(problem, method, accepted, _unit(direction, orbit, problem.scale), beside)
+    return Between(problem, method, accepted, _unit(direction, orbit, problem.units(orbit)), beside)
 
 
-def _unit(direction: Increment, orbit: Orbit, scale: float) -> Increment:
+def _unit(direction: Increment, orbit: Orbit, scale: float | Array) -> Increment:
     return direction.scaled(1 / float(np.sqrt(direction.dot(direction, orbit, scale, size_of(orbit)))))

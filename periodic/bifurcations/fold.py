@@ -33,7 +33,9 @@ def turns_twice(base: Solution, new: Solution) -> bool:
     Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
     """
     way = difference(base.problem, base.orbit, new.orbit)
-    mean = way.parameter / base.tangent.dot(way, base.orbit, base.problem.scale, size_of(base.orbit))
+    mean = way.parameter / base.tangent.dot(
+        way, base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
+    )
     ends = np.array([base.tangent.parameter, new.tangent.parameter])
     sign = np.sign(ends[0])
     return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())

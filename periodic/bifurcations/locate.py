@@ -145,7 +145,7 @@ def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestF
     solver, base, crossed = stretch.solver, stretch.base, test is not FOLD
     ends = [stretch.at(end) for end in span]
     distance, solution = _root(stretch, span, ds, test)
-    turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.scale)
+    turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.units(solution.orbit))
     if solution.orbit.equilibrium and turned < ALIGNED:
         raise RejectedError("a special point of another branch was met")
     if not test.genuine(solution) or (test.name and _jumps(test.value, solution, ends)):

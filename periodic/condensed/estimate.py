@@ -54,7 +54,7 @@ def applies(operator: Condensed) -> bool:
 def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum: Spectrum) -> ErrorEstimate:
     """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
     orbit = operator.orbit
-    across = ArclengthConstraint(orbit, tangent, 0.0, problem.scale, problem.index, size_of(orbit))
+    across = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
     try:
         missing = _Missing(problem, operator)
         rows = [c.linearise(problem.system, orbit, problem.free) for c in problem.side_conditions(orbit)]

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.linear.unknowns import Increment, length_metric, metric_weights, node_phase_gradient
+from periodic.linear.unknowns import Increment, length_metric, metric_weights, node_phase_gradient, outer
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -19,14 +19,14 @@ class ArclengthConstraint:
     """<u - origin, direction> = distance, a hyperplane across `direction` (Keller 1977).
 
     The scalar product is that of `Increment.dot`: the mean over the period of <x, y>/size^2, x and y at fixed
-    tau, plus p q / scale^2 of the continuation parameter, whose index is `index`, plus that of the lengths of
-    brief excursions.
+    tau, plus p q / scale^2 of the free parameters, of which `index` is the first's, plus that of the lengths
+    of brief excursions.
     """
 
     origin: Orbit
     direction: Increment
     distance: float
-    scale: float
+    scale: float | Array
     index: int
     size: float = 1.0
 
@@ -40,19 +40,27 @@ class ArclengthConstraint:
         """Gradient in the event nodes' phases by brief excursions' lengths, shape (k,)."""
         return length_metric(self.origin, self.direction.phases)
 
+    @cached_property
+    def _rates(self) -> Array:
+        """Gradient in the free parameters, shape (q,); that in one alone, and zeros, where only it counts."""
+        own, scale = self.direction.parameters, self.scale
+        if isinstance(scale, np.ndarray):
+            return np.append(own, np.zeros(len(scale) - len(own))) / scale**2
+        return np.append(own[:1] / scale**2, np.zeros(self.origin.parameter.size - 1))
+
     def rate(self, direction: Increment) -> float:
         """How fast the distance grows along a direction on the origin's mesh."""
-        weighted, outer = self._gradient(self.origin, (self.index,), self.origin.node_rates)
-        along = np.append(direction.phases, direction.parameter)
-        return float(np.vdot(weighted, direction.nodes) + outer @ along)
+        weighted, lengths = self._gradient(self.origin, (), self.origin.node_rates)
+        states = np.vdot(weighted, direction.nodes) + lengths @ direction.phases
+        return float(states) + outer(self.direction, direction, self.scale)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return value and gradient; mesh points that move meet the origin where they are now."""
         state, slope = self._origin_at(system, orbit)
         weighted, outer = self._gradient(orbit, free, slope)
-        further = orbit.parameter[self.index] - self.origin.parameter[self.index]
+        further = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
         value = np.einsum("jn,jn->", weighted, orbit.nodes - state)
-        value += self.direction.parameter / self.scale**2 * further
+        value += outer[len(orbit.phases) :] @ further
         value += self.lengths @ (orbit.phases - self.origin.phases)
         return Row(float(value) - self.distance, weighted, outer)
 
@@ -75,7 +83,7 @@ class ArclengthConstraint:
         k = len(orbit.phases)
         outer = np.zeros(k + len(free))
         outer[:k] = self.lengths - np.einsum("jn,jn,jk->k", weighted, slope, node_phase_gradient(orbit))
-        outer[k + free.index(self.index)] = self.direction.parameter / self.scale**2
+        outer[k : k + len(free)] = self._rates[: len(free)]
         return weighted, outer
 
 

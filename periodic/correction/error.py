@@ -131,7 +131,7 @@ def deferred(
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
-    across = ArclengthConstraint(fine, onto, 0.0, problem.scale, problem.index, size_of(orbit))
+    across = ArclengthConstraint(fine, onto, 0.0, problem.units(fine), problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
     solve = solved or partial(linearised, linearise)
     try:
@@ -186,7 +186,7 @@ def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     """
     kernel = found.kernel
     still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
-    length = float(np.sqrt(still.dot(still, found.orbit, problem.scale, size)))
+    length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
     if abs(kernel.parameter) < STEEP * length * problem.scale:
         return kernel.scaled(0.0)
     return kernel.scaled(-found.increment.parameter / kernel.parameter)
@@ -205,7 +205,7 @@ def _onto(tangent: Increment, fine: Orbit) -> Increment:
     profile = np.empty_like(fine.nodes)
     profile[::2] = coarse
     profile[1::2] = (coarse[1:] + coarse[:-1]) / 2
-    return Increment(blank.nodes, blank.stages, blank.algebraic, blank.phases, blank.parameters, profile)
+    return Increment(blank.nodes, blank.stages, blank.algebraic, blank.phases, tangent.parameters, profile)
 
 
 def shortfall(points: Sequence[tuple[float, ErrorEstimate]], tolerance: float, parameter: str) -> str:

@@ -37,8 +37,10 @@ def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     profile = b.state(a.mesh.nodes(a.phases) + later) - a.nodes
     for i, j in _impacts(problem, a, b, later):
         profile[i] = b.nodes[j] - a.nodes[i]
-    jump = (problem.value(b) - problem.value(a)) / problem.scale
-    return float(np.sqrt(np.einsum("j,jn,jn->", metric_weights(a), profile, profile) + jump**2))
+    units, free = problem.units(a), list(problem.free)
+    jump = b.parameter[free] - a.parameter[free]
+    apart = float(np.sum(((jump if isinstance(units, np.ndarray) else jump[:1]) / units) ** 2))
+    return float(np.sqrt(np.einsum("j,jn,jn->", metric_weights(a), profile, profile) + apart))
 
 
 def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[tuple[int, int]]:
@@ -66,7 +68,7 @@ def closes(solver: Solver, start: Solution, new: Solution) -> bool:
     for later in [_ahead(problem, begun, new.orbit)] if problem.autonomous else range(begun.periods):
         if same(solver, start, new, later):
             onward = new.tangent.restricted(new.orbit, begun, FORCED * later)
-            return start.tangent.dot(onward, begun, problem.scale) > 0
+            return start.tangent.dot(onward, begun, problem.units(begun)) > 0
     return False
 
 

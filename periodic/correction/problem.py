@@ -12,6 +12,7 @@ import numpy as np
 from periodic.checks import named, number
 from periodic.correction.condition import Condition, SideCondition, side_conditions
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 from periodic.system import System, check_system, index_of
 
 
@@ -126,6 +127,29 @@ class Problem:
     def scale(self) -> float:
         """The unit of arclength in the continuation parameter."""
         return self.bounds[1] - self.bounds[0]
+
+    def units(self, orbit: Orbit) -> float | Array:
+        """Return the units of arclength in the free parameters: the range, and of others their own size.
+
+        Parameters
+        ----------
+        orbit : Orbit
+            The orbit that lengths are measured from.
+
+        Returns
+        -------
+        float or ndarray, shape (q,)
+            In SI units; the range alone of a branch in one parameter. Infinite of those that a condition of
+            all orbits determines, and of others that are 0 in the system and there.
+        """
+        if all(condition.intrinsic for condition in self.conditions):
+            return self.scale
+        units = np.array([self.scale, *(np.inf for _ in self.others)])
+        for k, (index, condition) in enumerate(zip(self.others, self.conditions, strict=True), start=1):
+            size = max(abs(float(orbit.parameter[index])), abs(float(self.system.nominal[index])))
+            if size > 0 and not condition.intrinsic:
+                units[k] = size
+        return units
 
     @cached_property
     def trivial(self) -> int:

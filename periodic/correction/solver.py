@@ -49,7 +49,7 @@ class Solver:
 
     def constraint(self, origin: Orbit, direction: Increment, distance: float) -> ArclengthConstraint:
         """Return the arclength constraint at a distance from an orbit along a direction."""
-        scale, size = self.problem.scale, size_of(origin)
+        scale, size = self.problem.units(origin), size_of(origin)
         return ArclengthConstraint(origin, direction, distance, scale, self.problem.index, size)
 
     def on(
@@ -70,10 +70,10 @@ class Solver:
 
     def _tangent(self, found: Correction, constraint: ArclengthConstraint | Held) -> Increment:
         """The kernel with unit length, along the constraint's direction; that itself where there is none."""
-        kernel, scale, direction = found.kernel, self.problem.scale, constraint.direction
+        kernel, direction = found.kernel, constraint.direction
         if kernel is None or not found.ok:
-            return direction or parameter_only(constraint.origin, scale)
-        size = size_of(found.orbit)
+            return direction or parameter_only(constraint.origin, self.problem.scale)
+        scale, size = self.problem.units(found.orbit), size_of(found.orbit)
         length = np.sqrt(kernel.dot(kernel, found.orbit, scale, size))
         along = 1.0 if direction is None else kernel.dot(direction, found.orbit, scale, size)
         return kernel.scaled((np.sign(along) or 1.0) / length)

@@ -27,6 +27,10 @@ class Unknowns(Protocol):
     `Increment` is one; a discretisation of another kind brings its own.
     """
 
+    @property
+    def parameters(self) -> Array:
+        """Changes of the free parameters, shape (q,), the continuation parameter first."""
+
     def __add__(self, other: Self) -> Self:
         """Return the sum of two changes of the same orbit."""
 
@@ -44,7 +48,7 @@ class Unknowns(Protocol):
             The multiple.
         """
 
-    def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
+    def dot(self, other: Self, orbit: Orbit, scale: float | Array, size: float = 1.0) -> float:
         """Return the scalar product in the metric of continuation.
 
         Parameters
@@ -53,8 +57,8 @@ class Unknowns(Protocol):
             A change of the same orbit.
         orbit : Orbit
             The orbit, whose mesh weights the states.
-        scale : float
-            Unit of arclength in the continuation parameter (SI).
+        scale : float or ndarray, shape (q,)
+            Unit of arclength in the continuation parameter (SI), or those in all free parameters.
         size : float
             Unit of arclength in the states (scaled).
 
@@ -151,14 +155,14 @@ class Increment:
             factor * self.profile,
         )
 
-    def dot(self, other: Self, orbit: Orbit, scale: float, size: float = 1.0) -> float:
+    def dot(self, other: Self, orbit: Orbit, scale: float | Array, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.
 
         Beside kinks the mean is that of `metric_weights`, and brief excursions add what `length_metric` has.
         """
         states = np.einsum("j,jn,jn->", metric_weights(orbit), self.profile, other.profile)
         lengths = length_metric(orbit, self.phases) @ other.phases
-        return float(states) / size**2 + self.parameter * other.parameter / scale**2 + float(lengths)
+        return float(states) / size**2 + outer(self, other, scale) + float(lengths)
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
         """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
@@ -166,11 +170,19 @@ class Increment:
         wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
         profile = np.stack([np.interp(wrapped, at, column) for column in self.profile.T], axis=1)
         blank = parameter_only(new, self.parameter)
-        return type(self)(blank.nodes, blank.stages, blank.algebraic, blank.phases, blank.parameters, profile)
+        return type(self)(blank.nodes, blank.stages, blank.algebraic, blank.phases, self.parameters, profile)
 
     def save(self) -> dict[str, Array]:
         """Return the arrays by name."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
+
+
+def outer(a: Unknowns, b: Unknowns, scale: float | Array) -> float:
+    """Return the free parameters' part of a scalar product, that of those which both have and which count."""
+    if not isinstance(scale, np.ndarray):
+        return float(a.parameters[0] * b.parameters[0]) / scale**2
+    count = min(len(a.parameters), len(b.parameters))
+    return float(np.sum(a.parameters[:count] * b.parameters[:count] / scale[:count] ** 2))
 
 
 def parameter_only(orbit: Orbit, rate: float) -> Increment:

@@ -37,7 +37,7 @@ def passing(functional: Functional, level: float, label: Label, name: str) -> Te
         if problem.wider is not None or not known:
             return False
         way = difference(problem, base.orbit, new.orbit)
-        length = base.tangent.dot(way, base.orbit, problem.scale, size_of(base.orbit))
+        length = base.tangent.dot(way, base.orbit, problem.units(base.orbit), size_of(base.orbit))
         ends = base.once(value), new.once(value)
         try:
             return comes_back(ends, (length * base.once(rate), length * new.once(rate)))

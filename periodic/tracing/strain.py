@@ -35,7 +35,7 @@ def strains(
     base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
 ) -> Iterator[Strain]:
     """Yield the strains of a step between two solutions on one mesh, the cheapest first."""
-    metric = base.orbit, base.problem.scale, size_of(base.orbit)
+    metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
     onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
     angle = _angle(base.tangent.dot(onward, *metric), control.turn)
     yield Strain(angle, angle, "the branch turns too sharply for the step")
@@ -71,7 +71,7 @@ def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
         way.phases + mean.phases,
         way.parameters + mean.parameters,
     )
-    metric = base.orbit, problem.scale, size_of(base.orbit)
+    metric = base.orbit, problem.units(base.orbit), size_of(base.orbit)
     moving = bend.dot(bend, *metric)
     jumping = resets_of(problem.system) or jumps_of(problem.system)  # a node passes what jumps at fixed tau
     if not len(base.orbit.mesh.exact_ends) or jumping:

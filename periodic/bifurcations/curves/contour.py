@@ -35,7 +35,7 @@ def _matrix(solution: Solution) -> Array:
     tangent = solution.tangent
     if orbit is not solution.orbit:
         tangent = tangent.restricted(solution.orbit, orbit)
-    along = ArclengthConstraint(orbit, tangent, 0.0, problem.scale, problem.index, size_of(orbit))
+    along = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
     closed = variations(problem.system, orbit, problem.free).repeating(1.0)
     closing = [*problem.side_conditions(orbit), along]
     rows = [condition.linearise(problem.system, orbit, problem.free) for condition in closing]
