@@ -140,15 +140,15 @@ class Problem:
         -------
         float or ndarray, shape (q,)
             In SI units; the range alone of a branch in one parameter. Infinite of those that a condition of
-            all orbits determines, and of others that are 0 in the system and there.
+            all orbits determines, and of those that are 0 in the system: these have no size of their own.
         """
         if all(condition.intrinsic for condition in self.conditions):
             return self.scale
         units = np.array([self.scale, *(np.inf for _ in self.others)])
         for k, (index, condition) in enumerate(zip(self.others, self.conditions, strict=True), start=1):
-            size = max(abs(float(orbit.parameter[index])), abs(float(self.system.nominal[index])))
-            if size > 0 and not condition.intrinsic:
-                units[k] = size
+            nominal = abs(float(self.system.nominal[index]))
+            if nominal > 0 and not condition.intrinsic:
+                units[k] = max(nominal, abs(float(orbit.parameter[index])))
         return units
 
     @cached_property
