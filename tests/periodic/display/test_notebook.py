@@ -27,6 +27,9 @@ def test_branch() -> None:
     rows = [[cell.text for cell in row] for row in found.iter("tr")]
     assert rows[0] == [None, "Omega (rad/s)", "x p-p (m)", "|mu| max", "stable"]
     assert [row[0] for row in rows[1:]] == [point.label.value for point in branch.special_points]
+    assert [row[-1] for row in rows[1:] if row[0] == "UZ"] == ["yes", "no", "yes"]
+    largest = [np.abs(point.multipliers).max() for point in branch.special_points]
+    assert [float(str(row[-2])) for row in rows[1:]] == pytest.approx(largest, abs=1e-5)
     lines = [line.get("stroke-dasharray") for line in found.iter("polyline")]
     assert [dashes is not None for dashes in lines] == [False, True, False]
     marks = [text.text for text in found.iter("text")]

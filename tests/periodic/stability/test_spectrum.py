@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from periodic.stability.spectrum import Spectrum
+from periodic.stability.winding import meetings
 
 
 @pytest.mark.parametrize("growth", [-0.6, 0.0, 0.4])
@@ -16,3 +17,26 @@ def test_turns_of_a_pair_are_counted_through_the_period(rate: float, growth: flo
     turn = np.array([[np.cos(rate * tau), -np.sin(rate * tau)], [np.sin(rate * tau), np.cos(rate * tau)]])
     (pair,) = Spectrum(np.moveaxis(np.exp(growth * tau) * turn, -1, 0), 0).pairs
     assert pair.turned == pytest.approx(2 * np.pi * rate, rel=1e-12)
+
+
+def turning(first: float, second: float, mixed: float = 0.0) -> Spectrum:
+    """Two pairs of multipliers that turn evenly by these angles in a period, in planes that are mixed."""
+    part = np.linspace(0.0, 1.0, 41)
+    whole = np.zeros((len(part), 4, 4))
+    for k, angle in enumerate((first, second)):
+        cos, sin = np.cos(angle * part), np.sin(angle * part)
+        whole[:, 2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = np.array([[cos, -sin], [sin, cos]]).transpose(
+            2, 0, 1
+        )
+    mixing = np.eye(4) + mixed * np.roll(np.eye(4), 2, axis=1)
+    return Spectrum(mixing @ whole @ np.linalg.inv(mixing))
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_pairs_that_pass_each_other_meet(way: int) -> None:
+    """Assert where two coupled pairs meet on the circle, where 0.5 + 0.4 s = 0.8 - 0.1 s; else nothing."""
+    before, after = turning(0.5, 2 * np.pi + 0.8), turning(0.9, 2 * np.pi + 0.7, mixed=0.2)
+    (meeting,) = meetings(*(before, after)[::way])
+    assert meeting.place == pytest.approx(0.6 if way > 0 else 0.4, abs=1e-9)
+    assert meeting.growth == pytest.approx(0.0, abs=1e-12)
+    assert meetings(before, turning(0.55, 2 * np.pi + 0.85, mixed=0.2)) == []

@@ -135,7 +135,7 @@ def test_guess_gives_the_sheet() -> None:
     high, _, low = (p for p in duffing(at=VALUES).labelled(Label.USER) if p.parameter == 1.8)
     for point in (high, low):
         first = per.trace(SYSTEM, "Omega", (1.8, 1.9), guess=point.orbit)[0]
-        assert first.peak_to_peak("x") == pytest.approx(point.peak_to_peak("x"), rel=1e-7)
+        assert first.peak_to_peak("x") == pytest.approx(point.peak_to_peak("x"), rel=1e-10)
 
 
 def test_guess_takes_the_scheme_of_the_settings() -> None:
@@ -224,7 +224,7 @@ def test_any_parameter() -> None:
     found = [point.peak_to_peak("x") for point in branch.labelled(Label.USER)]
     finely = duffing(accuracy=FINE, at=VALUES).labelled(Label.USER)
     known = [p.peak_to_peak("x") for p in finely if p.parameter == 1.8]
-    assert found == pytest.approx(known[::-1], rel=1e-7)
+    assert found == pytest.approx(known[::-1], rel=1e-9)
 
 
 def test_the_loop_is_the_users() -> None:
@@ -327,3 +327,12 @@ def test_loops_that_are_refused(arguments: dict[str, object], sentence: str) -> 
     asked = {"problem": per.Problem(SYSTEM, "Omega", RANGE), **arguments}
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
         per.continuation(**asked)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("asked", "kept"), [({}, False), ({"remesh_below": 0.0}, True)])
+def test_meshes_that_are_far_too_fine_are_given_up(asked: dict[str, float], kept: bool) -> None:
+    """Assert that 200 intervals, where ten do, are not kept until a new mesh is due, unless asked to."""
+    few = per.ArclengthControl(remesh_every=1000, max_points=6, **asked)  # type: ignore[arg-type]
+    branch = per.trace(SYSTEM, "Omega", (2.4, 1.3), method=per.Collocation(ntst=200), tol=1e-5, control=few)
+    first, last = branch[0].orbit.mesh.ntst, branch[5].orbit.mesh.ntst
+    assert first == 200 and (last == first if kept else last <= 32)

@@ -30,7 +30,7 @@ def returns(branch: per.Branch, acceleration: Any) -> None:
     def rates(tau: float, y: np.ndarray) -> list[float]:
         return [y[1] / Omega, acceleration(y[0], y[1], np.cos(tau)) / Omega]
 
-    assert path(rates, start)[:, -1] == pytest.approx(start, abs=1e-5)
+    assert path(rates, start)[:, -1] == pytest.approx(start, abs=1e-7)
 
 
 def test_backlash_from_rest() -> None:
@@ -107,7 +107,7 @@ def test_relaxation_oscillation_from_samples(begin: int) -> None:
     free = {"omega": per.PhaseCondition()}
     branch = per.trace(system, "a", (0.0, 0.5), guess=guess, determined=free, control=FEW)
     assert len(branch) == 3
-    assert 2 * np.pi / branch[0].orbit.omega == pytest.approx(period, rel=1e-9)
+    assert 2 * np.pi / branch[0].orbit.omega == pytest.approx(period, rel=1e-11)
 
 
 def test_what_nothing_holds_is_named() -> None:
