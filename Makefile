@@ -12,8 +12,8 @@ BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.pro
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
-COUNT ?= 100
-SEED ?= 0
+COUNT ?= 110
+SEED ?= 2026
 SINCE ?=
 
 .DEFAULT_GOAL := help
@@ -37,7 +37,8 @@ long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
 
 mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
-	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) $(if $(SINCE),--since $(SINCE))
+	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) \
+	  $(if $(SINCE),--since $(SINCE),--page tests/mutants/README.md)
 
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from cosmic_ray.ast import ast_nodes, get_ast_from_path
+from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator, operator_names
 
 FOREIGN = {
@@ -48,11 +49,21 @@ def drawn(modules: Sequence[Path], count: int, seed: int) -> list[Mutant]:
     while len(found) < count and any(sizes):
         (path,) = source.choices(modules, weights=sizes)
         left = [mutant for mutant in mutants(path) if mutant not in found]
-        if left:
-            found[source.choice(left)] = None
-        else:
+        if not left:
             sizes[modules.index(path)] = 0
+        elif is_code(mutant := source.choice(left)):
+            found[mutant] = None
     return list(found)
+
+
+def is_code(mutant: Mutant) -> bool:
+    """Tell whether a mutant can be compiled: the star of a call is no product."""
+    text = mutate_code(mutant.path.read_text("utf-8"), get_operator(mutant.operator)(), mutant.occurrence)
+    try:
+        ast.parse(text)
+    except SyntaxError:
+        return False
+    return True
 
 
 @cache
