@@ -59,7 +59,7 @@ def test_stuart_landau() -> None:
         mu = point.parameter
         assert period(point) == pytest.approx(2 * np.pi, rel=1e-12)
         assert point.maximum["x1"] == pytest.approx(np.sqrt(mu), rel=1e-9)
-        assert point.nontrivial == pytest.approx([np.exp(-4 * np.pi * mu)], rel=1e-8)
+        assert point.nontrivial == pytest.approx([np.exp(-4 * np.pi * mu)], rel=1e-10)
 
 
 def test_feedback_control() -> None:

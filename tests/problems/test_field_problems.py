@@ -150,7 +150,7 @@ def test_isola_of_the_enzyme() -> None:
     begin = orbits.labelled(LP)[0].orbit
     curve = trace(enzyme(), "s0", (109, 125), guess=begin, determined=determined, at=111)
     met = [rho for rho, p in zip(curve.column("rho"), curve, strict=True) if p.label is per.Label.USER]
-    assert sorted(met) == pytest.approx([p.parameter for p in isola.labelled(LP)], rel=1e-9)
+    assert sorted(met) == pytest.approx([p.parameter for p in isola.labelled(LP)], rel=1e-11)
 
 
 def test_reactions() -> None:
@@ -171,14 +171,14 @@ def test_fishing() -> None:
     """Assert AUTO's pp2 in closed form: fold and branch point of the fish alone, Hopf point with sharks."""
     alone = per.equilibria(predator(), "quota", (0.65, 1), start=0.7, guess={"fish": 0.7, "sharks": 0.0})
     u = alone.labelled(LP)[0].maximum["fish"]
-    assert (1 - 2 * u) * (np.exp(5 * u) - 1) == pytest.approx(5 * u * (1 - u), rel=1e-6)
+    assert (1 - 2 * u) * (np.exp(5 * u) - 1) == pytest.approx(5 * u * (1 - u), rel=1e-11)
     point = alone.labelled(BP)[0]
-    assert point.parameter == pytest.approx((2 / 3) / (1 - np.exp(-5 / 3)), rel=1e-9)
+    assert point.parameter == pytest.approx((2 / 3) / (1 - np.exp(-5 / 3)), rel=1e-11)
     guess = per.branched(predator(), point.orbit, "quota", leaving=alone[1].orbit)
     both = per.equilibria(predator(), "quota", (0, 1), guess=guess)
     (hopf,) = both.labelled(HB)
     share = np.exp(-5 / 3)
-    assert hopf.parameter == pytest.approx(1 / (3 * (1 - share) - 5 * share), rel=1e-9)
+    assert hopf.parameter == pytest.approx(1 / (3 * (1 - share) - 5 * share), rel=1e-11)
     orbits = born(predator(), hopf, "quota", (0, 1), watch=per.Watch(limits=shorter_than(36)))
     assert orbits[-1].stable and period(orbits[-1], orbits) == pytest.approx(36, rel=1e-9)
 
@@ -257,7 +257,7 @@ def test_curves_of_entrainment() -> None:
     ]
     assert len(meeting[0]) == 2
     for a, b in zip(*meeting, strict=True):
-        assert a == pytest.approx(b, rel=1e-8)
+        assert a == pytest.approx(b, rel=1e-9)
     assert len(folds.labelled(per.Label.CUSP)) == 2
 
 
@@ -321,4 +321,4 @@ def test_pendula() -> None:
         guess=branch.labelled(PD)[0].orbit,
         determined={**rotating, "torque": per.DoublingCondition()},
     )
-    assert curve.column("torque")[-1] == pytest.approx(0.31382985295369, rel=1e-9)
+    assert curve.column("torque")[-1] == pytest.approx(0.31382985295369, rel=1e-10)

@@ -42,7 +42,7 @@ def test_folds_are_those_of_all_states() -> None:
     ours, full = branch(True), branch(False)
     places = [[p.parameter for p in of.points if p.label is per.Label.FOLD] for of in (ours, full)]
     assert len(places[0]) == 2
-    assert places[0] == pytest.approx(places[1], rel=1e-9)
+    assert places[0] == pytest.approx(places[1], rel=1e-11)
     at = [next(p for p in of.points if p.parameter == 1.1) for of in (ours, full)]
     assert at[0].maximum["q0"] == pytest.approx(at[1].maximum["q0"], rel=1e-8)
     assert np.allclose(*(np.sort_complex(p.multipliers) for p in at), rtol=0, atol=1e-7)

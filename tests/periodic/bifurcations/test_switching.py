@@ -82,7 +82,7 @@ def test_instability_by_shooting() -> None:
     period = squeeze.periodic_orbit(squeeze.Scene(speed_rpm=556.0))
     (point,) = [p for p in small_orbits().labelled(per.Label.USER)]
     assert point.multipliers[0].real < -1.04
-    assert point.multipliers[0] == pytest.approx(period.multipliers[0], abs=1e-7)
+    assert point.multipliers[0] == pytest.approx(period.multipliers[0], abs=1e-8)
 
 
 def test_doubled_branch_closes() -> None:
@@ -92,7 +92,7 @@ def test_doubled_branch_closes() -> None:
     assert {p.orbit.periods for p in branch} == {2}
     folds = speeds(branch.labelled(per.Label.FOLD))
     assert folds == [pytest.approx(449.410772, abs=1e-5)] * 2
-    assert branch[0].peak_to_peak("x") == pytest.approx(branch[-1].peak_to_peak("x"), rel=1e-7)
+    assert branch[0].peak_to_peak("x") == pytest.approx(branch[-1].peak_to_peak("x"), rel=1e-10)
 
 
 def test_doubled_branch_starts_at_the_doublings() -> None:
@@ -104,7 +104,7 @@ def test_doubled_branch_starts_at_the_doublings() -> None:
 def test_doubled_orbit_by_integration() -> None:
     """Assert that the orbit traced from a simulation is the simulated motion."""
     x = simulated().state[:, 0] * disc_system(SCENE).states[0].scale
-    assert doubled_orbits()[0].peak_to_peak("x") == pytest.approx(np.ptp(x), rel=1e-5)
+    assert doubled_orbits()[0].peak_to_peak("x") == pytest.approx(np.ptp(x), rel=1e-6)
 
 
 def test_values_replace_nominal_ones() -> None:
@@ -161,4 +161,4 @@ def test_doubled_orbits_from_the_doubling() -> None:
         begin = float(guess.parameter[index_of(system, "speed")])
         branch = per.trace(system, "speed", (440 * RPM, begin), start=begin, guess=guess, at=[500 * RPM])
         sheets = [p.peak_to_peak("x") for p in branch.labelled(per.Label.USER)]
-        assert min(abs(swing / expected - 1) for swing in sheets) < 1e-7
+        assert min(abs(swing / expected - 1) for swing in sheets) < 1e-8

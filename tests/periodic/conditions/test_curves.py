@@ -86,9 +86,9 @@ def test_fold_curve_meets_the_folds_of_branches(Omega: float) -> None:
             tol=FINE,
         )
         folds = branch.labelled(per.Label.FOLD)
-        assert min(abs(p.parameter / Omega - 1) for p in folds) < 1e-9
+        assert min(abs(p.parameter / Omega - 1) for p in folds) < 1e-11
         assert point.marginal and not point.stable
-        assert np.abs(point.multipliers - 1).min() < 1e-7
+        assert np.abs(point.multipliers - 1).min() < 1e-9
 
 
 def test_cusp_of_duffing() -> None:
@@ -96,9 +96,9 @@ def test_cusp_of_duffing() -> None:
     system = duffing_system(*DUFFING_A)
     cusps = [fold_curve(k).labelled(per.Label.CUSP) for k in (0, 1)]
     assert [len(c) for c in cusps] == [1, 1]
-    assert cusps[0][0].parameter == pytest.approx(cusps[1][0].parameter, rel=1e-9)
+    assert cusps[0][0].parameter == pytest.approx(cusps[1][0].parameter, rel=1e-11)
     force = [float(c[0].orbit.parameter[index(system, "F")]) for c in cusps]
-    assert force[0] == pytest.approx(force[1], rel=1e-9)
+    assert force[0] == pytest.approx(force[1], rel=1e-10)
     for relative, count in ((0.99, 0), (1.01, 2)):
         branch = duffing((0.1, 1.0, relative * force[0]), FINE, (1.0, 1.2))
         assert len(branch.labelled(per.Label.FOLD)) == count
@@ -147,11 +147,11 @@ def test_doubling_curve_of_the_disc() -> None:
     )
     (point,) = user_points(curve, 1200.0)
     speed = float(point.orbit.parameter[index(system, "speed")])
-    assert point.multipliers[0] == pytest.approx(-1, abs=1e-6)
+    assert point.multipliers[0] == pytest.approx(-1, abs=1e-9)
     bounds = (speed - 10 * RPM, speed + 10 * RPM)
     other = per.trace(system, "speed", bounds, start=bounds[1], values={"preload": 1200.0})
     found = [p.parameter for p in other.labelled(per.Label.DOUBLING)]
-    assert min(abs(value / speed - 1) for value in found) < 1e-8
+    assert min(abs(value / speed - 1) for value in found) < 1e-9
 
 
 def test_doubling_curve_stays_on_its_side_of_the_tongue() -> None:
@@ -207,11 +207,11 @@ def test_torus_curve_of_a_linear_oscillator() -> None:
         determined={"c": per.TorusCondition()},
         tol=FINE,
     )
-    assert curve.column("c") == pytest.approx(np.zeros(len(curve)), abs=1e-9)
+    assert curve.column("c") == pytest.approx(np.zeros(len(curve)), abs=1e-11)
     found = [(p.label.value, p.parameter) for p in curve.special_points if p.label is not per.Label.END]
     # the angle is 2 pi/Omega: a quarter past a turn at 4/5, a third past it at 3/4
     assert [label for label, _ in found] == ["R3", "R4"]
-    assert [Omega for _, Omega in found] == pytest.approx([0.75, 0.8], rel=1e-8)
+    assert [Omega for _, Omega in found] == pytest.approx([0.75, 0.8], rel=1e-11)
 
 
 def test_curve_is_saved_with_what_it_is(tmp_path: object) -> None:

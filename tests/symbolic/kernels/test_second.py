@@ -60,7 +60,7 @@ def test_gradient_of_outputs(name: str) -> None:
         def by_state(h: float, j: int = j) -> Array:
             return system.output(rate, state + h * np.eye(state.shape[1])[j], algebraic, phase, parameter)
 
-        assert np.abs((found.d_state[:, :, j] - difference(by_state, 1e-3)) / size).max() < 1e-7
+        assert np.abs((found.d_state[:, :, j] - difference(by_state, 1e-3)) / size).max() < 1e-11
     for column, k in enumerate(free):
 
         def by_value(h: float, k: int = k) -> Array:
@@ -68,4 +68,4 @@ def test_gradient_of_outputs(name: str) -> None:
             return system.output(rate, state, algebraic, phase, changed)
 
         change = found.d_parameter[:, :, column] * parameter[k]
-        assert np.abs((change - difference(by_value, 1e-3)) / size).max() < 1e-7
+        assert np.abs((change - difference(by_value, 1e-3)) / size).max() < 1e-11
