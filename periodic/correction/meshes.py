@@ -9,6 +9,7 @@ import numpy as np
 from periodic.correction.error import ROUNDED, SAFETY, ErrorEstimate
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.redistribution import SPLIT, density
 from periodic.orbit.scheme import Array
 
 AIM = 0.1
@@ -22,6 +23,10 @@ SHARED = 0.1
 
 FINEST = 3.0
 """Into how many pieces an interval is divided at the most."""
+
+
+UNEVEN = 0.4
+"""Part of the intervals that evenly spread err as little, at the least."""
 
 
 class Refinement:
@@ -80,4 +85,11 @@ def wanted_ntst(orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int
     curable = min(error.curable, error.spread) if known else error.curable
     ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
-    return int(np.clip(np.ceil(factor * orbit.mesh.ntst), least, most))
+    return int(np.clip(np.ceil(factor * _evenly(orbit)), least, most))
+
+
+def _evenly(orbit: Orbit) -> float:
+    """Return how many intervals, where none has more than its share, err no more than the worst one does."""
+    part = density(orbit) * orbit.grid.width
+    ntst = orbit.mesh.ntst
+    return float(np.clip(SPLIT * part.sum() / part.max(), UNEVEN * ntst, ntst))

@@ -12,12 +12,16 @@ Bojanczyk, Golub & Van Dooren, Proc. SPIE 1770 (1992); Lust, Int. J. Bifurcation
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
 
-APART = np.log(10.0)
+APART = np.log(100.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
+
+JOINED = 1e3
+"""Steps are multiplied up first whose conditions multiply to less: of what is small they lose three digits."""
 
 PERIODS = 16
 """How many periods the columns are carried at the most."""
@@ -43,11 +47,11 @@ def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]
     n = steps.shape[1]
     if n == 1:
         return _of_block(steps, np.eye(1))
-    basis = np.eye(n)
+    steps, basis = _joined(steps), np.eye(n)
     for _ in range(PERIODS):
         begun, triangles = basis, np.empty_like(steps)
         for j, step in enumerate(steps):
-            basis, triangles[j] = np.linalg.qr(step @ basis)
+            basis, triangles[j] = _orthogonal(step @ basis)
         sizes = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
         growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
         turn = begun.T @ basis
@@ -58,6 +62,30 @@ def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]
     lost = (sizes < known * sizes.max(axis=1, keepdims=True)).any(axis=0)
     found = [_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks]
     return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])
+
+
+def _orthogonal(matrix: Array) -> tuple[Array, Array]:
+    """Q and R of a matrix; LAPACK itself, for matrices so small that numpy's own way to it takes longer."""
+    lapack = scipy.linalg.lapack
+    packed, tau, _, _ = lapack.dgeqrf(matrix)
+    return lapack.dorgqr(packed, tau)[0], np.triu(packed)
+
+
+def _joined(steps: Array) -> Array:
+    """The same product in fewer factors, none of which is conditioned worse than JOINED for that."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = np.linalg.svd(steps, compute_uv=False)
+        conditions = np.nan_to_num(np.log(sizes[:, 0] / sizes[:, -1]), nan=np.inf)
+    found: list[Array] = []
+    total = np.inf
+    for step, condition in zip(steps, conditions, strict=True):
+        total += condition
+        if total < np.log(JOINED):
+            found[-1] = step @ found[-1]
+        else:
+            found.append(step)
+            total = condition
+    return np.array(found)
 
 
 def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
