@@ -21,7 +21,7 @@ APART = np.log(100.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
 
 JOINED = 1e3
-"""Steps are multiplied up first whose conditions multiply to less: of what is small they lose three digits."""
+"""Steps are multiplied up first whose conditions multiply to less: what is small loses three digits by it."""
 
 PERIODS = 16
 """How many periods the columns are carried at the most."""
