@@ -95,10 +95,11 @@ class Dense:
         """Return a switch around the orbit, with extremes where it may pass its level, or `everywhere`."""
         values, scheme, grid = self.knots[:, :, switch], self.orbit.mesh.scheme, self.orbit.grid
         bounds = values @ _bernstein(scheme).T
-        mixed = (bounds.max(axis=1) > 0) & (bounds.min(axis=1) < 0) | everywhere
+        mixed = _changing(bounds) | everywhere
         interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
         theta = np.tile(scheme.knots, len(values))
-        found = [(j, t) for j in np.flatnonzero(mixed) for t in _turns(scheme, values[j])]
+        turning = np.flatnonzero(mixed & _changing(np.diff(bounds)))
+        found = [(j, t) for j in turning for t in _turns(scheme, values[j])]
         extra = np.array(found, dtype=float).reshape(-1, 2)
         interval = np.append(interval, extra[:, 0].astype(int))
         theta = np.append(theta, extra[:, 1])
@@ -284,6 +285,11 @@ class Dense:
 
 def _wrapped(phase: float, period: float) -> float:
     return float(np.mod(phase + period / 2, period) - period / 2)
+
+
+def _changing(coefficients: Array) -> NDArray[np.bool_]:
+    """Where polynomials may have a zero inside their interval, by their Bernstein coefficients."""
+    return (coefficients.max(axis=1) > 0) & (coefficients.min(axis=1) < 0)
 
 
 @cache
