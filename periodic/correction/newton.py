@@ -78,6 +78,7 @@ class Correction:
 
     fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). kernel: the tangent of the
     branch, of any length; None where no side condition closes the equations. operator: that linearisation.
+    gentle: whether it is known that perturbations do not grow fast within an interval.
     """
 
     orbit: Orbit
@@ -88,6 +89,7 @@ class Correction:
     fundamental: Array
     kernel: Increment | None
     operator: Operator | None = field(default=None, repr=False, compare=False)
+    gentle: bool = field(default=False, repr=False, compare=False)
 
     @property
     def ok(self) -> bool:

@@ -48,6 +48,8 @@ class SteppedCorrection(Correction):
     def stepping(self) -> Operator | None:
         """The linearised equations, in substeps where there is fast growth; None where no more is known."""
         assert self.system is not None and self.equations is not None
+        if self.gentle:
+            return self.operator
         return stepping(self.equations, self.system, self.orbit, self.operator)
 
 

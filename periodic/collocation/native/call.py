@@ -11,6 +11,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from periodic.collocation.multipliers.substeps import GROWING
 from periodic.collocation.native.elimination import ELIMINATION, LARGE, full
 from periodic.correction.newton import NewtonSettings
 from periodic.linear.bordering import GROWTH
@@ -46,7 +47,7 @@ _SETTINGS = (
     "growth",
 )
 _MEASURED = ("residual", "size", "length", "stretch", "depth")
-_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", *_MEASURED)
+_NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", *_MEASURED, "growing")
 
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
 _ADDRESSES = (*_GIVEN, "lengths", *FOUND, *SOLVED)
@@ -62,7 +63,7 @@ class Call(ctypes.Structure):
         *((name, ctypes.c_ssize_t) for name in _SIZES),
         *((name, ctypes.c_void_p) for name in _ADDRESSES),
         *((name, ctypes.c_double) for name in _NUMBERS),
-        ("iterations", ctypes.c_ssize_t),
+        *((name, ctypes.c_ssize_t) for name in ("iterations", "gentle")),
     )
 
 
@@ -147,7 +148,7 @@ def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
         call = Call(count=mesh.ntst, ncol=scheme.ncol, k=len(mesh.events), exact=len(mesh.exact_ends))
         for name, array in zip((*_MARKS, *_MESH, *_SCHEME), kept, strict=True):
             setattr(call, name, address(array))
-        call.period, call.growth = mesh.period, GROWTH
+        call.period, call.growth, call.growing = mesh.period, GROWTH, GROWING
         _meshes[mesh] = call, kept
     return _meshes[mesh]
 

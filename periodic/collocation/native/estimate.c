@@ -184,15 +184,9 @@ static void go(struct call *c, struct room *r, double further)
    the interval; work: room for (n + m) (2 n + m) + n numbers. */
 static int unresolved(const struct call *c, const struct estimate *e, const struct room *r, double *work)
 {
-    const whole n = c->n, m = c->m, rows = n + m, wide = rows + n;
+    const whole n = c->n, rows = n + c->m, wide = rows + n;
     for (whole j = 0; j < c->count; j += 2) {
-        const whole at = (j * c->ncol + c->ncol - 1) * rows;
-        for (whole i = 0; i < rows; i++) {
-            memcpy(work + i * wide, r->d_rate + (at + i) * n, n * sizeof(double));
-            memcpy(work + i * wide + n, r->d_algebraic + (at + i) * m, m * sizeof(double));
-            memcpy(work + i * wide + rows, r->d_state + (at + i) * n, n * sizeof(double));
-        }
-        if (solve(rows, n, work) != DONE)
+        if (by_states(c, r, j * c->ncol + c->ncol - 1, work) != DONE)
             return 1;
         const double width = r->width[j] + r->width[j + 1];
         for (whole i = 0; i < n; i++) {

@@ -52,7 +52,7 @@ def corrected(
         return Correction(orbit, *ended, np.full((1, call.n, call.n), np.nan), None)
     nodes, stages, algebraic, outer = kernel
     along = Increment.of(orbit, nodes, stages, algebraic, outer[: call.k], outer[call.k :])
-    return Correction(orbit, *ended, maps[:, :, 1 : 1 + call.n], along)
+    return Correction(orbit, *ended, maps[:, :, 1 : 1 + call.n], along, gentle=bool(call.gentle))
 
 
 def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:

@@ -42,7 +42,8 @@ struct call {
     double period, nominal, tolerance, close, max_change, shortest, narrow, negligible, growth;
     double origin_parameter, slope, distance;
     double residual, size, length, stretch, depth;
-    whole iterations;
+    double growing;
+    whole iterations, gentle; /* whether no perturbation can grow by more than growing in an interval */
 };
 
 /* Room for one linearisation; the kernels write structural nonzeros only, so that derivatives begin as 0. */
@@ -465,6 +466,37 @@ static int closer(struct call *c, struct room *r)
     return code;
 }
 
+/* J of dx' = J dx at a collocation point, last columns of rows of rows + n numbers: its first n; work: room
+   for (n + m) (2 n + m) numbers. */
+static int by_states(const struct call *c, const struct room *r, whole point, double *work)
+{
+    const whole n = c->n, m = c->m, rows = n + m, wide = rows + n, at = point * rows;
+    for (whole i = 0; i < rows; i++) {
+        memcpy(work + i * wide, r->d_rate + (at + i) * n, n * sizeof(double));
+        memcpy(work + i * wide + n, r->d_algebraic + (at + i) * m, m * sizeof(double));
+        memcpy(work + i * wide + rows, r->d_state + (at + i) * n, n * sizeof(double));
+    }
+    return solve(rows, n, work);
+}
+
+/* Whether J about the middle of each interval leaves perturbations no room to grow fast. */
+static int gentle(const struct call *c, const struct room *r)
+{
+    const whole n = c->n, rows = n + c->m, wide = rows + n;
+    for (whole j = 0; j < c->count; j++) {
+        if (by_states(c, r, j * c->ncol + c->ncol / 2, r->work) != DONE)
+            return 0;
+        for (whole i = 0; i < n; i++) {
+            double sum = 0;
+            for (whole s = 0; s < n; s++)
+                sum += fabs(r->work[i * wide + rows + s]);
+            if (!(sum * r->width[j] <= c->growing))
+                return 0;
+        }
+    }
+    return 1;
+}
+
 static int solved(struct call *c, struct room *r)
 {
     int code = iterate(c, r);
@@ -474,6 +506,7 @@ static int solved(struct call *c, struct room *r)
     if (code != DONE)
         return code;
     c->size = size;
+    c->gentle = gentle(c, r);
     const whole last = c->n + c->k + 1;
     spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
     return unfold(c, r);
