@@ -26,7 +26,7 @@ from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, demand, wanted_ntst
+from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
@@ -299,10 +299,14 @@ class CollocationRefinement(Refinement):
 
     @property
     def _ntst(self) -> int:
+        return self._wanted_ntst(self.orbit.mesh.ntst)
+
+    def _wanted_ntst(self, begun: float) -> int:
         method = self.method
         if self._misplaced:
             return self.orbit.mesh.ntst
-        return wanted_ntst(self.orbit, self.error, method.tolerance, method.ntst_min, method.ntst_max)
+        limits = (method.ntst_min, method.ntst_max)
+        return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
 
     @property
     def _demand(self) -> Array | None:
@@ -312,18 +316,29 @@ class CollocationRefinement(Refinement):
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
     def refined(self) -> Mesh:
-        """Return a mesh with intervals where the orbit needs them, and its present event nodes."""
+        """Return a mesh with intervals where the orbit needs them, and its present event nodes.
+
+        It has enough for orbits beside it as well, with kinks elsewhere.
+        """
         return self._made(self.orbit.mesh.events, self.orbit.phases)
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
         for chosen in self._choices():
             tied, phases = kinks.placed(self.system, self.orbit, chosen)
-            yield self._made(tied, phases), phases
+            yield self._own(tied, phases), phases
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
         """The mesh with such event nodes."""
-        return redistribute(self.orbit, self._ntst, events, phases, self.method.shortest, self._demand)
+        return self._spread(self._ntst, events, phases)
+
+    def _own(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        """The same for this orbit alone."""
+        begun = evenly(self.orbit) if self.system.switches else self.orbit.mesh.ntst
+        return self._spread(self._wanted_ntst(begun), events, phases)
+
+    def _spread(self, ntst: int, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        return redistribute(self.orbit, ntst, events, phases, self.method.shortest, self._demand)
 
     def _choices(self) -> Iterator[list[Crossing]]:
         yield self.wanted

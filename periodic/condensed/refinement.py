@@ -96,6 +96,10 @@ class CondensedRefinement(CollocationRefinement):
         scale = np.clip(total, self.method.ntst_min, self._most) / total
         return spread(self.orbit, scale * wanted, events, phases, self.method.shortest)
 
+    def _own(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        """The same: it is not spread by the motion's derivatives."""
+        return self._made(events, phases)
+
     @property
     def _wanted(self) -> Array:
         """Intervals a rad that are wanted in each interval, (N,)."""

@@ -78,18 +78,26 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     return wanted * min(1.0, most / intervals) if intervals > 0 else None
 
 
-def wanted_ntst(orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int, most: int) -> int:
-    """Return how many intervals bring the error estimate to its aim, but for what `demand` cures."""
+def wanted_ntst(
+    orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int, most: int, begun: float
+) -> int:
+    """Return how many intervals bring the error estimate to its aim, but for what `demand` cures.
+
+    begun: how many, spread anew, err as much as the orbit's own do now.
+    """
     order = orbit.mesh.scheme.ncol + 1
     known = error.shares is not None
     curable = min(error.curable, error.spread) if known else error.curable
     ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
-    return int(np.clip(np.ceil(factor * _evenly(orbit)), least, most))
+    return int(np.clip(np.ceil(factor * begun), least, most))
 
 
-def _evenly(orbit: Orbit) -> float:
-    """Return how many intervals, where none has more than its share, err no more than the worst one does."""
+def evenly(orbit: Orbit) -> float:
+    """Return how many intervals, where none has more than its share, err no more than the worst does now.
+
+    Beside a kink that has moved since the mesh was made they are far fewer than there are.
+    """
     part = density(orbit) * orbit.grid.width
     ntst = orbit.mesh.ntst
     return float(np.clip(SPLIT * part.sum() / part.max(), UNEVEN * ntst, ntst))

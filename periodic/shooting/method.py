@@ -151,7 +151,8 @@ class ShootingRefinement(Refinement):
     def refined(self) -> Mesh:
         """Return the mesh that interpolates the orbit."""
         method, error = self.method, replace(self.error, multiplier=0.0)  # no mesh betters multipliers
-        ntst = wanted_ntst(self.orbit, error, method.orbits, method.ntst_min, method.ntst_max)
+        limits = (method.ntst_min, method.ntst_max)
+        ntst = wanted_ntst(self.orbit, error, method.orbits, *limits, self.orbit.mesh.ntst)
         return redistribute(self.orbit, ntst, (), NO_EVENTS, 0.005 * method.orbits)
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
