@@ -23,7 +23,7 @@ CLOSE = 1e-8
 """Newton's last increment there, before one more step."""
 
 ITERATIONS = 8
-"""Newton's, to a change: it takes 2 to 5 where there is one."""
+"""Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
 NEAR = 0.02
 """Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
@@ -61,7 +61,7 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
     method, system = solver.discretisation, solver.problem.system
     for _ in range(TOUCHES):
         guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
-        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent))
+        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), ITERATIONS)
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
@@ -86,10 +86,10 @@ def _comes_back(found: Solution, change: Change) -> bool:
     return bool(ahead > 0)
 
 
-def _held(solver: Solver, guess: Orbit, held: Held) -> Solution:
+def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> Solution:
     """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
     newton = solver.tolerance.newton
-    most = min(ITERATIONS, newton.max_iterations)
+    most = min(most or newton.max_iterations, newton.max_iterations)
     close = replace(newton, tolerance=min(CLOSE, newton.tolerance), close=0.0, max_iterations=most)
     return solver.on(guess, held, close)
 

@@ -82,6 +82,10 @@ def test_tori() -> None:
 
 
 def test_known_doubling() -> None:
-    """Assert the known doubling, PD of one passage and not BP of eight, to eight digits."""
+    """Assert the known doubling, PD of one passage and not BP of eight, and to 1e-8 all its ten digits."""
     (doubling,) = branch().labelled(per.Label.DOUBLING)
-    assert doubling.parameter / KRPM == pytest.approx(5.428828134, rel=1e-8)
+    assert doubling.parameter / KRPM == pytest.approx(5.428828134, rel=1e-7)
+    ends = (5.42 * KRPM, 5.44 * KRPM)
+    close = per.trace(sym.scene("ball-bearing"), "speed", ends, guess=doubling.orbit, tol=1e-8)
+    (closer,) = close.labelled(per.Label.DOUBLING)
+    assert closer.parameter / KRPM == pytest.approx(5.428828134, rel=5e-10)
