@@ -90,5 +90,6 @@ class Solver:
         return replace(found, correction=replace(found.correction, orbit=exact))
 
     def transfers(self, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
-        """Yield guesses for an orbit on another mesh, the best first."""
-        yield from self.discretisation.transfer(self.problem.system, orbit, mesh, phases)
+        """Yield guesses for an orbit on another mesh, the best first; none where event nodes coincide."""
+        if mesh.segment_lengths(phases).all():
+            yield from self.discretisation.transfer(self.problem.system, orbit, mesh, phases)
