@@ -42,12 +42,18 @@ def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
 
 
 def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
-    """Return about by how much they are off as contacts begin and end where rounding has it."""
+    """Return about by how much they are off as contacts begin and end where rounding has it.
+
+    What rounding leaves there adds up along the orbit, with the root of the number of mesh points.
+    """
     late, off = 0.0, aside(orbit, rows)
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
         slope = abs(float(row.nodes[start] @ rate_before(orbit, i)) + float(row.outer[i]))
         late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
-    return _fastest(orbit, spectrum) * late * LIKELY / TERMS / spectrum.radius if late else 0.0
+    if not late:
+        return 0.0
+    every = float(np.sqrt(orbit.mesh.ntst))
+    return _fastest(orbit, spectrum) * late * LIKELY / TERMS * every / spectrum.radius
 
 
 def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:

@@ -113,16 +113,24 @@ class Crossed:
 def crossed(solver: Solver, at: Reached) -> Crossed | None:
     """Return an orbit beyond a change of pattern, the first whose branch goes on the same way.
 
-    Where all of them turn back in the parameter there is a fold in between: then none is returned as long as
-    the branch can be followed nearer to the change, and in the end the nearest.
+    Where all of them turn back in the parameter there is a fold in between, and where one lies behind the
+    change there are two: then none is returned as long as the branch can be followed nearer to the change,
+    and in the end the nearest.
     """
-    turned: Crossed | None = None
+    nearest: Crossed | None = None
     for found in _beyond(solver, at):
-        if found.solution.tangent.parameter * at.end.tangent.parameter > 0:
+        if _onward(at.end, found.solution):
             return found
-        if turned is None or found.distance < turned.distance:
-            turned = found
-    return turned if at.change.final else None
+        if nearest is None or found.distance < nearest.distance:
+            nearest = found
+    return nearest if at.change.final else None
+
+
+def _onward(before: Solution, after: Solution) -> bool:
+    """Whether the parameter goes on from one orbit to another as it does at both, but for their errors."""
+    way, blur = before.tangent.parameter, max(s.error.motion * abs(s.value) for s in (before, after))
+    ahead = (after.value - before.value) * np.sign(way)
+    return bool(after.tangent.parameter * way > 0 and ahead >= -blur)
 
 
 def _beyond(solver: Solver, at: Reached) -> Iterator[Crossed]:
