@@ -67,7 +67,7 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         along = progress(solver, base, found.orbit)
         if not 0 < along <= LONGER * ds:
             return None
-        if _comes_back(found, change):
+        if _comes_back(found, change, along <= STANDING * ds):
             return None
         earlier = method.change(system, base.orbit, found.orbit)
         if earlier is None or (not change.strict and not earlier.strict):
@@ -76,13 +76,19 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
     return None
 
 
-def _comes_back(found: Solution, change: Change) -> bool:
-    """Whether the branch comes back there from where its orbits are none of the system: it began before."""
+def _comes_back(found: Solution, change: Change, at_base: bool) -> bool:
+    """Whether the branch comes back there from where its orbits are none of the system: it began before.
+
+    at_base: whether that is where the step begins. Extrema do not come and go within a step, but one that
+    touches at its begin may leave its level there.
+    """
     row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
-    if not change.strict or row.stages is not None:  # extrema do not come and go within a step
+    if not change.strict or (row.stages is not None and not at_base):
         return False
     way = found.tangent
     ahead = np.vdot(row.nodes, way.nodes) + row.outer @ np.append(way.phases, way.parameters)
+    if row.stages is not None:
+        ahead += np.vdot(row.stages, way.stages)
     return bool(ahead > 0)
 
 

@@ -10,7 +10,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Moving, System, linear_of
+from periodic.system import Moving, System, linear_of, slides_of
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -46,6 +46,18 @@ def settled(system: System, start: Orbit) -> Orbit | None:
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None
+
+
+def held(system: System, motion: Orbit) -> list[str]:
+    """Return along which jumps of the equations a motion slides all the time, by their switches' names.
+
+    It has no isolated orbits there: where friction holds it is not determined.
+    """
+    states, tau = motion.nodes[:-1], motion.grid.left
+    values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
+    slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
+    still = values <= TOLERANCE * slopes * motion.span()
+    return [system.switches[k].name for k in slides_of(system) if still[k]]
 
 
 def _closed(path: Array) -> bool:

@@ -17,7 +17,7 @@ from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
 from periodic.tracing.drift import drifting
-from periodic.tracing.settling import settled
+from periodic.tracing.settling import held, settled
 
 COLLAPSED = 0.1
 """An orbit that is so much smaller than its guess is not what was guessed."""
@@ -91,18 +91,26 @@ class Start:
         )
 
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
-        """Guesses at the wanted parameters, each found only when those before have not served."""
-        yield self._settled(guess)
+        """Guesses at the wanted parameters, each found only when those before have not served.
+
+        None where friction holds a motion that has settled.
+        """
+        motion = self._settled(guess)
+        names = [] if motion is None else held(self.solver.problem.system, motion)
+        if names:
+            self.tried[-1] += f": {' and '.join(names)} holds all along, at a place that is not determined"
+            return
+        if motion is not None:
+            yield self.solver.discretisation.guess(self.solver.problem.system, guess.parameter, motion)
         yield from self._grown(guess)
 
     def _settled(self, guess: Orbit) -> Orbit | None:
-        """A guess from a simulation that is left to settle; none of free oscillations and equilibria."""
+        """A simulation that is left to settle; none of free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
         self.tried.append("a simulation left to settle")
-        motion = settled(problem.system, guess)
-        return None if motion is None else method.guess(problem.system, guess.parameter, motion)
+        return settled(problem.system, guess)
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""

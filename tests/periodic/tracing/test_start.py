@@ -74,6 +74,19 @@ def test_what_was_tried_is_said() -> None:
     )
 
 
+@pytest.mark.parametrize(("friction", "holds"), [(0.6, True), (0.1, False)])
+def test_what_friction_holds_is_said(friction: float, holds: bool) -> None:
+    """Assert that two masses that friction does not let slide have no first orbit, with that reason."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    parts: list[sym.Part] = [sym.HarmonicForce(x, 0.5, 0.6), sym.CoulombFriction(x, friction, to=y)]
+    for q, k in ((x, 1.0), (y, 4.0)):
+        parts += [sym.Mass(q, 1.0), sym.Spring(q, k), sym.Damper(q, 0.05)]
+    branch = per.trace(sym.compile(sym.combine(parts)), "Omega", (0.6, 0.7), control=FEW)
+    assert (branch.stop.reason is per.Reason.NO_START) is holds
+    told = "a simulation left to settle: d(x - y)/dt = 0 holds all along, at a place that is not determined; "
+    assert (told in branch.stop.detail) is holds
+
+
 EPS = 1e-3
 
 

@@ -84,6 +84,26 @@ def test_stops_however_short(seed: int, begin: float, end: float, touches: int) 
 
 
 @pytest.mark.long
+def test_goes_on_without_a_contact() -> None:
+    """Assert that a branch goes on where a contact has ended, not back with it: it touches there yet."""
+    branch = traced(drawn("chains", 123))
+    values = [point.parameter for point in branch]
+    end = next(k for k, value in enumerate(values) if abs(value - 1.0820931653) < 1e-9)
+    assert branch[end].label is per.Label.GRAZING
+    assert all(np.diff(values[end - 5 : end + 5]) > 0)
+
+
+@pytest.mark.long
+def test_folds_beside_a_touch() -> None:
+    """Assert both folds where the branch turns back at a first impact and on again 5e-5 beyond it."""
+    case = drawn("impacts", 132)
+    branch = per.trace(case.system, "Omega", (0.75, 0.7556), start=0.75, tol=TOL, control=CONTROL)
+    found = [(point.label.value, round(point.parameter, 4)) for point in branch.special_points]
+    assert found == [("EP", 0.75), ("GR", 0.7547), ("LP", 0.7547), ("LP", 0.7546), ("EP", 0.7556)]
+    assert wrong(case, branch, 132) == []
+
+
+@pytest.mark.long
 @pytest.mark.unaccounted
 @pytest.mark.parametrize(
     ("kind", "seeds"),
