@@ -15,6 +15,7 @@ from support.numpy_systems import Array, LinearOscillator
 from support.traces import RPM, disc_system
 
 import periodic as per
+import symbolic as sym
 from periodic.system import index_of
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import modes
@@ -162,3 +163,34 @@ def test_doubled_orbits_from_the_doubling() -> None:
         branch = per.trace(system, "speed", (440 * RPM, begin), start=begin, guess=guess, at=[500 * RPM])
         sheets = [p.peak_to_peak("x") for p in branch.labelled(per.Label.USER)]
         assert min(abs(swing / expected - 1) for swing in sheets) < 1e-8
+
+
+def escape() -> sym.CompiledSystem:
+    """x'' + .1 x' + x - x^2 = F cos(.85 t)."""
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        return {"x": x.v, "v": p.F * wave.cos - 0.1 * x.v - x.x + x.x**2}
+
+    names, values = {"x": 0.0, "v": 0.0}, {"F": 0.02, "Omega": 0.85}
+    return sym.compile(sym.Equations(rates, names, values, frequency="Omega"))
+
+
+def test_cascade() -> None:
+    """Assert that doubled orbits double in turn, that their branch begins anew at its PD, and ends as BP.
+
+    Where each begins the orbits of the branch before double, to 1e-6.
+    """
+    system = escape()
+    orbit = per.trace(system, "F", (0.02, 0.2), watch=per.Watch(stop={"PD": 1}))[-1].orbit
+    for periods in (2, 4):
+        begun = float(orbit.parameters["F"])
+        branch = per.trace(system, "F", (0.09, 0.12), guess=per.doubled(system, orbit, "F"))
+        assert [p.parameter for p in branch.labelled("BP")] == [pytest.approx(begun, rel=1e-6)]
+        assert {p.orbit.periods for p in branch} == {periods} and not branch.unaccounted
+        orbit = branch.labelled("PD")[0].orbit
+        again = per.trace(system, "F", (0.09, 0.12), guess=orbit)
+        assert not again.unaccounted
+        for branches in (branch, again):
+            places = [p.parameter for p in branches.labelled("PD")]
+            assert places == pytest.approx([orbit.parameters["F"]] * len(places), rel=1e-6)
+    assert 0.1005 < begun < orbit.parameters["F"] < 0.1085
