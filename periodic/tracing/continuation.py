@@ -22,9 +22,9 @@ from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turning import Found, at_once
-from periodic.correction.identity import closes, repeats, same
+from periodic.correction.identity import closes, distance, repeats, same
 from periodic.correction.newton import NewtonSettings
-from periodic.correction.predictor import tangent
+from periodic.correction.predictor import cubic, tangent
 from periodic.correction.refinement import carried, is_refined, refined, remeshed
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -43,6 +43,9 @@ from periodic.tracing.watch import Watch
 NEARLY = 1e-2
 """How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
 steps."""
+
+MIDDLE = 0.02
+"""Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
 
 
 class BeyondError(RejectedError):
@@ -458,7 +461,16 @@ class Continuation:
             if not strain.size <= 1:
                 raise RejectedError(strain.why, control.shorter(strain.size))
             furthest = max(furthest, strain.ahead)
+        if new.orbit.equilibrium:
+            self._check_middle(base, new, ds)
         return Attempt(base, new, ds, furthest, change)
+
+    def _check_middle(self, base: Solution, new: Solution, ds: float) -> None:
+        """Reject a step of equilibria round a corner where branches cross: its middle is off the cubic."""
+        solver, near = self.solver, cubic(self.solver, base, new, ds, ds / 2)
+        middle = solver.on(near, solver.constraint(base.orbit, base.tangent, ds / 2), self._patient)
+        if not middle.ok or distance(solver.problem, near, middle.orbit) > MIDDLE * ds:
+            raise RejectedError("the step does not follow its branch")
 
     def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
         """The end of a step, and the change of pattern that it ends at, foreseen or found."""

@@ -430,3 +430,18 @@ def test_no_equilibrium() -> None:
     system = equations(lambda x, p: {"x": 1 + x.x**2 + p.a}, {"x": 0.3}, a=0.0)
     branch = per.equilibria(system, "a", (0, 1))
     assert branch.stop.reason is per.Reason.NO_START and len(branch) == 0
+
+
+@pytest.mark.parametrize("place", [0.08, 0.23, 0.47, 0.62, 0.86])
+def test_long_steps_round_no_corner(place: float) -> None:
+    """Assert that long steps along x = sin 3 mu keep to it where lopsided equilibria leave: a BP there."""
+
+    def rates(x: Any, p: Any) -> dict[str, Any]:
+        y = x.x - sym.functions.sin(3 * p.mu)
+        return {"x": y * (p.mu - place - y**2)}
+
+    system = sym.compile(sym.Equations(rates, {"x": 0.0}, {"mu": 0.0}))
+    branch = per.equilibria(system, "mu", (0, 1), control=per.ArclengthControl(ds=0.2))
+    assert [point.parameter for point in branch.labelled("BP")] == [pytest.approx(place, abs=1e-9)]
+    states = [point.maximum["x"] for point in branch]
+    assert states == pytest.approx(np.sin(3 * branch.values), abs=1e-9)
