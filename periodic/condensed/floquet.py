@@ -254,6 +254,11 @@ class LeadingSpectrum(Spectrum):
         """The pairs that are damped so little that they matter to the course of the branch."""
         return [pair for pair in super().pairs if pair.modulus > LIGHT]
 
+    @property
+    def frame(self) -> Array | None:
+        """That of the subspace."""
+        return None if self.leading is None else self.leading.basis
+
     def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
         if self.leading is None:
             return super()._sizes(solutions, chosen)

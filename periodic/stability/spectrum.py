@@ -102,6 +102,11 @@ class Spectrum:
         """The monodromy matrix, shape (n, n)."""
         return self.fundamental[-1]
 
+    @property
+    def frame(self) -> Array | None:
+        """Orthonormal basis (coordinates, n) that the matrix is written in; None where it is the states'."""
+        return None
+
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:
         values, vectors = np.linalg.eig(self.monodromy)

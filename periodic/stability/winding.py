@@ -183,12 +183,16 @@ def _growth(before: Pair, after: Pair, place: float) -> float:
 def _coupling(own: Spectrum, other: Spectrum) -> Array:
     """How much each two pairs of an orbit mix in the monodromy matrix of another, (pairs, pairs).
 
-    The geometric mean of both ways, by which they may part where they meet.
+    The geometric mean of both ways, by which they may part where they meet. As much as can be where the two
+    are known in other coordinates.
     """
     chosen = [pair.place for pair in own.pairs]
     both = np.concatenate([own.vectors[:, chosen], own.vectors[:, chosen].conj()], axis=1)
+    matrix = _seen_from(own, other)
+    if matrix is None:
+        return np.full((len(chosen), len(chosen)), np.inf)
     try:
-        mixed = np.abs(np.linalg.pinv(both) @ other.monodromy @ both)
+        mixed = np.abs(np.linalg.pinv(both) @ matrix @ both)
     except np.linalg.LinAlgError:
         return np.full((len(chosen), len(chosen)), np.inf)
     k = len(chosen)
@@ -199,6 +203,16 @@ def _coupling(own: Spectrum, other: Spectrum) -> Array:
     ]
     largest = np.max(blocks, axis=0)
     return np.asarray(np.sqrt(largest * largest.T))
+
+
+def _seen_from(own: Spectrum, other: Spectrum) -> Array | None:
+    """The other's monodromy matrix in the subspace of an orbit's own, None where their coordinates differ."""
+    if own.frame is None or other.frame is None:
+        return other.monodromy
+    if len(own.frame) != len(other.frame):
+        return None
+    turned = other.frame.T @ own.frame
+    return np.asarray(turned.T @ other.monodromy @ turned)
 
 
 @lru_cache(maxsize=4)

@@ -67,7 +67,7 @@ CASES: Mapping[str, Case] = {
         part=cubic, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200, 1000), at=3.0
     ),
     "stop": Case(part=stop, force=0.01, damping=0.05, tolerance=1e-5, elements=(10, 50, 200), at=3.5),
-    "friction": Case(part=friction, force=0.1, damping=0.01, tolerance=1e-6, elements=(10,), at=4.0),
+    "friction": Case(part=friction, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200), at=4.0),
 }
 
 
