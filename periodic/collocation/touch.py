@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.collocation.conditions import Clearance, Length
 from periodic.collocation.dense import Dense, Extremum, exact, sliding
@@ -24,7 +25,7 @@ from periodic.collocation.turns import held, short_of, turns
 from periodic.correction.change import Beyond, Change
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import MIN_INTERVALS, redistribute
+from periodic.orbit.redistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.orbit.scheme import Array
 from periodic.system import System, resets_of, slides_of
 
@@ -36,6 +37,9 @@ VANISHING = 0.5
 
 SYMMETRIC = 1e-7
 """Switches this near to their levels, as a part of their largest values, touch at once."""
+
+BRIEF = 2.0
+"""Excursions at most so many times as long as one that ends end with it, or are about to."""
 
 ALIKE = 1e-3
 """Excursions whose lengths differ by this part end at once."""
@@ -155,8 +159,14 @@ class Meeting:
         kept = [m for m in range(len(orbit.phases)) if m not in ended]
         events, phases = ordered([(orbit.mesh.events[m], orbit.phases[m]) for m in kept], orbit)
         gone = MIN_INTERVALS * (len(orbit.mesh.events) - len(events)) // 2  # of excursions that are no more
-        mesh = redistribute(orbit, orbit.mesh.ntst - gone, events, phases, self.shortest)
-        return Beyond(mesh, phases, condition, True)
+        wanted = np.where(self._brief(orbit), 0.0, density(orbit))  # derivatives within them are rounding
+        wanted *= (orbit.mesh.ntst - gone) / float(wanted @ orbit.grid.width)
+        return Beyond(spread(orbit, wanted, events, phases, self.shortest), phases, condition, True)
+
+    def _brief(self, orbit: Orbit) -> NDArray[np.bool_]:
+        """Which intervals are those of excursions about as short as this one."""
+        brief = orbit.mesh.segment_lengths(orbit.phases) < BRIEF * self.length
+        return np.repeat(brief, [len(breaks) - 1 for breaks in orbit.mesh.breaks])
 
     def _as_short(self, orbit: Orbit) -> tuple[int, ...]:
         """Return the event nodes of all excursions as short as this one: by symmetry several end at once."""

@@ -25,7 +25,7 @@ FOLDER = REPORT.folder
 KEYS: dict[str, dict[str, tuple[str, ...]]] = {
     "smooth": {names.ANCHORED: ("tol 1e-7",), names.BALANCE: ("H 5",), "Gauss 4, even": ("ntst 24",)},
     "grazing": {names.ANCHORED: ("tol 1e-6",), "Radau 4, even": ("ntst 48",)},
-    "lost": {names.ANCHORED: ("tol 1e-4",), "Radau 3, even": ("ntst 24",)},
+    "lost": {names.ANCHORED: ("tol 1e-5",), "Radau 3, even": ("ntst 24",)},
     "duffing": {names.SHOOTING: ("tol 1e-6",), names.BALANCE: ("H 7",), "Radau 5, even": ("ntst 12",)},
 }
 """Errors that are computed anew: far above rounding, quick to get."""
