@@ -51,7 +51,8 @@ def _read(text: str) -> tuple[str, list[float]]:
             number = int(count)
             if not 1 <= number <= MOST:
                 raise ValueError
-            values = np.linspace(float(first), float(last), number).tolist()
+            with np.errstate(all="ignore"):  # what is not finite is refused below
+                values = np.linspace(float(first), float(last), number).tolist()
         else:
             values = [float(value) for value in given.split(",")]
     except ValueError:
@@ -87,6 +88,8 @@ def _changed(
     try:
         scene = load(source, (*overrides, (SHORT.get(key, key), whole)))
     except InputError as error:
-        raise error.renamed({"--set key": "--over"}) from None
+        parameters = f"one of the parameters {', '.join(sorted(nominal))}, or of the keys"
+        both = {"--set key": "--over"} | ({"one of": parameters} if error.field == "--set key" else {})
+        raise error.renamed(both) from None
     now = {p.name: p.value for p in build(scene).parameters}
     return [name for name, before in nominal.items() if now.get(name) != before]

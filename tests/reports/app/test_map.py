@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from support.commands import check_sentence, refusal
 
 import periodic as per
 import symbolic as sym
 from reports.app.cli import main
-from reports.app.map import command, run
-from reports.app.map.picture import _field
+from reports.app.map import command, picture, run
 
 Capture = pytest.CaptureFixture[str]
 QUICK = ("--from", "1.3", "--to", "1.9", "--accuracy", "draft", "--jobs", "1")
@@ -76,8 +77,10 @@ def test_cells_without_numbers(tmp_path: Path, capsys: Capture, monkeypatch: pyt
         (("--over", "F=1:2:0"), "--over is"),
         (("--over", "F=a,b"), "--over is"),
         (("--over", "F=nan,1"), "--over is"),
+        (("--over", "F=inf:1:2"), "--over is"),
+        (("--over", "F=-1e308:1e308:3"), "--over is"),
         (("--over", "F=1,1"), "--over is"),
-        (("--over", "nonsense=1,2"), "--over is"),
+        (("--over", "nonsense=1,2"), '--over is "nonsense"; it must be one of the parameters '),
         (("--over", "F=1,2", "--over", "force=1,2"), "--over has"),
         (("--over", "Omega=1,2"), "--over is"),
         (("--over", "mass=-1,2"), "oscillator.mass is"),
@@ -126,5 +129,43 @@ def test_picture_leaves_out_cells_that_failed() -> None:
             "folds": ("cell", [np.nan] * 4),
         }
     )
-    shown = _field(Figure().add_subplot(), data, ["F", "c"])
+    shown = picture._field(Figure().add_subplot(), data, ["F", "c"])
     assert sorted(np.unique(shown.get_array()).tolist()) == [1.0, 2.0, 3.0]
+
+
+def field(forces: list[float], dampings: list[float]) -> xr.Dataset:
+    """A map with folds where there is more force than damping."""
+    high, units = np.subtract.outer(forces, dampings), {"units": "m"}
+    folds = np.where(high > 0.0, 1.0, np.nan)[..., None]
+    data = {"peak": (("F", "c"), high, units), "stable peak": (("F", "c"), high, units)}
+    coordinates = {"F": ("F", forces, units), "c": ("c", dampings, units)}
+    return xr.Dataset(data | {"folds": (("F", "c", "folds number"), folds)}, coordinates)
+
+
+def drawn(data: xr.Dataset, path: Path, monkeypatch: pytest.MonkeyPatch) -> Axes:
+    """The axes of a map's picture."""
+    kept: list[Axes] = []
+    monkeypatch.setattr(picture, "write", lambda path, drawn, axes, title: kept.append(axes))
+    picture.draw(path, "title", data, {"F": "force", "c": "c"})
+    return kept[0]
+
+
+@pytest.mark.parametrize("forces", [[1.0, 2.0, 3.0], [3.0, 2.0, 1.0]])
+def test_ticks_are_on_the_side_of_folds(
+    forces: list[float], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that folds are to the left of the line, where its ticks are, in whichever order values are."""
+    axes = drawn(field(forces, [0.9, 1.9, 2.9]), tmp_path, monkeypatch)
+    (line,) = (found for found in axes.collections if isinstance(found, ContourSet))
+    steps = np.diff(line.get_paths()[0].vertices, axis=0)
+    assert (steps[:, 1] <= 0.0).all() and (steps[:, 0] <= 0.0).all()  # down and to the left: F is on its left
+
+
+def test_picture_where_one_of_two_parameters_has_one_value(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert a line over the other one, and the value beside it: a field without width shows nothing."""
+    axes = drawn(field([1.0, 2.0, 3.0], [0.5]), tmp_path, monkeypatch)
+    assert axes.get_xlabel() == "force (m), c = 0.5 m"
+    assert axes.lines[0].get_xydata().tolist() == [[1.0, 0.5], [2.0, 1.5], [3.0, 2.5]]
+    assert drawn(field([1.0], [0.5]), tmp_path, monkeypatch).lines[0].get_xydata().tolist() == [[0.5, 0.5]]
