@@ -48,7 +48,7 @@ def _growing(
     axes.set_ylim(bottom=min(times) / 3)
     for axis in (axes.xaxis, axes.yaxis):
         _ticks(axis)
-    axes.legend(loc="upper left")
+    axes.legend(loc="lower right")
 
 
 def _ticks(axis: Any) -> None:
