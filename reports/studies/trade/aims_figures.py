@@ -17,6 +17,9 @@ Numbers = dict[str, float]
 TOOLS = ("Duffing A branch", "AUTO-07p itself, ntst", "AUTO-07p by bifpy", "xpplab", "pyHarm", "bice")
 """How the names of the benchmarks begin."""
 
+BESIDE = (4, -10)
+"""Names of settings stand so high beside their points (pt), of one tool and of the next."""
+
 
 def growth(n: Mapping[str, Numbers]) -> Figure:
     """Return the time of a Newton iteration over ntst (disc) and over n (chains)."""
@@ -60,13 +63,15 @@ def _ticks(axis: Any) -> None:
 def peers(found: Mapping[str, Numbers]) -> Figure:
     """Return the error of the folds over the time of the branch, a curve for each tool."""
     figure, axes = panels(1, 1, width=7.0, height=3.8)
-    for tool, marker in zip(TOOLS, "osvDx^", strict=True):
+    for number, (tool, marker) in enumerate(zip(TOOLS, "osvDx^", strict=True)):
         own = {k: n for k, n in found.items() if k.startswith(tool) and "fold error" in n}
         time, error = [n["s"] for n in own.values()], [n["fold error"] for n in own.values()]
-        axes.loglog(time, error, marker + "-", label=tool.replace(TOOLS[0], "orbitrace"))
+        label = tool.replace(TOOLS[0], "orbitrace").removesuffix(", ntst")
+        axes.loglog(time, error, marker + "-", label=label)
         for place, name in zip(zip(time, error, strict=True), own, strict=True):
             setting = name.rpartition(", ")[2]
-            axes.annotate(setting, place, xytext=(5, 4), textcoords="offset points", fontsize=7)
+            beside = (5, BESIDE[number % 2])
+            axes.annotate(setting, place, xytext=beside, textcoords="offset points", fontsize=7)
     axes.set_xlabel("processor time of the branch (s)")
     axes.set_ylabel("relative error of the folds")
     axes.margins(0.12)
