@@ -1,10 +1,8 @@
 """Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
 
-Each step solves on an arclength constraint; special points inside it are located on further ones on the way.
-A step is rejected where Newton fails, where its end is not where its two tangents lead (a jump to another
-branch), where the tangent turns too much, where the multipliers pass a resonance unresolved, where an event
-node is past the end of its excursion, or where the error estimate exceeds the tolerance on a mesh made for
-the new orbit.
+Each step solves on an arclength constraint (`stepping`); special points inside it are located on further
+ones on the way. A step is also rejected where the multipliers pass a resonance unresolved, and where not
+every change within it is accounted for.
 """
 
 from __future__ import annotations
@@ -22,34 +20,24 @@ from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turning import Found, at_once
-from periodic.correction.identity import closes, distance, repeats, same
-from periodic.correction.newton import NewtonSettings
-from periodic.correction.predictor import cubic, tangent
-from periodic.correction.refinement import carried, is_refined, refined, remeshed
+from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
-from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
-from periodic.tracing.passage import Reached, crossed, reached, standing
-from periodic.tracing.start import Start, collapsed
+from periodic.tracing.passage import Reached, crossed, standing
+from periodic.tracing.start import Start
+from periodic.tracing.state import State
+from periodic.tracing.stepping import BeyondError, Stepper
 from periodic.tracing.stepsize import ArclengthControl
-from periodic.tracing.strain import strains
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2
 """How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
 steps."""
-
-MIDDLE = 0.02
-"""Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
-
-
-class BeyondError(RejectedError):
-    """A step to an orbit that the method's finest mesh does not resolve."""
 
 
 @dataclass(frozen=True)
@@ -67,38 +55,6 @@ class Step:
     def label(self) -> Label:
         """Of its end: whether a switch touches its level there."""
         return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """A step that was tried: the base on the mesh of its end, the end, its length and its strain."""
-
-    base: Solution
-    new: Solution
-    ds: float
-    strain: float
-    change: Reached | None
-
-
-@dataclass(frozen=True)
-class State:
-    """Where a run stands: its last solution, the first, the next step's size, and what it has counted.
-
-    kept: how many of its points belong to steps that were completed. least: the least step, beside a touch
-    less than elsewhere: a fold may lie that near.
-    """
-
-    begun: Solution
-    last: Solution
-    sign: int
-    ds: float
-    steps: int
-    since_remesh: int
-    left: bool
-    met: dict[str, int]
-    kept: int
-    least: float
-    course: Course = field(default_factory=Course)
 
 
 @dataclass
@@ -318,7 +274,7 @@ class Continuation:
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
-                tried = self._step(base, ds)
+                tried = self._stepper.step(base, ds)
                 base, new, length = tried.base, tried.new, tried.ds
                 found = special_points(self.solver, base, new, length, sought)
                 self._check_balance(base, new, found, length)
@@ -426,114 +382,16 @@ class Continuation:
         low, high = self.solver.problem.bounds
         return sorted({*self.user, begin}) if low < begin < high else self.user
 
-    def _step(self, base: Solution, ds: float) -> Attempt:
-        """Take one step. Raises RejectedError.
-
-        The mesh is made anew up to `meshes` times, while it changes; where then only the multipliers' error
-        still exceeds its bound the point stands, and tells it.
-        """
-        tolerance = self.solver.tolerance.orbit
-        for left in reversed(range(self.control.meshes + 1)):
-            tried = self._attempt(base, ds)
-            new = tried.new
-            if new.error.curable <= tolerance:
-                return tried
-            if collapsed(base.orbit, new):
-                raise RejectedError("the orbit shrinks to nothing in one step")
-            mesh = new.refinement.refined()
-            if left == 0 or mesh.matches(base.orbit.mesh):
-                break
-            base = self._on_mesh(base, mesh)
-        if new.error.motion > tolerance:
-            if new.refinement.exhausted:
-                raise BeyondError(new.refinement.shortfall)
-            raise RejectedError("the error estimate exceeds the tolerance")
-        return tried
-
-    def _attempt(self, base: Solution, ds: float) -> Attempt:
-        """Solve a step away, or where the pattern of events changes before that. Raises RejectedError."""
-        solver, control = self.solver, self.control
-        new, change = self._end(base, ds)
-        if change is not None:
-            ds = change.ds
-        furthest = 0.0
-        for strain in strains(base, new, ds, control, solver.tolerance.orbit):
-            if not strain.size <= 1:
-                raise RejectedError(strain.why, control.shorter(strain.size))
-            furthest = max(furthest, strain.ahead)
-        if new.orbit.equilibrium:
-            self._check_middle(base, new, ds)
-        return Attempt(base, new, ds, furthest, change)
-
-    def _check_middle(self, base: Solution, new: Solution, ds: float) -> None:
-        """Reject a step of equilibria round a corner where branches cross: its middle is off the cubic."""
-        solver, near = self.solver, cubic(self.solver, base, new, ds, ds / 2)
-        middle = solver.on(near, solver.constraint(base.orbit, base.tangent, ds / 2), self._patient)
-        if not middle.ok or distance(solver.problem, near, middle.orbit) > MIDDLE * ds:
-            raise RejectedError("the step does not follow its branch")
-
-    def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
-        """The end of a step, and the change of pattern that it ends at, foreseen or found."""
-        solver, system, method = self.solver, self.solver.problem.system, self.solver.discretisation
-        guess = tangent(solver.problem, base, ds)
-        foreseen = method.change(system, base.orbit, guess)
-        if foreseen is not None:
-            at = reached(solver, base, None, ds, foreseen)
-            if at is not None:
-                return at.end, at
-        new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
-        if not new.ok:
-            where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
-            raise RejectedError(f"{new.outcome.value}{where}")
-        found = method.change(system, base.orbit, new.orbit)
-        if found is None or not found.strict:
-            return new, None
-        at = reached(solver, base, new.orbit, ds, found)
-        if at is None:
-            raise RejectedError(f"{found.name} within the step")
-        return at.end, at
-
-    @cached_property
-    def _patient(self) -> NewtonSettings:
-        """Newton's settings for the end of a step."""
-        newton = self.solver.tolerance.newton
-        return replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
-
-    def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
-        """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""
-        moved = carried(self.solver, base, mesh, base.orbit.phases)
-        if not moved.ok:
-            raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
-        if not self._alike(base, moved):
-            raise RejectedError("on another mesh the orbit has other events")
-        return moved
-
-    def _alike(self, old: Solution, new: Solution) -> bool:
-        """Whether an orbit has the events on a new mesh that it had."""
-        method, system = self.solver.discretisation, self.solver.problem.system
-        return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
-
     def _prepared(self, new: Solution) -> Solution:
-        """Give the next step its mesh: right event nodes, an error estimate inside its window."""
-        solver, control, tolerance = self.solver, self.control, self.solver.tolerance.orbit
+        """The last solution on a mesh for the next step."""
         self._since_remesh += 1
         if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
             return new
-        due = self._since_remesh >= control.remesh_every
-        due = due or new.error.curable >= control.remesh_above * tolerance
-        if new.refinement.fits and not due and not self._too_fine(new):
-            return new
-        better = remeshed(solver, new)
-        if better.ok and not is_refined(solver, better):
-            better = refined(solver, better)
-        if not better.ok or better.error.motion > tolerance or not self._alike(new, better):
-            return new
-        self._since_remesh = 0
+        better = self._stepper.remeshed(new, self._since_remesh >= self.control.remesh_every)
+        if better is not new:
+            self._since_remesh = 0
         return better
 
-    def _too_fine(self, new: Solution) -> bool:
-        """Whether a far smaller mesh would do."""
-        control = self.control
-        if new.error.curable >= control.remesh_below * self.solver.tolerance.orbit:
-            return False
-        return new.refinement.refined().ntst <= control.smaller * new.orbit.mesh.ntst
+    @cached_property
+    def _stepper(self) -> Stepper:
+        return Stepper(self.solver, self.control)
