@@ -61,7 +61,7 @@ from .tori.torus import TorusError, torus
 from .tracing.continuation import Continuation
 from .tracing.equilibria import equilibria
 from .tracing.resumption import Interrupted, ResumeError
-from .tracing.stepsize import ArclengthControl
+from .tracing.steps.stepsize import ArclengthControl
 from .tracing.trace import continuation, trace
 from .tracing.watch import Watch
 

@@ -21,7 +21,7 @@ from periodic.results.described import described
 from periodic.system import System
 from periodic.tracing.resumption import made_with
 from periodic.tracing.setup import Method, Setup, setup
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import trace
 from periodic.tracing.watch import Watch
 

@@ -1,6 +1,6 @@
 """Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
 
-Each step solves on an arclength constraint (`stepping`); special points inside it are located on further
+Each step solves on an arclength constraint (`steps`); special points inside it are located on further
 ones on the way. A step is also rejected where the multipliers pass a resonance unresolved, and where not
 every change within it is accounted for.
 """
@@ -28,11 +28,11 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
-from periodic.tracing.passage import Reached, crossed, standing
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.stepping import BeyondError, Stepper
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.passage import Reached, crossed, standing
+from periodic.tracing.steps.stepper import BeyondError, Stepper
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2

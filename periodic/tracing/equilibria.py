@@ -17,7 +17,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Scheme
 from periodic.results.branch import Branch
 from periodic.system import System, VariableLike, check_system
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import trace
 from periodic.tracing.watch import Watch
 

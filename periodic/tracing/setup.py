@@ -20,7 +20,7 @@ from periodic.orbit.scheme import Array
 from periodic.results.frames import reserved
 from periodic.system import System, check_value, index_of
 from periodic.tracing.continuation import Continuation
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.suited import suited
 from periodic.tracing.watch import Watch
 

@@ -36,7 +36,7 @@ from periodic.tracing.resumption import (
     taken_up,
 )
 from periodic.tracing.setup import Method, Setup, setup
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
 ENDS_ALL = (Reason.CLOSED, Reason.MAX_NEWTON)

@@ -18,7 +18,7 @@ from periodic.correction.solution import Solution
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, index_of
-from periodic.tracing.passing import called, finite, passing
+from periodic.tracing.steps.passing import called, finite, passing
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.maps.task import Task
 from periodic.results.branch import Branch
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.trace import continuation
 from periodic.tracing.watch import Watch
 

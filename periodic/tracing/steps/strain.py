@@ -16,7 +16,7 @@ from periodic.linear.unknowns import Increment, size_of
 from periodic.stability.spectrum import Stability
 from periodic.stability.winding import Motion, turned
 from periodic.system import jumps_of, resets_of
-from periodic.tracing.stepsize import ArclengthControl
+from periodic.tracing.steps.stepsize import ArclengthControl
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,10 @@ from periodic.correction.refinement import carried, is_refined, refined, remeshe
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
-from periodic.tracing.passage import Reached, reached
 from periodic.tracing.start import collapsed
-from periodic.tracing.stepsize import ArclengthControl
-from periodic.tracing.strain import strains
+from periodic.tracing.steps.passage import Reached, reached
+from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.steps.strain import strains
 
 MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
