@@ -62,8 +62,8 @@ class RowsPart:
     ----------
     matrices : callable
         Parameters (p,) to E and A, (n, n) each, scaled.
-    rows : tuple of int
-        Rows on which the forces act.
+    loads : ndarray, shape (n, k)
+        What the k forces are on each row.
     places : tuple of int
         States that are given.
     forces : tuple of int
@@ -79,7 +79,7 @@ class RowsPart:
     """
 
     matrices: Callable[[Array], tuple[Array, Array]]
-    rows: tuple[int, ...]
+    loads: Array
     places: tuple[int, ...]
     forces: tuple[int, ...]
     varying: tuple[int, ...]
@@ -106,7 +106,7 @@ class RowsPart:
     def modes(self, parameter: Array) -> Modes:
         """Return the modes at parameters (p,). Raises ArithmeticError where they do not span the motion."""
         at = self._solved(parameter)
-        zero = np.zeros((len(self.places), len(self.rows)))
+        zero = np.zeros((len(self.places), self.loads.shape[1]))
         return Modes(at.values[at.kept], at.inputs, at.shapes[list(self.places)], zero, zero)
 
     def _solved(self, parameter: Array) -> Eigen:
@@ -133,8 +133,7 @@ class RowsPart:
     def _explicit(self, parameter: Array) -> tuple[Array, Array]:
         """x' = state x + rates f."""
         inertia, stiffness = self.matrices(parameter)
-        loads = np.eye(self.size)[:, list(self.rows)]
-        found = -np.linalg.solve(inertia, np.concatenate([stiffness, loads], axis=1))
+        found = -np.linalg.solve(inertia, np.concatenate([stiffness, self.loads], axis=1))
         return found[:, : self.size], found[:, self.size :]
 
     def slope(self, parameter: Array, index: int) -> Modes | None:
@@ -160,14 +159,14 @@ class RowsPart:
             raise ArithmeticError("modes of the linear part cannot be followed: two of them meet")
         inputs = at.inverse @ rates - mixed @ (at.inverse @ at.rates)
         kept, twice = at.kept, at.twice
-        zero = np.zeros((len(self.places), len(self.rows)))
+        zero = np.zeros((len(self.places), self.loads.shape[1]))
         shapes = (at.vectors @ mixed)[list(self.places)][:, kept] * twice
         return Modes(np.diag(turned)[kept], inputs[kept], shapes, zero, zero)
 
     def everything(self, parameter: Array) -> Modes:
         """Return the modes with all states (scaled) as outputs."""
         at = self._solved(parameter)
-        nothing = np.zeros((self.size, len(self.rows)))
+        nothing = np.zeros((self.size, self.loads.shape[1]))
         return Modes(at.values[at.kept], at.inputs, at.shapes, nothing, nothing)
 
     def observed(self, parameter: Array, freedoms: Sequence[int], structure: str | None) -> Modes:
@@ -200,6 +199,6 @@ class RowsPart:
         exponents = found.values[found.kept]
         outputs = np.zeros((2 * len(at), len(exponents)), dtype=complex)
         outputs[::2], outputs[1::2] = scales * shapes, scales * omega * shapes * exponents
-        direct = np.zeros((2 * len(at), len(self.rows)))
+        direct = np.zeros((2 * len(at), self.loads.shape[1]))
         direct[1::2] = scales * omega * found.rates[at]
         return Modes(exponents, found.inputs, outputs, direct, np.zeros_like(direct))

@@ -30,6 +30,9 @@ from symbolic.tables import told
 MANY, PLACES = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
+STRUCK, BETWEEN = 12, 10
+"""The same where motion has kinks, which excite modes far faster than the motion."""
+
 
 @dataclass(frozen=True)
 class Linearisation:
@@ -177,11 +180,12 @@ class CompiledSystem:
 
     def condensed(self, *, always: bool = False) -> CompiledSystem | None:
         """Return the system of the nonlinear places alone: see `periodic.system.Condensable`."""
-        if not always and len(self.states) < MANY:
+        least, between = (STRUCK, BETWEEN) if self.switches else (MANY, PLACES)
+        if not always and len(self.states) < least:
             return None
         found = self._condensed
         if isinstance(found, CompiledSystem):
-            return found if always or PLACES * len(found.kept) <= len(self.states) else None
+            return found if always or between * len(found.kept) <= len(self.states) else None
         if always:
             raise ValueError(f"condense is True, but {found}")
         return None

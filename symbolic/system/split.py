@@ -4,13 +4,15 @@ CasADi tells which entries of the Jacobian depend on states, unknowns or the pha
 
     (E x')_i + (A x)_i + f_i = 0,    f_i = r_i(w, z, tau, p),
 
-with w the states that enter nonlinearly, few as a rule; f_i is 0 in most rows.
+with w the states that enter nonlinearly, few as a rule; f_i is 0 in most rows, and in others a combination
+of a few.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -20,6 +22,7 @@ from symbolic.checks import typed
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import Variable
 from symbolic.structures.rowspart import RowsPart
+from symbolic.system.combinations import Combined, combined
 from symbolic.system.compiled import CompiledSystem
 
 
@@ -34,7 +37,7 @@ class Structure:
     nonlinear : tuple of str
         Names of the states that enter nonlinearly, or together with unknowns or the phase.
     rows : tuple of int
-        Differential rows with a force f_i.
+        Differential rows whose forces f_i make those of all rows.
     places : int
         How many of these forces depend on the motion.
     """
@@ -138,12 +141,44 @@ class _Split:
         self.moved = special[special < n].astype(int)
         at_rest = ca.substitute(e.residual[:n], moving, ca.SX.zeros(moving.numel()))
         loaded = [i for i in range(n) if not ca.simplify(at_rest[i]).is_zero()]
-        self.rows = np.unique(np.concatenate([self.moved, np.array(loaded, dtype=int)])).astype(int)
+        self._loaded = np.unique(np.concatenate([self.moved, np.array(loaded, dtype=int)])).astype(int)
+        self.combined = self._combined()
+        self.rows = self._loaded[list(self.combined.rows)]
+
+    def _combined(self) -> Combined:
+        """The forces f_i of all rows as combinations of a few: of residual, unexcited and waved rows."""
+        e = self.e
+        columns = [self._remainder(rows) for rows in (e.residual, e.unexcited, e.waved)]
+        found = combined(columns, ca.vertcat(e.state, e.algebraic))
+        if found is not None:
+            return found
+        count = len(self._loaded)
+        moved = int(np.isin(self._loaded, self.moved).sum())
+        return Combined(tuple(range(count)), moved, np.eye(count), tuple(columns))
 
     @property
     def structure(self) -> Structure:
         names = tuple(self.whole.states[k].name for k in self.places)
-        return Structure(self.n, names, tuple(int(k) for k in self.rows), len(self.moved))
+        return Structure(self.n, names, tuple(int(k) for k in self.rows), self.combined.moved)
+
+    def _remainder(self, rows: ca.SX) -> ca.SX:
+        """The forces f_i of the rows that have any, as functions of the places' states and the unknowns."""
+        chosen = [int(k) for k in self._loaded]
+        return self._still(rows)[chosen] - (self._linear[1] @ self._held_state)[chosen]
+
+    @cached_property
+    def _held_state(self) -> ca.SX:
+        """All states, but for those of the places at 0."""
+        found = ca.SX.zeros(self.n)
+        for place in self.places:
+            found[int(place)] = self.e.state[int(place)]
+        return found
+
+    def _still(self, rows: ca.SX) -> ca.SX:
+        """Expressions with no rates, and with no states but those of the places."""
+        e = self.e
+        moving = ca.vertcat(e.rate, e.state)
+        return ca.substitute(rows, moving, ca.vertcat(ca.SX.zeros(self.n), self._held_state))
 
     def system(self) -> CompiledSystem:
         whole, m = self.whole, len(self.whole.algebraics)
@@ -177,6 +212,7 @@ class _Split:
             return list(range(e.outputs.numel()))
         return [k for k in range(e.outputs.numel()) if not ca.depends_on(e.outputs[k], elsewhere)]
 
+    @cached_property
     def _linear(self) -> tuple[ca.SX, ca.SX]:
         """E and A as functions of the parameters, in rows with a force about zero."""
         e, n = self.e, self.n
@@ -190,7 +226,7 @@ class _Split:
 
     def _part(self, forces: tuple[int, ...]) -> RowsPart:
         e, whole = self.e, self.whole
-        inertia, stiffness = self._linear()
+        inertia, stiffness = self._linear
         evaluate = ca.Function("linear", [e.parameter], [ca.densify(inertia), ca.densify(stiffness)])
 
         def matrices(parameter: Array) -> tuple[Array, Array]:
@@ -200,9 +236,11 @@ class _Split:
         both = ca.vertcat(ca.vec(inertia), ca.vec(stiffness))
         varying = sorted(set(ca.jacobian(both, e.parameter).sparsity().get_col()))
         names = [whole.states[k].name for k in self.places]
+        loads = np.zeros((self.n, len(self.rows)))
+        loads[self._loaded] = self.combined.matrix
         return RowsPart(
             matrices=matrices,
-            rows=tuple(int(k) for k in self.rows),
+            loads=loads,
             places=tuple(int(k) for k in self.places),
             forces=forces,
             varying=tuple(varying),
@@ -221,20 +259,17 @@ class _Split:
         for k, place in enumerate(self.places):
             full_rate[int(place)], full_state[int(place)] = rate[k], state[k]
         old = ca.vertcat(e.rate, e.state, e.algebraic)
-        still = ca.vertcat(ca.SX.zeros(n), full_state, algebraic[:m, :])
         moving = ca.vertcat(full_rate, full_state, algebraic[:m, :])
-        stiffness = self._linear()[1]
 
-        def reduced(rows: ca.SX) -> ca.SX:
-            here = ca.substitute(rows, old, still)
-            chosen = [int(k) for k in self.rows]
-            left = here[chosen] - (stiffness @ full_state)[chosen]
-            return ca.vertcat(ca.SX.zeros(s), here[n:], algebraic[m:, :] - left)
+        def reduced(rows: ca.SX, forces: ca.SX) -> ca.SX:
+            unknowns, left = (ca.substitute(each, old, moving) for each in (self._still(rows)[n:], forces))
+            return ca.vertcat(ca.SX.zeros(s), unknowns, algebraic[m:, :] - left)
 
         shown = ca.substitute(e.outputs[outputs], old, moving)
-        unexcited, residual = reduced(e.unexcited), reduced(e.residual)
         whole = e.waved.numel() - e.outputs.numel()
-        waved = ca.vertcat(reduced(e.waved[:whole]), ca.substitute(e.waved[whole:][outputs], old, moving))
+        each = zip((e.residual, e.unexcited, e.waved[:whole]), self.combined.forces, strict=True)
+        residual, unexcited, waved = (reduced(rows, forces) for rows, forces in each)
+        waved = ca.vertcat(waved, ca.substitute(e.waved[whole:][outputs], old, moving))
         return replace(
             e,
             rate=rate,
