@@ -8,7 +8,7 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import one_of, positive, whole
-from symbolic.structures.matrices import Matrices
+from symbolic.structures.matrices import DENSE, Matrices, Matrix, sparse
 
 ENDS = ("free", "pinned", "clamped")
 
@@ -71,8 +71,8 @@ def beam(
     at = {names[dof]: k for k, dof in enumerate(kept)}
     if f"w{elements}" in at:
         at["tip"] = at[f"w{elements}"]
-    cut = np.ix_(kept, kept)
-    return Matrices(chained(mass, elements, 2)[cut], None, chained(stiffness, elements, 2)[cut], at=at)
+    whole_mass, whole_stiffness = chained(mass, elements, 2), chained(stiffness, elements, 2)
+    return Matrices(whole_mass[kept][:, kept], None, whole_stiffness[kept][:, kept], at=at)
 
 
 def bending_element(length: float, bending: float) -> tuple[Array, Array]:
@@ -97,10 +97,16 @@ def bending_element(length: float, bending: float) -> tuple[Array, Array]:
     return stiffness * bending / h**3, mass * h / 420
 
 
-def chained(element: Array, count: int, freedoms: int) -> Array:
-    """Return the matrix of `count` equal elements in a row; neighbours share `freedoms` freedoms."""
-    row = np.zeros((freedoms * (count + 1), freedoms * (count + 1)))
-    for k in range(count):
-        here = slice(freedoms * k, freedoms * k + len(element))
-        row[here, here] += element
-    return row
+def chained(element: Array, count: int, freedoms: int, lumped: Array | None = None) -> Matrix:
+    """Return the matrix of `count` equal elements in a row; neighbours share `freedoms` freedoms.
+
+    `lumped` is added to its diagonal. It is sparse where it has more than `DENSE` rows.
+    """
+    size, each = freedoms * (count + 1), np.arange(len(element))
+    row, column = np.meshgrid(each, each, indexing="ij")
+    begun = freedoms * np.arange(count)[:, None, None]
+    where = (begun + row).ravel(), (begun + column).ravel()
+    found = sparse.csr_array((np.tile(element.ravel(), count), where), shape=(size, size))
+    if lumped is not None:
+        found = sparse.csr_array(found + sparse.diags_array(lumped))
+    return found if size > DENSE else found.toarray()

@@ -11,7 +11,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import finite, positive, refusal, typed, whole
 from symbolic.structures.beam import bending_element, chained
-from symbolic.structures.matrices import Matrices
+from symbolic.structures.matrices import Matrices, Matrix, sparse
 
 
 @dataclass(frozen=True)
@@ -97,21 +97,19 @@ def shaft(
     h = positive("length", length) / elements
     stiffness, mass = bending_element(h, positive("modulus", modulus) * second)
     rotary = positive("density", density) * second * slope_element(h)
-    plane_mass = chained(density * area * mass + rotary, elements, 2)
-    polar = chained(2 * rotary, elements, 2)
+    of_discs, polar_of_discs = np.zeros(2 * nodes), np.zeros(2 * nodes)
     for disc in discs:
         node = typed("a disc", disc, ShaftDisc, "a ShaftDisc").node
         if node >= nodes:
             raise refusal("node of a disc", node, f"a whole number from 0 to {nodes - 1}")
-        plane_mass[2 * node, 2 * node] += disc.mass
-        plane_mass[2 * node + 1, 2 * node + 1] += disc.diametral
-        polar[2 * node + 1, 2 * node + 1] += disc.polar
+        of_discs[2 * node : 2 * node + 2] += disc.mass, disc.diametral
+        polar_of_discs[2 * node + 1] += disc.polar
     names = [f"{kind}{node}" for node in range(nodes) for kind in ("x", "y", "slope_x", "slope_y")]
     return Matrices(
-        _planes(plane_mass),
+        _planes(chained(density * area * mass + rotary, elements, 2, of_discs)),
         None,
         _planes(chained(stiffness, elements, 2)),
-        _planes(polar, np.array([[0.0, 1.0], [-1.0, 0.0]])),
+        _planes(chained(2 * rotary, elements, 2, polar_of_discs), np.array([[0.0, 1.0], [-1.0, 0.0]])),
         at={name: k for k, name in enumerate(names)},
     )
 
@@ -129,8 +127,7 @@ def slope_element(length: float) -> Array:
     ) / (30 * h)
 
 
-def _planes(plane: Array, coupling: Array | None = None) -> Array:
+def _planes(plane: Matrix, coupling: Array | None = None) -> Matrix:
     """Both planes from the matrix of one: order (w, slope) of a node to (x, y, slope_x, slope_y)."""
     pair = np.eye(2) if coupling is None else coupling
-    both: Array = np.kron(plane, pair).astype(float)
-    return both
+    return sparse.csr_array(sparse.kron(plane, pair)) if sparse.issparse(plane) else np.kron(plane, pair)

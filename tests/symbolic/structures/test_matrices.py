@@ -49,6 +49,26 @@ def test_beam_has_its_mass_and_its_static_tip() -> None:
     assert np.linalg.solve(clamped.K, load)[clamped["tip"]] == pytest.approx(8 / 9, rel=1e-12)
 
 
+def test_long_structures_are_sparse() -> None:
+    """Assert that many elements make sparse matrices, which begin as those of few elements as long."""
+    discs = [sym.ShaftDisc(node=1, mass=2.0, diametral=0.1, polar=0.2)]
+    few, many = 6, 300
+    for name in ("M", "K", "G"):
+        short, long = (
+            getattr(sym.shaft(length=0.1 * k, diameter=0.05, elements=k, discs=discs), name)
+            for k in (few, many)
+        )
+        assert scipy.sparse.issparse(long) and not scipy.sparse.issparse(short)
+        assert long.nnz < 40 * long.shape[0]
+        np.testing.assert_allclose(long[:20, :20].toarray(), short[:20, :20], rtol=1e-12)
+    short_beam, long_beam = (
+        sym.beam(length=0.1 * k, bending=3.0, mass_per_length=5.0, elements=k) for k in (few, many)
+    )
+    assert scipy.sparse.issparse(long_beam.M) and scipy.sparse.issparse(long_beam.C)
+    for a, b in ((long_beam.M, short_beam.M), (long_beam.K, short_beam.K)):
+        np.testing.assert_allclose(a[:8, :8].toarray(), b[:8, :8], rtol=1e-12)
+
+
 def test_lanczos_finds_what_the_full_problem_has() -> None:
     """Assert the lowest modes of a large sparse chain, its rigid-body mode included."""
     n = 1500
