@@ -13,14 +13,13 @@ The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Mul
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
-from periodic.condensed.modal.response import Response
 from periodic.condensed.operator import Condensed
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
@@ -115,7 +114,7 @@ class _Missing:
         given, fine = operator.given, bisect(operator.orbit)
         self.given, self.places, forces = given, list(given.part.states), list(given.part.forces)
         scheme = fine.mesh.scheme
-        self.response = Response(given.response.modes, scheme, fine.grid, fine.mesh.period)
+        self.response = replace(given.response, scheme=scheme, grid=fine.grid, period=fine.mesh.period)
         exact = self.response.stages(np.ascontiguousarray(fine.algebraic[:, :, forces]))
         self.gap = exact - fine.stages[:, :, self.places]
         fine.stages[:, :, self.places] = exact

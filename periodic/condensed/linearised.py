@@ -14,6 +14,7 @@ from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.reduction import audible, reduced, reduced_slope
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes
+from periodic.condensed.native.response import response_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, linear_of
@@ -53,14 +54,20 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
 
 
 def answer(
-    part: LinearPart, orbit: Orbit, parameter: Array, free: tuple[int, ...], tolerance: float = 0.0
+    system: System, orbit: Orbit, parameter: Array, free: tuple[int, ...], tolerance: float = 0.0
 ) -> tuple[Response, list[ModesLike | None]]:
-    """Return the modes that matter at a tolerance on an orbit's mesh, and their derivatives."""
+    """Return the modes that matter at a tolerance on an orbit's mesh, and their derivatives.
+
+    Raises ValueError for a system without a linear part.
+    """
+    part, mesh = linear_of(system), orbit.mesh
+    if part is None:
+        raise ValueError("the system has no linear part; condensation needs one")
     whole = part.modes(parameter)
     heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
-    kept = audible(whole, heard, orbit.mesh.period, tolerance)
+    kept = audible(whole, heard, mesh.period, tolerance)
     changes = [reduced_slope(whole, part.slope(parameter, k), kept) for k in free]
-    return Response(reduced(whole, kept), orbit.mesh.scheme, orbit.grid, orbit.mesh.period), changes
+    return response_of(system, reduced(whole, kept), mesh.scheme, orbit.grid, mesh.period), changes
 
 
 @dataclass(frozen=True)
@@ -93,10 +100,9 @@ class Linearised:
 
         Raises ValueError for a system without a linear part, and as `condense` does.
         """
+        response, changes = answer(system, orbit, orbit.parameter, free, tolerance)
         part = linear_of(system)
-        if part is None:
-            raise ValueError("the system has no linear part; condensation needs one")
-        response, changes = answer(part, orbit, orbit.parameter, free, tolerance)
+        assert part is not None
         return cls(orbit, part, response, changes, local_rows(system, part, orbit, free))
 
     @cached_property

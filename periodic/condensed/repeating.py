@@ -168,14 +168,14 @@ class CondensedRepeating:
         given, orbit = self.given, self.given.orbit
         stretch = orbit.grid.width_gradient
         forces = np.ascontiguousarray(tangent.algebraic[:, :, list(given.part.forces)])
-        response, changes = answer(given.part, orbit, orbit.parameter, free)
+        response, changes = answer(self.system, orbit, orbit.parameter, free)
         found = slopes(response, forces, stretch, changes, self.mu)[0]
         weights = pull.reshape(found.shape[:3])
         total = np.einsum("nas,nasq->q", weights, found).real
         if tangent.parameter.any():
             size, ends = self._step(tangent), []
             for step in (size, -size):
-                beside, changed = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, free)
+                beside, changed = answer(self.system, orbit, orbit.parameter + step * tangent.parameter, free)
                 ends.append(
                     np.einsum("nas,nasq->q", weights, slopes(beside, given.forces, stretch, changed)[0])
                 )
@@ -184,10 +184,10 @@ class CondensedRepeating:
 
     def _stiffer(self, tangent: Tangent, pull: Array) -> Array:
         """How much more the pull at the places takes of forces along v_y, (P, k)."""
-        given, orbit = self.given, self.given.orbit
+        orbit = self.given.orbit
         size, ends = self._step(tangent), []
         for step in (size, -size):
-            beside, _ = answer(given.part, orbit, orbit.parameter + step * tangent.parameter, ())
+            beside, _ = answer(self.system, orbit, orbit.parameter + step * tangent.parameter, ())
             ends.append(Flexibility.repeating(beside).pulled(self._by_interval(pull)))
         found: Array = np.asarray((ends[0] - ends[1]) / (2 * size)).reshape(len(pull), -1)
         return found

@@ -65,7 +65,7 @@ class Flexibility:
         """All columns, (N, a, s, N, b, k)."""
         closing = self.response.closing if self.closing is None else self.closing[0]
         if self.response.uniform and self.past and closing is self.response.closing:
-            return self._circulant()
+            return self.response.circulant(None if self.closing is None else self.closing[0])
         return self._block(self.intervals, self.intervals)
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Flexibility:
@@ -175,26 +175,3 @@ class Flexibility:
             own = decay[i][:, None] * own
             own[:, i * width : (i + 1) * width] = left[:, i].reshape(size, -1)
         return np.array(found).reshape(*shown.shape[:3], *left.shape[1:])
-
-    def _circulant(self) -> Array:
-        """On a uniform mesh only how many intervals later counts."""
-        response = self.response
-        modes, count, points = response.modes, len(self.intervals), response.scheme.ncol
-        s, k = modes.direct.shape
-        width = response.grid.width[0]
-        impulse = response.impulse[0]
-        impulse = impulse if self.closing is None else impulse * self.closing[0][:, None, None]
-        # by falling number of intervals, as the columns of a row have it
-        ahead = np.exp(modes.exponents[:, None] * (width * np.arange(count - 1.0, -1.0, -1.0)))
-        moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
-        shown = response.shown[0].reshape(points * s, -1)
-        found = real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
-        twice = np.concatenate([found, np.zeros_like(found) if self.closing is None else found], axis=1)
-        row, column, each = twice.strides
-        laid = np.lib.stride_tricks.as_strided(
-            twice[:, count:], (count, *found.shape), (-column, row, column, each), writeable=False
-        )
-        whole = np.array(laid).reshape(count, points, s, count, points, k)
-        own = np.arange(count)
-        whole[own, :, :, own] += response.local
-        return whole

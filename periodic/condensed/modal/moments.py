@@ -71,7 +71,7 @@ class Moments:
         return np.linalg.inv(np.vander(points, increasing=True)).astype(float)
 
     @cached_property
-    def _taylor(self) -> Array:
+    def taylor(self) -> Array:
         """Coefficients of x^m, shape (TERMS, a, b)."""
         points = self.places
         found = np.zeros((TERMS, len(points), self.scheme.ncol))
@@ -101,7 +101,7 @@ class Moments:
         near = np.abs(x) <= NEAR
         if near.any():
             powers = np.vander(x[near], TERMS, increasing=True)
-            series = self._taylor.reshape(TERMS, -1)
+            series = self.taylor.reshape(TERMS, -1)
             order = np.arange(1, TERMS)[:, None]
             moment[near] = (powers @ series).reshape(-1, *shape[1:])
             slope[near] = (powers[:, :-1] @ (order * series[1:])).reshape(-1, *shape[1:])

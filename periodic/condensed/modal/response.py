@@ -8,8 +8,10 @@ of the interval.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +24,8 @@ from periodic.system import ModesLike
 
 
 @cache
-def _moments(scheme: Scheme) -> Moments:
+def moments_of(scheme: Scheme) -> Moments:
+    """Return the moments of a scheme."""
     return Moments(scheme)
 
 
@@ -50,7 +53,7 @@ class Response:
     @property
     def moments(self) -> Moments:
         """The scheme's moments."""
-        return _moments(self.scheme)
+        return moments_of(self.scheme)
 
     @cached_property
     def _distinct(self) -> tuple[Array, NDArray[np.int_]]:
@@ -70,9 +73,13 @@ class Response:
             modes.direct_rate[np.ix_(states, forces)],
         )
         found = replace(self, modes=chosen)
-        # these depend on mesh and exponents alone
-        vars(found).update({name: getattr(self, name) for name in ("_distinct", "_table", "closing")})
+        vars(found).update({name: getattr(self, name) for name in self._shared})
         return found
+
+    @property
+    def _shared(self) -> Sequence[str]:
+        """What depends on mesh and exponents alone."""
+        return "_distinct", "_table", "closing"
 
     @property
     def uniform(self) -> bool:
@@ -226,6 +233,69 @@ class Response:
         grown = np.exp(self.modes.exponents * self.period)
         return 1 / (multiplier - grown), 1 / (multiplier - grown.conj())
 
+    def sloped(
+        self, forces: Array, widths: Array, changes: Sequence[ModesLike], closing: Complex
+    ) -> tuple[NDArray[Any], Complex]:
+        """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
+
+        With widths in the first directions, and with modes in further ones; see `slopes`, which is for all.
+        """
+        modes, table, width = self.modes, self.table, self.grid.width
+        first, q = widths.shape[1], widths.shape[1] + len(changes)
+        stretch = np.zeros((len(width), q))
+        stretch[:, :first] = widths
+        faster = np.zeros((len(modes.exponents), q), dtype=complex)
+        for i, change in enumerate(changes):
+            faster[:, first + i] = change.exponents
+        # x = lambda h
+        shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
+        history = self.history(forces, closing)
+        driven = _driving(forces, modes.inputs)
+        answer, steeper = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
+        inner = stretch[:, None, None, :] * answer[..., None]
+        inner += (width[:, None, None] * steeper)[..., None] * shift[:, :, None, :]
+        turn = self.scheme.points[:, None] * shift[:, :, None, :]
+        inner += (table.growth * history[:-1, :, None])[..., None] * turn
+        for i, change in enumerate(changes):
+            other = _driving(forces, change.inputs)
+            inner[..., first + i] += width[:, None, None] * _applied(self, table.moment, other)
+        moved = self.closed(inner[:, :, -1], closing)
+        states = inner + table.growth[..., None] * moved[:-1, :, None]
+        count, points = len(width), len(self.scheme.points)
+        flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
+        found = (modes.outputs @ flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
+        stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
+        rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
+        for i, change in enumerate(changes):
+            found[..., first + i] += (change.outputs @ stages).transpose(0, 2, 1)
+            found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
+        lost = rates @ modes.direct_rate.T
+        found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
+        return np.asarray(found), moved[0]
+
+    def circulant(self, closing: Complex | None) -> Array:
+        """Return what forces do everywhere on a uniform mesh, (N, a, s, N, b, k).
+
+        Without `closing` from rest. Only how many intervals later counts.
+        """
+        modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
+        s, k = modes.direct.shape
+        impulse = self.impulse[0] if closing is None else self.impulse[0] * closing[:, None, None]
+        # by falling number of intervals, as the columns of a row have it
+        ahead = np.exp(modes.exponents[:, None] * (self.grid.width[0] * np.arange(count - 1.0, -1.0, -1.0)))
+        moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
+        shown = self.shown[0].reshape(points * s, -1)
+        found = real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
+        twice = np.concatenate([found, np.zeros_like(found) if closing is None else found], axis=1)
+        row, column, each = twice.strides
+        laid = np.lib.stride_tricks.as_strided(
+            twice[:, count:], (count, *found.shape), (-column, row, column, each), writeable=False
+        )
+        whole = np.array(laid).reshape(count, points, s, count, points, k)
+        own = np.arange(count)
+        whole[own, :, :, own] += self.local
+        return whole
+
     def closed(self, left: Complex, closing: Complex) -> Complex:
         """Return the history, (N+1, J, ...), of what each interval leaves in the modes, (N, J, ...)."""
         size = [1] * (left.ndim - 2)
@@ -272,3 +342,15 @@ def real_product(rows: Complex, columns: Complex) -> Array:
     """Return Re rows @ columns."""
     left = np.concatenate([rows.real, -rows.imag], axis=1)
     return np.asarray(left @ np.concatenate([columns.real, columns.imag]))
+
+
+def _driving(forces: Array, inputs: Complex) -> Complex:
+    """Forces (N, b, k) as they drive the modes, (N, J, b)."""
+    return np.asarray((forces @ inputs.T).transpose(0, 2, 1))
+
+
+def _applied(response: Response, moment: Complex, driven: Complex) -> Complex:
+    """Moments (N, J, a, b) of what drives the modes, (N, J, b): shape (N, J, a)."""
+    if response.uniform:
+        return np.asarray((moment[0] @ driven.transpose(1, 2, 0)).transpose(2, 0, 1))
+    return np.asarray((moment @ driven[..., None])[..., 0])

@@ -1,0 +1,264 @@
+"""The response of modes in C (`modes.c`, `motion.c`, `slopes.c`), for systems that can compile it."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.condensed.modal.moments import NEAR, TERMS, Complex, Table
+from periodic.condensed.modal.response import Response, moments_of
+from periodic.orbit.mesh import Grid
+from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import ModesLike, System, compiling
+
+MANY = 12
+"""Columns from which products of matrices are BLAS's."""
+
+_SOURCES = tuple(f"periodic.condensed.native:{name}.c" for name in ("modes", "motion", "slopes"))
+
+_SIZES = ("count", "points", "modes", "states", "forces", "widths", "terms")
+_OF_MODES = ("exponents", "inputs", "outputs", "direct", "direct_rate")
+_GIVEN = ("width", "place", "taylor", "derivatives", *_OF_MODES)
+_LAID = ("growth", "moment", "slope", "local", "impulse", "shown")
+
+
+class _Call(ctypes.Structure):
+    """`struct response` of modes.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in ("which", *_GIVEN, *_LAID)),
+        ("near", ctypes.c_double),
+    )
+
+
+_CHANGE = ("stretch", *_OF_MODES, "begun", "found", "history", "inner", "kicks", "moved")
+
+
+class _Change(ctypes.Structure):
+    """`struct change` of slopes.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in ("wider", "others")),
+        *((name, ctypes.c_void_p) for name in _CHANGE),
+    )
+
+
+@dataclass(frozen=True)
+class NativeResponse(Response):
+    """See `Response`. library: that of the sources."""
+
+    library: ctypes.CDLL
+
+    @cached_property
+    def _laid(self) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
+        """The call, its tables by name, of the distinct widths, and what is to be kept meanwhile."""
+        count, size, a = len(self._distinct[0]), len(self.modes.exponents), self.scheme.ncol
+        s, k = self.modes.direct.shape
+        table = (count, size, a)
+        complex_ = [table, (*table, a), (*table, a), (*table, k), (count, a, s, size)]
+        growth, moment, slope, impulse, shown = _room(complex_)
+        local = np.empty((count, a, s, a, k))
+        found = self._with((growth, moment, slope, local, impulse, shown))
+        _routine(self.library, "lay_out", 1)(ctypes.addressof(found[0]))
+        return found
+
+    def _with(self, tables: Sequence[NDArray[Any]]) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
+        """The call with tables."""
+        widths, which = self._distinct
+        modes, (s, k) = self.modes, self.modes.direct.shape
+        call = _Call(len(which), self.scheme.ncol, len(modes.exponents), s, k, len(widths), TERMS)
+        kept: list[Any] = [np.ascontiguousarray(which, dtype=np.intp), plain(widths)]
+        kept += _of_scheme(self.scheme)
+        kept += map(_complex, (modes.exponents, modes.inputs, modes.outputs))
+        kept += map(plain, (modes.direct, modes.direct_rate))
+        kept += tables
+        for name, array in zip(("which", *_GIVEN, *_LAID), kept, strict=True):
+            setattr(call, name, address(array))
+        call.near = NEAR
+        return call, dict(zip(_LAID, tables, strict=True)), kept
+
+    @cached_property
+    def table(self) -> Table:
+        """Of all intervals, (N, J, ...)."""
+        return Table(*(self._each(name) for name in _LAID[:3]))
+
+    @cached_property
+    def local(self) -> Array:
+        """States at the points of an interval by its own forces, (N, a, s, b, k)."""
+        return self._each("local")
+
+    @cached_property
+    def impulse(self) -> Complex:
+        """What forces leave in the modes at the end of their interval, (N, J, b, k)."""
+        return self._each("impulse")
+
+    @cached_property
+    def shown(self) -> Complex:
+        """States at the points by the modes at the left end, (N, a, s, J)."""
+        return self._each("shown")
+
+    def _each(self, name: str) -> NDArray[Any]:
+        laid, which = self._laid[1][name], self._distinct[1]
+        return np.broadcast_to(laid, (len(which), *laid.shape[1:])) if len(laid) == 1 else laid[which]
+
+    @property
+    def _shared(self) -> Sequence[str]:
+        return "_distinct", "closing"
+
+    def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Response:
+        """Return that of some of the states to some of the forces."""
+        if self.modes.direct.shape == (len(states), len(forces)):
+            return self
+        found = super().between(states, forces)
+        assert isinstance(found, NativeResponse)
+        tables = dict(self._laid[1])
+        tables["local"] = tables["local"][:, :, states][..., forces]
+        tables["impulse"], tables["shown"] = tables["impulse"][..., forces], tables["shown"][:, :, states]
+        vars(found)["_laid"] = found._with([np.ascontiguousarray(table) for table in tables.values()])
+        return found
+
+    def history(self, forces: Array, closing: Complex | None = None) -> Complex:
+        """Return the modes at the left ends and at the end in periodic motion, as `Response.history`."""
+        if not _few(forces):
+            return super().history(forces, closing)
+        found, _ = self._driven(forces, self.closing if closing is None else closing, None, shown=False)
+        return found.reshape(*found.shape[:2], *forces.shape[3:])
+
+    def stages(self, forces: Array, closing: Complex | float | None = None) -> Array:
+        """Return the states at the points in periodic motion, as `Response.stages`."""
+        if not _few(forces):
+            return super().stages(forces, closing)
+        _, states = self._driven(forces, self.closing if closing is None else closing, None)
+        return states.reshape(*states.shape[:3], *forces.shape[3:])
+
+    def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
+        """Return states at the points and modes at the end of motions from z(0), as `Response.motions`."""
+        if not _few(forces):
+            return super().motions(forces, begun)
+        history, states = self._driven(forces, 0.0, begun)
+        return states, history[-1]
+
+    def driven(self, forces: Array) -> Complex:
+        """Return the modes at the mesh points from z(0) = 0, as `Response.driven`."""
+        return self._driven(forces, 0.0, None, shown=False)[0] if _few(forces) else super().driven(forces)
+
+    def _driven(
+        self, forces: Array, closing: Complex | float, begun: Complex | None, *, shown: bool = True
+    ) -> tuple[Complex, Array]:
+        """History (N+1, J, r), and states (N, a, s, r) if they are to be shown."""
+        call, size = self._laid[0], len(self.modes.exponents)
+        given, count, columns = plain(forces), len(forces), math.prod(forces.shape[3:])
+        ends = _complex(self._filled(closing))
+        begin = None if begun is None else _complex(begun)
+        kicks, history = _room([(count, size, columns), (count + 1, size, columns)])
+        states = np.empty((count, self.scheme.ncol, call.states, columns) if shown else 0)
+        _routine(self.library, "driven", 8)(
+            *(ctypes.addressof(call), columns, address(given), address(ends)),
+            *(None if begin is None else address(begin), address(kicks), address(history)),
+            address(states) if shown else None,
+        )
+        return history, states
+
+    def _filled(self, closing: Complex | float) -> Complex:
+        found = np.asarray(closing, dtype=np.complex128)
+        return found if found.ndim else np.full(len(self.modes.exponents), found)
+
+    def pulled(self, weights: Array, closing: Complex | float) -> Array:
+        """Return the weights of forces in those of the states, as `Response.pulled`."""
+        if not _few(weights):
+            return super().pulled(weights, closing)
+        call, size = self._laid[0], len(self.modes.exponents)
+        given, (count, points, _, columns) = plain(weights), weights.shape
+        ends = _complex(self._filled(closing))
+        seen, after = _room([(count, size, columns), (size, columns)])
+        found = np.empty((count, points, call.forces, columns))
+        arrays = given, ends, seen, after, found
+        _routine(self.library, "pulled", 7)(ctypes.addressof(call), columns, *map(address, arrays))
+        return found
+
+    def circulant(self, closing: Complex | None) -> Array:
+        """Return what forces do everywhere on a uniform mesh, as `Response.circulant`."""
+        call, shape = self._laid[0], (self.scheme.ncol, self.modes.direct.shape[1])
+        count, points, states = call.count, call.points, call.states
+        ends = None if closing is None else _complex(closing)
+        passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, states, *shape))
+        found = np.empty((count, points, states, count, *shape))
+        _routine(self.library, "circulant", 5)(
+            *(ctypes.addressof(call), None if ends is None else address(ends)),
+            *(address(passed), address(later), address(found)),
+        )
+        return found
+
+    def sloped(
+        self, forces: Array, widths: Array, changes: Sequence[ModesLike], closing: Complex
+    ) -> tuple[NDArray[Any], Complex]:
+        """Return how states and modes at the beginning change, as `Response.sloped`."""
+        if np.iscomplexobj(forces):
+            return super().sloped(forces, widths, changes, closing)
+        call, size = self._laid[0], len(self.modes.exponents)
+        (count, points), columns = forces.shape[:2], widths.shape[1] + len(changes)
+        given, ends, history = plain(forces), _complex(closing), self.history(forces, closing)
+        kept: list[NDArray[Any]] = [plain(widths)]
+        for name in _OF_MODES:
+            kept.append(np.ascontiguousarray([getattr(change, name) for change in changes]))
+        found = np.empty((count, points, call.states, columns))
+        each = (count, size, columns)
+        shapes = [(size, columns), (count, size, points, columns), each, (count + 1, *each[1:])]
+        begun, inner, kicks, moved, stages = _room([*shapes, (count, size, points)])
+        own = _Change(widths.shape[1], len(changes))
+        for name, array in zip(_CHANGE, (*kept, begun, found, history, inner, kicks, moved), strict=True):
+            setattr(own, name, address(array))
+        _routine(self.library, "sloped", 5)(
+            ctypes.addressof(call), ctypes.addressof(own), *map(address, (given, ends, stages))
+        )
+        return found, begun
+
+
+def response_of(system: System, modes: ModesLike, scheme: Scheme, grid: Grid, period: float) -> Response:
+    """Return the response of modes on a mesh, in C where the system can compile it."""
+    with_compiler = compiling(system)
+    library = None if with_compiler is None else with_compiler.library(source(*_SOURCES))
+    if library is None:
+        return Response(modes, scheme, grid, period)
+    return NativeResponse(modes, scheme, grid, period, library)
+
+
+def _few(forces: Array) -> bool:
+    return not np.iscomplexobj(forces) and math.prod(forces.shape[3:]) < MANY
+
+
+def _complex(array: NDArray[Any]) -> Complex:
+    """An array of complex numbers that C takes."""
+    found = np.ascontiguousarray(array, dtype=np.complex128)
+    return found if found.flags.writeable else found.copy()
+
+
+def _room(shapes: Sequence[tuple[int, ...]]) -> list[Complex]:
+    """Arrays of complex numbers, one after the other in memory."""
+    ends = np.cumsum([math.prod(shape) for shape in shapes])
+    block = np.empty(ends[-1], dtype=np.complex128)
+    return [block[e - math.prod(shape) : e].reshape(shape) for e, shape in zip(ends, shapes, strict=True)]
+
+
+@cache
+def _of_scheme(scheme: Scheme) -> list[Array]:
+    """Collocation points, Taylor series and derivatives of a scheme's moments."""
+    moments = moments_of(scheme)
+    return [plain(array) for array in (moments.places, moments.taylor, moments.derivatives)]
+
+
+@cache
+def _routine(library: ctypes.CDLL, name: str, arguments: int) -> Callable[..., int]:
+    function = getattr(library, name)
+    function.argtypes, function.restype = [ctypes.c_void_p] * arguments, ctypes.c_int
+    run: Callable[..., int] = function
+    return run
