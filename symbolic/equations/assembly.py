@@ -419,10 +419,15 @@ class Assembly:
         Raises
         ------
         ValueError
-            For what is no coordinate.
+            For what is no coordinate, and for another coordinate of the same name.
         """
         typed("coordinate", coordinate, Coordinate, "a Coordinate, as symbolic.coordinate returns it")
         if coordinate not in self.motions:
+            if any(coordinate.name == other.name for other in self.motions):
+                raise ValueError(
+                    f"two coordinates are called {coordinate.name!r}; each needs a name of its own "
+                    f"(places of a structure have theirs from at={{name: index}})"
+                )
             length = coordinate.scale or 1.0
             position = self.state(coordinate.name, coordinate.unit, length, ca.SX(coordinate.start))
             velocity = self.state(f"{coordinate.name}'", coordinate.unit, length, ca.SX(0))

@@ -130,7 +130,10 @@ def test_scale_is_checked_by_the_class_itself(scale: float) -> None:
 def test_state_defined_twice() -> None:
     """Assert that two coordinates of one name are refused."""
     text = sentence(compiled(sym.Mass(X, 1.0), sym.Mass(sym.coordinate("x"), 1.0), sym.HarmonicForce(X, 1.0)))
-    assert text == "state 'x' is defined twice; every state needs a name of its own"
+    assert text == (
+        "two coordinates are called 'x'; each needs a name of its own "
+        "(places of a structure have theirs from at={name: index})"
+    )
 
 
 def test_sum_with_something_else() -> None:
