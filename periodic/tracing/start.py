@@ -17,6 +17,7 @@ from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
 from periodic.tracing.drift import drifting
+from periodic.tracing.resting import resting
 from periodic.tracing.settling import held, settled
 
 COLLAPSED = 0.1
@@ -63,6 +64,11 @@ class Start:
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
+        if (rest := self._rest(guess)) is not None:
+            self.tried.append("rest under the mean load")
+            if (last := self._fixed(rest, sign)).ok:
+                return last
+            guess = rest
         other = self._by_others(guess, sign)
         if other is not None and other.ok:
             return other
@@ -104,6 +110,13 @@ class Start:
             yield self.solver.discretisation.guess(self.solver.problem.system, guess.parameter, motion)
         yield from self._grown(guess)
 
+    def _rest(self, guess: Orbit) -> Orbit | None:
+        """The rest under the mean load, if the guess does not begin there; none of free oscillations."""
+        problem, method = self.solver.problem, self.solver.discretisation
+        if problem.autonomous or method.stability is Stability.EIGENVALUES:
+            return None
+        return resting(problem.system, guess)
+
     def _settled(self, guess: Orbit) -> Orbit | None:
         """A simulation that is left to settle; none of free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
@@ -122,7 +135,8 @@ class Start:
             parameter[k] = 0.0
             other = replace(problem, parameter=quantity.name, bounds=(0.0, float(guess.parameter[k])))
             solver = replace(self.solver, problem=other)
-            first = solver.at_parameter(replace(guess, parameter=parameter), 1.0)
+            near = replace(guess, parameter=parameter)
+            first = solver.at_parameter(self._rest(near) or near, 1.0)
             if first.ok:
                 self.tried.append(f"{quantity.name} grown from 0")
                 sign = int(np.sign(guess.parameter[k]))
@@ -174,7 +188,8 @@ class Start:
         parameter = guess.parameter.copy()
         parameter[problem.index] = far = factor * wanted
         sign = int(np.sign(wanted - far))
-        first = self._fixed(replace(guess, parameter=parameter), float(sign))
+        near = replace(guess, parameter=parameter)
+        first = self._fixed(self._rest(near) or near, float(sign))
         if not first.ok or far == wanted:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))

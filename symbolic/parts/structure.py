@@ -17,6 +17,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.terms import Place
 from symbolic.equations.variables import Coordinate
+from symbolic.parts.stiffness import stiffness
 from symbolic.structures.damping import ModalDamping
 from symbolic.structures.matrices import DENSE, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
@@ -268,19 +269,29 @@ class Structure(Part):
     def _held(self) -> dict[int, float]:
         return {}
 
-    def _holding(self, speed: float, freedoms: list[int]) -> ModalForm:
-        """The modes; of a structure that is not held by itself those with a spring at each place in use.
+    def _holding(self, speed: float, freedoms: list[int], others: Array) -> ModalForm:
+        """The modes; of a structure that is not held by itself those with springs at places in use.
 
-        The forces there are greater by those of the springs, so that all is as without them.
+        The forces there are greater by those of the springs, so that all is as without them. `others` is how
+        stiffly other parts hold the places, (k,): springs where they do are enough, if they hold it. Where a
+        spring alone makes the force depend on the motion, there is one unknown more.
         """
-        self._held.clear()
-        self._forms.clear()
         try:
-            return self.modal(speed)
+            return self._with(speed, {})
         except LooseError:
             if self.size > DENSE:
                 raise
-        self._held.update(holding(self.matrices(speed), speed, freedoms))
+        springs = holding(self.matrices(speed), speed, freedoms, others)
+        try:
+            return self._with(speed, {k: springs[k] for k in np.array(freedoms)[others > 0]})
+        except LooseError:
+            return self._with(speed, springs)
+
+    def _with(self, speed: float, springs: Mapping[int, float]) -> ModalForm:
+        """The modes with springs at some degrees of freedom."""
+        self._held.clear()
+        self._forms.clear()
+        self._held.update(springs)
         return self.modal(speed)
 
     def condense(self, assembly: Assembly) -> None:
@@ -289,7 +300,8 @@ class Structure(Part):
         if not used:
             raise ValueError(f"structure {self.name!r} has no place where another part acts; it needs one")
         self._draw(assembly, tuple(coordinate for _, coordinate in used))
-        form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used])
+        others = stiffness(assembly, [assembly.motion(coordinate) for _, coordinate in used])
+        form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used], others)
         flexibility = np.diag(form.static([k for k, _ in used])[[k for k, _ in used]])
         for (index, coordinate), softness in zip(used, flexibility, strict=True):
             motion = assembly.motion(coordinate)

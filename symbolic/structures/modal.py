@@ -138,13 +138,32 @@ def stiffened(matrices: Matrices, held: Mapping[int, float]) -> Matrices:
     return Matrices(matrices.M, matrices.C, matrices.K + more, matrices.G)
 
 
-def holding(matrices: Matrices, speed: float, freedoms: Sequence[int]) -> dict[int, float]:
-    """Return stiffnesses (N/m) that hold a structure at degrees of freedom: its dynamic ones at a speed."""
+def holding(matrices: Matrices, speed: float, freedoms: Sequence[int], others: Array) -> dict[int, float]:
+    """Return stiffnesses (N/m) at degrees of freedom that hold a structure.
+
+    Parameters
+    ----------
+    matrices : Matrices
+        The structure.
+    speed : float
+        Omega in rad/s.
+    freedoms : sequence of int
+        k degrees of freedom.
+    others : ndarray, shape (k,)
+        How stiffly other parts hold them, N/m.
+
+    Returns
+    -------
+    dict
+        By degree of freedom its dynamic stiffness at the speed, or that of other parts if it is greater: the
+        motion is then near that of the modes.
+    """
     own = matrices.C if matrices.G is None else matrices.C + speed * matrices.G
     dynamic = dense(matrices.K) - speed**2 * dense(matrices.M) + 1j * speed * dense(own)
     loads = np.eye(matrices.size)[:, list(freedoms)]
     answer = np.abs(np.linalg.lstsq(dynamic, loads)[0][list(freedoms), np.arange(len(freedoms))])
-    return {k: float(1 / flexibility) for k, flexibility in zip(freedoms, answer, strict=True)}
+    found = np.maximum(1 / answer, others)
+    return {k: float(stiffness) for k, stiffness in zip(freedoms, found, strict=True)}
 
 
 def _undamped(matrices: Matrices, count: int) -> tuple[Array, Array]:

@@ -57,11 +57,14 @@ def drawn(modules: Sequence[Path], count: int, seed: int) -> list[Mutant]:
 
 
 def is_code(mutant: Mutant) -> bool:
-    """Tell whether a mutant can be compiled: the star of a call is no product."""
-    text = mutate_code(mutant.path.read_text("utf-8"), get_operator(mutant.operator)(), mutant.occurrence)
+    """Tell whether a mutant can be made and compiled: the star of a call is no product.
+
+    Of an exception with a dotted name cosmic-ray cannot make one (AttributeError).
+    """
+    source, operator = mutant.path.read_text("utf-8"), get_operator(mutant.operator)()
     try:
-        ast.parse(text)
-    except SyntaxError:
+        ast.parse(mutate_code(source, operator, mutant.occurrence))
+    except (SyntaxError, AttributeError):
         return False
     return True
 

@@ -1,0 +1,117 @@
+"""The rest under the mean of all loads: about which a system vibrates, if its parts do not rest there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.correction.outcome import FAILURES
+from periodic.orbit.construction import constant
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import System, linear_of
+
+PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
+"""At which what excites is averaged."""
+
+BALANCED = 1e-9
+"""Scaled residual, over the largest of states and unknowns, below which a system is at rest."""
+
+ITERATIONS = 12
+"""Newton iterations for a load."""
+
+LEAST = 1e-4
+"""Smallest part of the load that is added at once."""
+
+
+def resting(system: System, start: Orbit) -> Orbit | None:
+    """Return the constant orbit with mean R(0, x, z, tau, p) = 0 over a period at the parameters of another.
+
+    The load that is missing at the beginning of the other is added by and by, as far as Newton's method can
+    follow: a film, say, has no stiffness where it has no load, and ends at its clearance. None where the
+    other is at rest already, and where the load cannot be added.
+    """
+    balance = _Balance.of(system, start.parameter)
+    point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
+    try:
+        missing = balance.rows(point)[0]
+        if _balanced(missing, point):
+            return None
+        found = _loaded(balance, point, missing)
+    except FAILURES:
+        return None
+    n = start.nodes.shape[1]
+    if found is None:
+        return None
+    return constant(start.mesh, found[:n], found[n:], start.parameter, start.layout)
+
+
+@dataclass(frozen=True)
+class _Balance:
+    """The mean rows of a system; of its linear part x = S f with S the static flexibility of its modes."""
+
+    system: System
+    parameter: Array
+    states: NDArray[np.int_]
+    forces: NDArray[np.int_]
+    flexibility: Array
+
+    @classmethod
+    def of(cls, system: System, parameter: Array) -> _Balance:
+        part = linear_of(system)
+        if part is None:
+            none = np.empty(0, dtype=int)
+            return cls(system, parameter, none, none, np.empty((0, 0)))
+        modes = part.modes(parameter)
+        flexibility = modes.direct - (modes.outputs @ (modes.inputs / modes.exponents[:, None])).real
+        return cls(system, parameter, np.array(part.states), np.array(part.forces), flexibility)
+
+    def rows(self, point: Array) -> tuple[Array, Array]:
+        """Return the rows (n + m,) at states and unknowns (n + m,), and their Jacobian."""
+        n, many = len(self.system.states), len(PHASES)
+        x, z = (np.tile(values, (many, 1)) for values in (point[:n], point[n:]))
+        line = self.system.linearise(np.zeros_like(x), x, z, PHASES, self.parameter)
+        residual = line.residual.mean(axis=0)
+        jacobian = np.concatenate([line.d_state, line.d_algebraic], axis=2).mean(axis=0)
+        if len(self.states):
+            empty = np.flatnonzero(~np.abs(line.d_rate[:, :n]).any(axis=(0, 2)))
+            residual[empty] = point[self.states] - self.flexibility @ point[n + self.forces]
+            jacobian[empty] = 0.0
+            jacobian[empty, self.states] = 1.0
+            jacobian[np.ix_(empty, n + self.forces)] = -self.flexibility
+        return residual, jacobian
+
+
+def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
+    """Return where all of the load is borne; None where it cannot be added."""
+    borne, step = 0.0, 1.0
+    while borne < 1.0:
+        part = min(1.0, borne + step)
+        found = _solved(balance, point, (1.0 - part) * missing)
+        if found is not None:
+            point, borne, step = found, part, 2 * step
+        elif (step := step / 2) < LEAST:
+            return None
+    return point
+
+
+def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
+    """Return where the rows have a value, by Newton's method; None where it does not converge."""
+    before = np.inf
+    for _ in range(ITERATIONS):
+        residual, jacobian = balance.rows(point)
+        residual = residual - load
+        size = np.abs(residual).max(initial=0.0)
+        if _balanced(residual, point):
+            return point
+        if not (size < 10 * before and np.isfinite(jacobian).all()):
+            return None
+        before = size
+        point = point - np.linalg.solve(jacobian, residual)
+    return None
+
+
+def _balanced(residual: Array, point: Array) -> bool:
+    return bool(np.abs(residual).max(initial=0.0) < BALANCED * (1.0 + np.abs(point).max(initial=0.0)))

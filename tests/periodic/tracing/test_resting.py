@@ -1,0 +1,87 @@
+"""First orbits about a rest under loads: rotors in journal bearings, whose films bear none at the centre."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import periodic as per
+import symbolic as sym
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import uniform
+from periodic.orbit.scheme import Scheme
+from periodic.tracing.resting import resting
+
+CLEARANCE = 5e-5
+FILM = {"viscosity": 0.02, "radius": 0.025, "length": 0.025, "clearance": CLEARANCE}
+FEW = per.ArclengthControl(max_points=2)
+WEIGHT = 206.0
+
+
+def rotor(condense: bool, unbalance: float = 2e-5) -> sym.CompiledSystem:
+    """Half a rotor: a disc of 16 kg on a shaft of 2e6 N/m whose journal of 5 kg runs in a film."""
+    mass, stiffness = np.diag([16.0, 16.0, 5.0, 5.0]), 2e6 * np.kron([[1, -1], [-1, 1]], np.eye(2))
+    places = {"disc": (0, 1), "journal": (2, 3)}
+    structure = sym.Structure(mass, np.diag([40.0, 40.0, 0, 0]), stiffness, at=places, scale=CLEARANCE)
+    (x, y), (u, v) = structure["disc"], structure["journal"]
+    loads = sym.Unbalance(x, y, 16.0, unbalance) + sym.ConstantForce(v, -WEIGHT)
+    return sym.compile(structure + sym.JournalBearing(u, v, **FILM) + loads, condense=condense)
+
+
+@pytest.mark.parametrize("condense", [True, False])
+def test_journal_rests_where_its_film_bears_the_weight(condense: bool) -> None:
+    """Assert Ocvirk's load and attitude angle of the short bearing at the rest found, to 8 digits.
+
+    W = mu R L^3 Omega/(4 c^2) e/(1-e^2)^2 sqrt(16 e^2 + pi^2 (1-e^2)), tan phi = pi sqrt(1-e^2)/(4 e).
+    """
+    system, Omega = rotor(condense), 100.0
+    parameter = np.array([Omega if p.name == "speed" else p.value for p in system.parameters])
+    found = resting(system, at_rest(system, uniform(Scheme(), 4), parameter))
+    assert found is not None
+    names = [state.name for state in system.states]
+    u, v = (found.nodes[0, names.index(f"journal {k}")] for k in (1, 2))
+    e = np.hypot(u, v)
+    size = 0.02 * 0.025**4 * Omega / (4 * CLEARANCE**2)
+    assert size * e / (1 - e**2) ** 2 * np.sqrt(16 * e**2 + np.pi**2 * (1 - e**2)) == pytest.approx(
+        WEIGHT, rel=1e-8
+    )
+    assert u / -v == pytest.approx(np.pi * np.sqrt(1 - e**2) / (4 * e), rel=1e-8)
+
+
+def test_what_rests_already_is_left() -> None:
+    """Assert that a system whose parts rest under its loads has no other rest."""
+    system = sym.compile(
+        sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 1.0)
+    )
+    assert resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+
+
+def test_load_that_cannot_be_borne() -> None:
+    """Assert that there is no rest where nothing holds a load."""
+    system = sym.compile(
+        sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Damper(x, 1.0) + sym.ConstantForce(x, 1.0)
+    )
+    assert resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+
+
+def test_rotor_in_a_journal_bearing() -> None:
+    """Assert its first orbit, half a clearance wide, and multipliers by three methods to 8 digits."""
+    found = []
+    for condense, method in ((True, None), (False, None), (False, per.Shooting())):
+        branch = per.trace(rotor(condense), "speed", (100.0, 101.0), tol=1e-9, method=method, control=FEW)
+        assert len(branch) == 2
+        times = np.linspace(0.0, 2 * np.pi / 100.0, 50)
+        motion = [branch[0].orbit[name](times) for name in ("disc 1", "disc 2", "journal 1", "journal 2")]
+        found.append((np.array(motion), branch[0].multipliers[:4]))
+    for motion, multipliers in found[1:]:
+        assert motion == pytest.approx(found[0][0], abs=1e-8 * np.ptp(motion[2]))
+        assert multipliers == pytest.approx(found[0][1], rel=1e-8)
+
+
+def test_springs_that_hold_a_structure_are_where_it_is_held() -> None:
+    """Assert that places where parts but load the structure have forces that do not depend on its motion."""
+    system = rotor(True)
+    x = np.full((1, len(system.states)), 0.3)
+    line = system.linearise(0 * x, x, np.zeros((1, len(system.algebraics))), np.zeros(1), system.nominal)
+    forces = [k for k, row in enumerate(np.abs(line.d_state[0]).max(axis=1)) if row > 0]
+    assert len(forces) == 2
