@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import Linearised
+from periodic.condensed.subspace import invariant
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Complex, Pair, Spectrum
@@ -35,14 +36,11 @@ LIGHT = 0.8
 LASTING = 0.6
 """Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
+ALONE = 1e-6
+"""Distance of a number from a multiplier of the modes left alone at which they are the same."""
+
 SMALL = 64
 """Up to so many states all of them are computed and kept."""
-
-BLOCK, MOST = 4, 40
-"""Vectors that a Krylov space grows by at a time, and its largest size."""
-
-CLOSE = 1e-12
-"""Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
 
 
 @dataclass(frozen=True)
@@ -124,6 +122,22 @@ class Floquet:
         """How many coordinates are damped lightly where the modes are left alone."""
         return int((np.abs(self.given.response.growth[-1]) > LIGHT).sum() * 2)
 
+    def lightest(self, count: int) -> NDArray[np.int_]:
+        """Return the coordinates that are damped least where the modes are left alone."""
+        factor, across, _ = self._grown
+        return np.argsort(-np.hypot(factor, across)[:, 0], kind="stable")[:count]
+
+    def apart(self, values: Complex, vectors: Complex) -> Complex:
+        """Return (value - E)^-1 vector of each column, E = exp(lambda T) the modes left alone.
+
+        Where a value is one of E's, what there is of the vector stays as it is.
+        """
+        factor, across, partner = self._grown
+        beside = values - factor
+        size = beside**2 + across**2
+        found = beside * vectors + across * vectors[partner]
+        return np.where(np.abs(size) < ALONE**2, vectors, found / np.where(size == 0, 1.0, size))
+
     def answers(self, basis: Array) -> Array:
         """Return forces and own states at the points in free motion from the columns of a basis."""
         return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
@@ -204,7 +218,7 @@ class Leading:
     def basis(self) -> Array:
         """Orthonormal basis of the subspace, (coordinates, r)."""
         size = len(self.floquet.kept)
-        return np.eye(size) if size <= SMALL else invariant(self.floquet, LEADING)
+        return np.eye(size) if size <= SMALL else invariant(self.floquet, LEADING, LIGHT)
 
     @property
     def monodromy(self) -> Array:
@@ -287,51 +301,3 @@ class LeadingSpectrum(Spectrum):
         if self.leading is None:
             return np.zeros(len(self.multipliers))
         return self.leading.start(change)
-
-
-def invariant(floquet: Floquet, count: int) -> Array:
-    """Return an orthonormal basis of the subspace of the `count` largest multipliers, (coordinates, r).
-
-    Of more where more are lightly damped: all of these then. Where the last would tear a pair apart it takes
-    real ones below, else what is left.
-    """
-    # where the linear part alone has more, so has the whole, mostly
-    values, vectors = _largest(floquet, count) if floquet.light < count else (np.zeros(0), np.zeros(0))
-    if len(values) < count or np.sort(np.abs(values))[-count] > LIGHT:
-        values, vectors = _all(floquet)
-        count = max(count, int((np.abs(values) > LIGHT).sum()))
-    order = np.argsort(-np.abs(values), kind="stable")
-    columns: list[Array] = []
-    for k in order:
-        if values[k].imag == 0 and len(columns) < count:
-            columns.append(vectors[:, k].real)
-        if values[k].imag > 0 and len(columns) < count - 1:
-            columns += [vectors[:, k].real, vectors[:, k].imag]
-    return np.linalg.qr(np.array(columns).T)[0]
-
-
-def _largest(floquet: Floquet, count: int) -> tuple[Complex, Complex]:
-    """Some more than `count` of the largest multipliers, in a Krylov space that grows until it holds them."""
-    size = len(floquet.kept)
-    space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, BLOCK)))[0]
-    images = np.zeros((size, 0))
-    while space.shape[1] + BLOCK <= MOST:
-        image = floquet.once(space[:, -BLOCK:])
-        images = np.concatenate([images, image], axis=1)
-        known = space
-        for _ in range(2):
-            image = image - space @ (space.T @ image)
-        space = np.concatenate([space, np.linalg.qr(image)[0]], axis=1)
-        if known.shape[1] >= 3 * count:
-            values, vectors = np.linalg.eig(known.T @ images)
-            first = np.argsort(-np.abs(values), kind="stable")[: count + 3]
-            left = images @ vectors[:, first] - known @ (vectors[:, first] * values[first])
-            if np.linalg.norm(left, axis=0).max() < CLOSE * max(1.0, float(np.abs(values).max())):
-                found = known @ vectors[:, first]
-                return values[first].astype(np.complex128), found.astype(np.complex128)
-    return _all(floquet)  # those next to each other in size are told apart by all of them
-
-
-def _all(floquet: Floquet) -> tuple[Complex, Complex]:
-    values, vectors = np.linalg.eig(floquet.monodromy)
-    return values.astype(np.complex128), vectors.astype(np.complex128)

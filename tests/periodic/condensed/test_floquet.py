@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from support.cantilevers import cantilever, cubic
 
 import periodic as per
 import symbolic as sym
-from periodic.condensed import floquet
+from periodic.condensed import floquet, subspace
+from periodic.condensed.floquet import Floquet
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import Condensed
 
@@ -56,3 +59,31 @@ def test_of_many_alike_the_leading_tell_the_fold_alone(monkeypatch: pytest.Monke
     found = per.trace(system, "Omega", (1.0, 2.2), start=2.2, tol=1e-6, method=method)
     assert {7, 8} < {len(point.multipliers) for point in found}
     assert [point.label.value for point in found.special_points] == ["EP", "LP", "LP", "EP"]
+
+
+@pytest.mark.parametrize("tip", [cubic, lambda tip: [sym.OneSidedSpring(tip, 300.0, 0.03)]])
+def test_subspace_holds_the_largest_of_every_orbit(
+    tip: Callable[[Any], list[sym.Part]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert along a branch that the multipliers kept are the largest of the dense matrix, to 11 digits.
+
+    And that Davidson's method finds them, without the dense matrix.
+    """
+    found, dense = [], []
+    largest, every = subspace._largest, subspace._all
+
+    def remembered(motions: Floquet, count: int) -> Any:
+        values, vectors = largest(motions, count)
+        found.append((values[:count], np.linalg.eigvals(motions.monodromy)))
+        return values, vectors
+
+    monkeypatch.setattr(subspace, "_largest", remembered)
+    monkeypatch.setattr(subspace, "_all", lambda *given: (dense.append(given), every(*given))[1])
+    system = cantilever(50, tip, force=0.01, damping=0.05)
+    per.trace(system, "Omega", (3.2, 3.44), start=3.2, tol=1e-5)
+    assert len(found) > 5
+    assert len(dense) < 0.1 * len(found)
+    for values, whole in found:
+        size = max(1.0, np.abs(values[0]))
+        assert np.abs(values[:, None] - whole).min(axis=1).max() < 1e-11 * size
+        assert np.abs(values) == pytest.approx(np.sort(np.abs(whole))[::-1][: len(values)], abs=1e-11 * size)

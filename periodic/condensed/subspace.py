@@ -1,0 +1,112 @@
+"""The invariant subspace of the largest multipliers of many, by Davidson's method.
+
+The monodromy matrix is a diagonal E, the modes left alone, and what the places add to it, which is little but
+for the lowest modes. A subspace that begins with the modes that are damped least therefore holds the largest
+multipliers nearly at once; it is widened by (mu - E)^-1 r, r the residual of an eigenvector, until they are
+in it.
+
+References
+----------
+.. [1] E. R. Davidson, Journal of Computational Physics 17 (1975) 87-94.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.orbit.scheme import Array
+from periodic.stability.spectrum import Complex
+
+SPARE = 3
+"""Multipliers below those that are wanted which must be known too."""
+
+MORE = 4
+"""Lightest modes to begin with beyond those that are wanted."""
+
+BLOCK = 4
+"""Vectors drawn at random whose images are in the subspace: what is driven by the places is in them."""
+
+MOST = 72
+"""Largest size of the subspace."""
+
+CLOSE = 1e-12
+"""Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
+
+
+class Motions(Protocol):
+    """Free motion over a period; see `periodic.condensed.floquet.Floquet`."""
+
+    @property
+    def light(self) -> int: ...
+    @property
+    def kept(self) -> NDArray[np.int_]: ...
+    @property
+    def monodromy(self) -> Array: ...
+    def lightest(self, count: int) -> NDArray[np.int_]: ...
+    def apart(self, values: Complex, vectors: Complex) -> Complex: ...
+    def once(self, basis: Array) -> Array: ...
+
+
+def invariant(motions: Motions, count: int, light: float) -> Array:
+    """Return an orthonormal basis of the subspace of the `count` largest multipliers, (coordinates, r).
+
+    Of more where more are larger than `light`: all of these then. Where the last would tear a pair apart it
+    takes real ones below, else what is left.
+    """
+    # where the linear part alone has more, so has the whole, mostly
+    values, vectors = _largest(motions, max(count, motions.light))
+    if np.abs(values).min() > light:
+        values, vectors = _all(motions, len(motions.kept))
+    count = max(count, int((np.abs(values) > light).sum()))
+    order = np.argsort(-np.abs(values), kind="stable")
+    columns: list[Array] = []
+    for k in order:
+        if values[k].imag == 0 and len(columns) < count:
+            columns.append(vectors[:, k].real)
+        if values[k].imag > 0 and len(columns) < count - 1:
+            columns += [vectors[:, k].real, vectors[:, k].imag]
+    return np.linalg.qr(np.array(columns).T)[0]
+
+
+def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
+    """Some more than `count` of the largest multipliers, and their eigenvectors."""
+    size, wanted = len(motions.kept), count + SPARE
+    begun = wanted + 2 * MORE
+    if begun + BLOCK > size:
+        return _all(motions, wanted)
+    space = np.eye(size)[:, motions.lightest(begun)]
+    drawn = np.random.default_rng(0).standard_normal((size, BLOCK))
+    images = motions.once(np.concatenate([space, drawn], axis=1))
+    images, more = images[:, :begun], images[:, begun:]
+    while space.shape[1] + more.shape[1] <= min(MOST, size):
+        more = _across(space, more)
+        space = np.concatenate([space, more], axis=1)
+        images = np.concatenate([images, motions.once(more)], axis=1)
+        values, vectors = np.linalg.eig(space.T @ images)
+        first = np.argsort(-np.abs(values), kind="stable")[:wanted]
+        values, found = values[first].astype(np.complex128), space @ vectors[:, first]
+        left = images @ vectors[:, first] - found * values
+        wrong = np.linalg.norm(left, axis=0) > CLOSE * max(1.0, float(np.abs(values).max()))
+        if not wrong.any():
+            return values, found.astype(np.complex128)
+        wrong &= values.imag >= 0
+        beyond = motions.apart(values[wrong], left[:, wrong])
+        paired = values[wrong].imag > 0
+        more = np.concatenate([beyond.real, beyond[:, paired].imag], axis=1)
+    return _all(motions, wanted)  # those next to each other in size are told apart by all of them
+
+
+def _across(space: Array, vectors: Array) -> Array:
+    """An orthonormal basis of vectors across a subspace."""
+    for _ in range(2):
+        vectors = np.linalg.qr(vectors - space @ (space.T @ vectors))[0]
+    return vectors
+
+
+def _all(motions: Motions, wanted: int) -> tuple[Complex, Complex]:
+    values, vectors = np.linalg.eig(motions.monodromy)
+    first = np.argsort(-np.abs(values), kind="stable")[:wanted]
+    return values[first].astype(np.complex128), vectors[:, first].astype(np.complex128)
