@@ -18,7 +18,7 @@ CLOSE = 1e-4
 
 
 class Accuracy(float, Enum):
-    """Named tolerances of peaks to peak, places of folds and multipliers."""
+    """Named tolerances of the motion, places of folds and multipliers."""
 
     DRAFT = 1e-4
     STANDARD = 1e-6
@@ -48,7 +48,7 @@ class Tolerance:
 
     @classmethod
     def of(cls, tol: float | Tolerance) -> Tolerance:
-        """Return what brings peaks to peak, places of folds and multipliers to a relative `tol`.
+        """Return what brings the motion, places of folds and multipliers to a relative `tol`.
 
         Parameters
         ----------

@@ -125,7 +125,7 @@ def trace(
     at : float or sequence of float
         Values that get a point of their own (UZ) wherever the branch passes them.
     tol : float or Tolerance
-        From 1e-11 to 1e-2: bounds the relative errors of peaks to peak, of the places of folds and of
+        From 1e-11 to 1e-2: bounds the relative errors of the motion, of the places of folds and of
         multipliers (relative to the largest where that exceeds 1).
     guess : Orbit or Branch, optional
         An orbit to start from (default: rest): one of an earlier branch, `sampled` from a simulation, or from
