@@ -139,5 +139,6 @@ def _steps(orbit: Orbit, stages: Array) -> Array:
     else:
         steps = np.einsum("l,jlnw->jnw", end[1:], stages)
     steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
-    steps[:, :, 0] += end @ orbit.knots - orbit.nodes[1:]
+    begin = orbit.nodes[:-1]
+    steps[:, :, 0] += end[1:] @ (orbit.stages - begin[:, None]) + (begin - orbit.nodes[1:])  # no sum of weights
     return steps

@@ -181,8 +181,12 @@ class Orbit:
 
     @cached_property
     def knot_rates(self) -> Array:
-        """dx/dtau at the knots, shape (N, ncol+1, n)."""
-        return self.mesh.scheme.differentiation @ self.knots / self.grid.width[:, None, None]
+        """dx/dtau at the knots, shape (N, ncol+1, n).
+
+        From differences to each interval's begin, which are exact: rounding grows with 1 / width otherwise.
+        """
+        apart = self.stages - self.nodes[:-1, None, :]
+        return self.mesh.scheme.differentiation[:, 1:] @ apart / self.grid.width[:, None, None]
 
     @property
     def stage_phases(self) -> Array:

@@ -218,14 +218,15 @@ int condense(whole count, whole ncol, whole n, whole m, whole k, whole p,
         if (solve_stages(ncol, n, w, width[j], columns, stage_rates, integral, inside, both, marks) != DONE)
             return SINGULAR;
         for (whole r = 0; r < n; r++) {
-            double *s = step + (j * n + r) * w, gap = -nodes[(j + 1) * n + r];
+            const double *own = knots + j * (ncol + 1) * n + r; /* differences are exact */
+            double *s = step + (j * n + r) * w, gap = own[0] - nodes[(j + 1) * n + r];
             memset(s, 0, w * sizeof(double));
             for (whole l = 0; l < ncol; l++)
                 if (end[1 + l] != 0)
                     for (whole i = 0; i < w; i++)
                         s[i] += end[1 + l] * inside[(l * n + r) * w + i];
-            for (whole l = 0; l <= ncol; l++)
-                gap += end[l] * knots[(j * (ncol + 1) + l) * n + r];
+            for (whole l = 1; l <= ncol; l++)
+                gap += end[l] * (own[l * n] - own[0]);
             s[1 + r] += end[0];
             s[0] += gap;
         }

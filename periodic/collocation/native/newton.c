@@ -132,8 +132,8 @@ static int unfold(const struct call *c, struct room *r)
         for (whole l = 0; l < knots; l++)
             for (whole s = 0; s < n; s++) {
                 double sum = 0;
-                for (whole i = 0; i < knots; i++)
-                    sum += c->differentiation[l * knots + i] * own[i * n + s];
+                for (whole i = 1; i < knots; i++) /* differences are exact */
+                    sum += c->differentiation[l * knots + i] * (own[i * n + s] - own[s]);
                 rates[l * n + s] = sum / r->width[j];
             }
     }
