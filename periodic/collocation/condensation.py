@@ -140,5 +140,5 @@ def _steps(orbit: Orbit, stages: Array) -> Array:
         steps = np.einsum("l,jlnw->jnw", end[1:], stages)
     steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
     begin = orbit.nodes[:-1]
-    steps[:, :, 0] += end[1:] @ (orbit.stages - begin[:, None]) + (begin - orbit.nodes[1:])  # no sum of weights
+    steps[:, :, 0] += end[1:] @ (orbit.stages - begin[:, None]) + (begin - orbit.nodes[1:])
     return steps

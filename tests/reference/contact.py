@@ -205,7 +205,7 @@ def period(system: Contact, Omega: float, start: ArrayLike, phase: float = 0.0) 
             if speed == 0:
                 raise ArithmeticError("an event at rest")
             perturbed = (R + np.outer(jump, row) / speed) @ perturbed
-            z = _at_rest(system.elements[i], R @ z)
+            z = at_rest(system.elements[i], R @ z)
             events.append((i, phase + Omega * t))
             if len(events) > EVENTS:
                 raise ArithmeticError("too many events")
@@ -213,7 +213,7 @@ def period(system: Contact, Omega: float, start: ArrayLike, phase: float = 0.0) 
     return Period(begin, z[:n], perturbed[:n, :n], growth, events)
 
 
-def _at_rest(element: Element, z: Array) -> Array:
+def at_rest(element: Element, z: Array) -> Array:
     """z where friction turns, sticks or slips: what its row is there but 0 is rounding."""
     if not isinstance(element, Friction):
         return z

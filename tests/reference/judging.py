@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import periodic as per
+from reference.closer import closer
 from reference.contact import Contact, Period, period, periodic
 
 Array = NDArray[np.float64]
@@ -54,7 +55,7 @@ def judged(exact: Contact, point: per.Point, names: list[str]) -> Verdict:
     gap = found.end - found.start
     singular = np.linalg.svd(found.monodromy - np.eye(len(begin)), compute_uv=False)
     if singular[-1] > FOLD:
-        again = periodic(exact, omega, begin, tau)
+        again = closer(exact, omega, periodic(exact, omega, begin, tau), tau)
         off = float(np.abs(again.start - begin).max())
         found = again if singular[-1] > BESIDE else found
     else:

@@ -104,6 +104,23 @@ def test_folds_beside_a_touch() -> None:
 
 
 @pytest.mark.long
+def test_rounding_beside_a_touch() -> None:
+    """Assert orbits to 1e-14 and multipliers from a contact of 1e-4 rad on, to what is claimed, at k = 2e4.
+
+    Rounding of 1e-13 in the states was 1.6e-5 in the multipliers.
+    """
+    case = drawn("chains", 141)
+    control = per.ArclengthControl(max_points=121)
+    branch = per.trace(case.system, "Omega", (1.774, case.start), start=case.start, tol=TOL, control=control)
+    beside = [point for point in branch if 1e-11 < point.parameter - 1.774230035478 < 1e-6]
+    assert len(beside) >= 4
+    for point in beside:
+        verdict = judged(case.exact, point, case.names)
+        assert verdict.orbit < 1e-14
+        assert verdict.multipliers < max(1e-8, point.error.multiplier)
+
+
+@pytest.mark.long
 @pytest.mark.unaccounted
 @pytest.mark.parametrize(
     ("kind", "seeds"),
