@@ -17,7 +17,7 @@ SEED ?= 2026
 SINCE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
+.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -35,6 +35,12 @@ kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kerne
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
+
+survey: $(VENV)/.installed-dev ## Trace and judge 600 models with contact drawn at random
+	@mkdir -p build
+	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
+	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
+	PYTHONPATH=tests $(BIN)/python -m survey build/survey-*.jsonl --page tests/survey/README.md
 
 mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
 	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) \

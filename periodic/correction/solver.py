@@ -21,7 +21,7 @@ from periodic.orbit.scheme import Array
 
 
 class SpentError(Exception):
-    """All the Newton iterations that a trace was allowed are spent."""
+    """All the Newton iterations that a trace was allowed are spent; its text may say what on."""
 
 
 @dataclass

@@ -165,15 +165,18 @@ class Stop:
         return cls(Reason.MAX_POINTS, f"{count} points")
 
     @classmethod
-    def max_newton(cls, count: float) -> Stop:
+    def max_newton(cls, count: float, spent: str = "") -> Stop:
         """Return that the allowed number of Newton iterations was used up.
 
         Parameters
         ----------
         count : float
             That number.
+        spent : str
+            What on, where there is no point yet.
         """
-        return cls(Reason.MAX_NEWTON, f"{count:g} iterations")
+        plural = "" if count == 1 else "s"
+        return cls(Reason.MAX_NEWTON, f"{count:g} iteration{plural}{', ' if spent else ''}{spent}")
 
     @classmethod
     def small_step(cls, why: str) -> Stop:

@@ -127,8 +127,8 @@ class Continuation:
             return
         try:
             yield from self._begun() if self.state is None else self._again(self.state)
-        except SpentError:
-            self.cut(Stop.max_newton(self.solver.work.most))
+        except SpentError as spent:
+            self.cut(Stop.max_newton(self.solver.work.most, str(spent)))
 
     @property
     def kept(self) -> int:

@@ -11,7 +11,7 @@ from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
-from periodic.correction.solver import Solver
+from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
@@ -38,6 +38,11 @@ ROUGH = 1e-6
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
 
+SPENT = (
+    "more iterations, another start or guess=per.sampled(...), a motion from a simulation, may lead to one"
+)
+"""What the user can do where none was found in the iterations allowed."""
+
 Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
 """What follows a branch from an orbit one way, in so many steps at most: its last orbit, and why it ends."""
 
@@ -57,7 +62,23 @@ class Start:
     tried: list[str] = field(default_factory=list, init=False)
 
     def found(self, guess: Orbit, sign: float) -> Solution:
-        """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere."""
+        """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere.
+
+        Raises SpentError, which says so.
+        """
+        try:
+            return self._found(guess, sign)
+        except SpentError:
+            raise SpentError(f"all before a first orbit: {self._sought}; {SPENT}") from None
+
+    @property
+    def _sought(self) -> str:
+        """Where none has been found so far."""
+        also = f", nor yet from {', '.join(self.tried)}" if self.tried else ""
+        return f"none was found at the start itself{also}"
+
+    def _found(self, guess: Orbit, sign: float) -> Solution:
+        """The first orbit."""
         solver = self.solver
         first = self._fixed(guess, sign)
         if first.ok and not collapsed(guess, first):
@@ -143,7 +164,7 @@ class Start:
                 orbit, stop = self.follow(solver, first.orbit, sign, GROWN)
                 if orbit is not None and other.value(orbit) == guess.parameter[k]:
                     yield orbit
-                elif orbit is not None:
+                elif orbit is not None and stop.reason is not Reason.MAX_NEWTON:
                     self.tried[-1] += f" (to {other.value(orbit):.4g}: {stop.detail})"
 
     def _fixed(self, guess: Orbit, sign: float) -> Solution:

@@ -6,40 +6,23 @@ drawn from it are those of an event-exact integration that shares nothing with t
 
 from __future__ import annotations
 
-import time
-from collections import Counter
 from collections.abc import Iterable
 
 import numpy as np
 import pytest
 from reference.judging import judged
 from support.drawn.contact import Case, drawn
+from survey.rows import CONTROL, TOL, row, traced, verdicts
 
 import periodic as per
 from periodic import Reason
 
-TOL = 1e-6
-CONTROL = per.ArclengthControl(max_points=400, max_newton=4000)
-JUDGED = 8
-"""Points of a branch that are judged; at a touch itself multipliers have two values."""
-
-
-def traced(case: Case) -> per.Branch:
-    """The branch of a case."""
-    return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=CONTROL)
-
 
 def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
     """What the branch leaves unsaid or claims that is not so."""
-    found = [f"unaccounted: {gap}" for gap in branch.unaccounted]
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
-    points = [point for point in branch if point.parameter not in touched]
-    for k in np.random.default_rng(seed).permutation(len(points))[:JUDGED]:
-        point = points[int(k)]
-        said = judged(case.exact, point, case.names).wrong(point, TOL)
-        if said:
-            found.append(f"{case.told}, at {point.parameter!r} {point.label}: {said}")
-    return found
+    found = verdicts(case, branch, seed)
+    told = [*(f"unaccounted: {gap}" for gap in branch.unaccounted), *found.wrong, *found.unjudged]
+    return [f"{case.told}: {said}" for said in told]
 
 
 SAMPLE = [
@@ -132,16 +115,9 @@ def test_rounding_beside_a_touch() -> None:
 )
 def test_six_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFixture[str]) -> None:
     """Assert that of 500 models and 100 chains none is wrong, and print how far they are traced and why."""
-    reasons: Counter[str] = Counter()
-    found: list[str] = []
-    began = time.process_time()
-    for seed in seeds:
-        case = drawn(kind, seed)
-        branch = traced(case)
-        reasons[str(branch.stop)] += 1
-        found += wrong(case, branch, seed)
+    rows = [row(kind, seed) for seed in seeds]
     with capsys.disabled():
-        print(f"\n{kind} {seeds}, {time.process_time() - began:.0f} s")
-        for reason, count in reasons.most_common():
-            print(f"  {count:3}  {reason}")
-    assert not found, "\n".join(found)
+        print(f"\n{kind} {seeds}, {sum(each.seconds for each in rows):.0f} s")
+        for each in rows:
+            print(f"  {each.seed}  {each.points} points, {each.told}")
+    assert [(each.seed, said) for each in rows for said in (*each.wrong, *each.gaps, *each.unjudged)] == []

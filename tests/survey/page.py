@@ -1,0 +1,77 @@
+"""The page of the survey."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from survey.rows import JUDGED, NEWTON, POINTS, SECONDS, SEEDS, TOL, Row
+
+FATES = ("to the end", "limit of work", "friction holds", "other")
+
+INTRODUCTION = """# Models with contact drawn at random
+
+{count} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears with backlash
+under load, masses that strike a rigid stop, dry friction beside clearances, and chains of 2 to 10 masses,
+each before a stop (`tests/support/drawn/contact.py`; a seed is a model). Each is traced through a resonance
+at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of CPU. {judged} points
+of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in closed form, in
+extended precision, that shares nothing with the packages (`tests/reference/contact.py`, `closer.py`). A point
+is wrong where an error is more than ten times what the point claims and more than 1e-5, or where its
+stability is not so. `make survey` runs them, in some 25 minutes on two cores.
+
+Engine at commit `{commit}`.
+"""
+
+
+def page(rows: Sequence[Row], commit: str) -> str:
+    """Return the page in Markdown."""
+    begun = INTRODUCTION.format(
+        count=len(rows),
+        commit=commit,
+        tol=TOL,
+        points=POINTS,
+        newton=NEWTON,
+        seconds=SECONDS,
+        judged=JUDGED,
+    )
+    parts = [begun, _summary(rows), _table(rows)]
+    parts += [_told("Wrong", ((row, said) for row in rows for said in row.wrong))]
+    parts += [_told("Left open by the ledger", ((row, said) for row in rows for said in row.gaps))]
+    parts += [_told("Not judged", ((row, said) for row in rows for said in row.unjudged))]
+    parts += [_told("Not traced to the end", ((r, _ended(r)) for r in rows if r.fate != FATES[0]))]
+    parts += [_told("Claimed less well than asked", ((r, r.shortfall) for r in rows if r.shortfall))]
+    return "\n".join(parts)
+
+
+def _summary(rows: Sequence[Row]) -> str:
+    judged, wrong = sum(row.judged for row in rows), sum(len(row.wrong) for row in rows)
+    worst = max((row.ratio for row in rows), default=0.0)
+    ends = sum(row.fate == FATES[0] for row in rows)
+    return (
+        f"**{ends} of {len(rows)} are traced to the end; {wrong or 'none'} of the {judged} points judged "
+        f"{'are' if wrong > 1 else 'is'} wrong.** The largest error is {worst:.2g} times what is claimed.\n"
+    )
+
+
+def _table(rows: Sequence[Row]) -> str:
+    heads = ["family", "models", *FATES, "points", "judged", "wrong", "ledger open", "worst error / claim"]
+    heads.append("CPU s")
+    lines = [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
+    for name, own in [*((k, [r for r in rows if r.kind == k]) for k in SEEDS), ("**all**", list(rows))]:
+        cells: list[object] = [name, len(own), *(sum(r.fate == fate for r in own) for fate in FATES)]
+        cells += [sum(r.points for r in own), sum(r.judged for r in own), sum(len(r.wrong) for r in own)]
+        cells += [sum(len(r.gaps) for r in own), f"{max((r.ratio for r in own), default=0.0):.2g}"]
+        cells.append(f"{sum(r.seconds for r in own):.0f}")
+        lines.append(f"| {' | '.join(map(str, cells))} |")
+    return "\n".join([*lines, ""])
+
+
+def _ended(row: Row) -> str:
+    return f"{row.told} ({row.points} points, {row.seconds:.0f} s)"
+
+
+def _told(head: str, found: Iterable[tuple[Row, str]]) -> str:
+    listed = [f"| {row.kind} {row.seed} | {said.replace('|', '/')} |" for row, said in found]
+    if not listed:
+        return f"## {head}\n\nNone.\n"
+    return "\n".join([f"## {head}\n", "| model | |", "|---|---|", *listed, ""])

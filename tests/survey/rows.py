@@ -1,0 +1,158 @@
+"""What becomes of a model: how far its branch is traced, and whether what it claims is so."""
+
+from __future__ import annotations
+
+import json
+import time
+import warnings
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from reference.judging import judged
+from support.drawn.contact import Case, drawn
+
+import periodic as per
+from reports.studies.extremes.survey import within
+
+TOL = 1e-6
+POINTS, NEWTON, SECONDS = 400, 4000, 40.0
+"""Points, Newton iterations and CPU seconds that a branch may take."""
+
+CONTROL = per.ArclengthControl(max_points=POINTS, max_newton=NEWTON)
+
+JUDGED = 8
+"""Points of a branch that are judged, drawn at random."""
+
+SEEDS = {"clearances": 200, "gears": 100, "impacts": 100, "friction": 100, "chains": 100}
+"""How many models of a kind, from seed 100 on."""
+
+HELD = "holds all along"
+"""What a branch says where friction holds the motion for good: it is at rest, anywhere."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A model. `wrong` lists what its branch claims that is not so, `gaps` what its ledger leaves open.
+
+    shortfall: its points whose estimates exceed the tolerance, as the branch says. unjudged: points that
+    the reference does not follow. ratio: the largest error over what is claimed, at least the tolerance.
+    """
+
+    kind: str
+    seed: int
+    reason: str
+    told: str
+    points: int = 0
+    newton: int = 0
+    seconds: float = 0.0
+    shortfall: str = ""
+    judged: int = 0
+    ratio: float = 0.0
+    wrong: tuple[str, ...] = ()
+    gaps: tuple[str, ...] = ()
+    unjudged: tuple[str, ...] = ()
+
+    @property
+    def fate(self) -> str:
+        """The column of the page that it is counted in."""
+        if self.reason == "BOUND":
+            return "to the end"
+        if HELD in self.told:
+            return "friction holds"
+        return "limit of work" if self.reason in ("MAX_POINTS", "MAX_NEWTON", "INTERRUPTED") else "other"
+
+
+def models() -> Iterator[tuple[str, int]]:
+    """Yield kind and seed of all, the kinds in turn, so that a part of them is a sample."""
+    for k in range(max(SEEDS.values())):
+        yield from ((kind, 100 + k) for kind, count in SEEDS.items() if k < count)
+
+
+def traced(case: Case) -> per.Branch:
+    """Return the branch of a model."""
+    return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=CONTROL)
+
+
+def _as_far(case: Case) -> per.Branch:
+    """Return the same, or what there is of it where its time is up."""
+    try:
+        return traced(case)
+    except per.Interrupted as interrupted:
+        return interrupted.branch
+
+
+def row(kind: str, seed: int, count: int = JUDGED) -> Row:
+    """Trace a model and judge as many points. Any warning or exception is recorded as wrong."""
+    case, begun = drawn(kind, seed), time.process_time()
+    try:
+        with warnings.catch_warnings(), within(SECONDS):
+            warnings.simplefilter("error")
+            branch = _as_far(case)
+    except KeyboardInterrupt:
+        return Row(kind, seed, "INTERRUPTED", "time is up before there is a branch", seconds=SECONDS)
+    except Exception as error:
+        return Row(kind, seed, "RAISED", str(error), wrong=(f"{type(error).__name__}: {error}",))
+    seconds = time.process_time() - begun
+    verdict = verdicts(case, branch, seed, count)
+    return Row(
+        kind,
+        seed,
+        branch.stop.reason.name,
+        str(branch.stop),
+        len(branch),
+        branch.newton_iterations,
+        round(seconds, 2),
+        branch.shortfall,
+        verdict.judged,
+        verdict.ratio,
+        tuple(verdict.wrong),
+        tuple(map(str, branch.unaccounted)),
+        tuple(verdict.unjudged),
+    )
+
+
+@dataclass
+class Verdicts:
+    """What came of the points judged."""
+
+    judged: int
+    ratio: float
+    wrong: list[str]
+    unjudged: list[str]
+
+
+def verdicts(case: Case, branch: per.Branch, seed: int, count: int = JUDGED) -> Verdicts:
+    """Judge points of a branch in closed form; at a touch itself multipliers have two values."""
+    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    points = [point for point in branch if point.parameter not in touched]
+    found = Verdicts(0, 0.0, [], [])
+    for k in np.random.default_rng(seed).permutation(len(points))[:count]:
+        point = points[int(k)]
+        place = f"Omega {point.parameter!r} {point.label.value}".strip()
+        try:
+            verdict = judged(case.exact, point, case.names)
+        except ArithmeticError as error:
+            found.unjudged.append(f"{place}: {error}")
+            continue
+        claims = max(TOL, point.error.orbit), max(TOL, point.error.multiplier)
+        found.judged += 1
+        found.ratio = max(found.ratio, verdict.orbit / claims[0], verdict.multipliers / claims[1])
+        said = verdict.wrong(point, TOL)
+        if said:
+            found.wrong.append(f"{place}: {said}")
+    return found
+
+
+def read(files: list[Path]) -> dict[tuple[str, int], Row]:
+    """Return the rows that files have, by kind and seed; later ones replace earlier ones."""
+    lines = [line for file in files if file.exists() for line in file.read_text("utf-8").splitlines()]
+    rows = [Row(**json.loads(line)) for line in lines]
+    return {(row.kind, row.seed): row for row in rows}
+
+
+def write(file: Path, row: Row) -> None:
+    """Append a row to a file."""
+    with file.open("a", encoding="utf-8") as rows:
+        rows.write(json.dumps(asdict(row)) + "\n")
