@@ -148,7 +148,9 @@ def verdicts(case: Case, branch: per.Branch, seed: int, count: int = JUDGED) -> 
 def read(files: list[Path]) -> dict[tuple[str, int], Row]:
     """Return the rows that files have, by kind and seed; later ones replace earlier ones."""
     lines = [line for file in files if file.exists() for line in file.read_text("utf-8").splitlines()]
-    rows = [Row(**json.loads(line)) for line in lines]
+    rows = [
+        Row(**{k: tuple(v) if isinstance(v, list) else v for k, v in json.loads(n).items()}) for n in lines
+    ]
     return {(row.kind, row.seed): row for row in rows}
 
 

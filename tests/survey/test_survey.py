@@ -1,0 +1,38 @@
+"""The survey of random models: rows are kept, gone on from, and counted on a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from survey.page import page
+from survey.rows import Row, models, read, row, write
+
+
+def test_all_models_are_drawn_once() -> None:
+    """Assert that there are 500 and 100 chains."""
+    drawn = list(models())
+    assert len(set(drawn)) == len(drawn) == 600
+    assert sum(kind == "chains" for kind, _ in drawn) == 100
+
+
+def test_row_is_kept(tmp_path: Path) -> None:
+    """Assert that a model is traced and judged, and its row read as written."""
+    file = tmp_path / "rows.jsonl"
+    found = row("gears", 100, 2)
+    assert (found.fate, found.judged, found.wrong, found.gaps) == ("to the end", 2, (), ())
+    assert 0 < found.ratio < 1
+    write(file, found)
+    assert read([file, tmp_path / "none"]) == {("gears", 100): found}
+
+
+def test_page_counts() -> None:
+    """Assert what the page says of one that is right, one that is wrong and one that is not traced."""
+    right = Row("gears", 100, "BOUND", "bound reached: upper end", 10, judged=8, ratio=0.5)
+    wrong = Row("gears", 101, "BOUND", "bound reached: upper end", 5, judged=8, wrong=("Omega 1: orbit",))
+    short = Row("chains", 100, "MAX_POINTS", "largest number of points reached: 400 points", 400)
+    told = page([right, wrong, short], "abc")
+    assert "**2 of 3 are traced to the end; 1 of the 16 points judged is wrong.**" in told
+    assert "| gears | 2 | 2 | 0 | 0 | 0 | 15 | 16 | 1 | 0 | 0.5 | 0 |" in told
+    assert "| chains | 1 | 0 | 1 | 0 | 0 | 400 | 0 | 0 | 0 | 0 | 0 |" in told
+    assert "| gears 101 | Omega 1: orbit |" in told
+    assert "| chains 100 | largest number of points reached: 400 points (400 points, 0 s) |" in told
