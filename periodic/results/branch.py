@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from periodic.bifurcations.curves.noted import noted
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.correction.error import shortfall
@@ -142,10 +143,11 @@ class Branch(Record):
     def remarks(self) -> tuple[str, ...]:
         """What whoever reads the branch should know, in sentences.
 
-        Which points miss the tolerance, what no labelled point accounts for, and which values of `at` the
-        branch does not pass.
+        Which points miss the tolerance, what no labelled point accounts for, which values of `at` the branch
+        does not pass, and where a curve of special points holds none or is not searched.
         """
-        return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted), self._missed)))
+        curve = noted(self.points, self.made, self.parameter)
+        return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted), self._missed, *curve)))
 
     @property
     def _missed(self) -> str:

@@ -5,6 +5,8 @@ There the cubic coefficient of the period map vanishes; a fold of doubled orbits
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from periodic.bifurcations.label import Label
@@ -29,13 +31,18 @@ def _simple(solution: Solution) -> bool:
 
 
 def _coefficient(solution: Solution) -> float:
-    """The cubic coefficient; 0 where it is not known: also beside kinks, and of condensed systems."""
+    """The cubic coefficient; 0 where it is not known: also beside kinks, and of condensed systems.
+
+    Of these the branch says so in a remark; where the coefficient cannot be computed a warning does.
+    """
     system, orbit = solution.problem.system, solution.orbit
     if len(orbit.phases) or linear_of(system) is not None or not _simple(solution):
         return 0.0
     try:
         found = flip_coefficient(system, orbit)
-    except FAILURES:
+    except FAILURES as error:
+        place = f"{solution.problem.parameter} = {solution.value:.6g}"
+        warnings.warn(f"GPD is not looked for about {place}: {error}", RuntimeWarning, stacklevel=2)
         return 0.0
     return found if abs(found) > ROUNDING * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
 

@@ -7,6 +7,7 @@ along the branch at both ends: so one that comes to its level and goes back is s
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from typing import cast
 
@@ -41,7 +42,10 @@ def passing(functional: Functional, level: float, label: Label, name: str) -> Te
         ends = base.once(value), new.once(value)
         try:
             return comes_back(ends, (length * base.once(rate), length * new.once(rate)))
-        except FAILURES:
+        except FAILURES as error:
+            place = f"{problem.parameter} = {base.value:.6g} to {new.value:.6g}"
+            told = f"{name or label} has no derivative ({error}); a touch in {place} is seen by values alone"
+            warnings.warn(told, RuntimeWarning, stacklevel=2)
             return False
 
     rate = _rate_of(cast(Smooth, functional))

@@ -214,6 +214,27 @@ def test_torus_curve_of_a_linear_oscillator() -> None:
     assert [Omega for _, Omega in found] == pytest.approx([0.75, 0.8], rel=1e-11)
 
 
+def test_torus_curve_passes_neutral_saddles() -> None:
+    """Assert that beyond R1, where exp(2 pi (-k)^.5/Omega) and its inverse are real, the curve says so."""
+    x = sym.coordinate("x")
+    parts = sym.Mass(x, 1.0) + sym.Damper(x, 0.1) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 0.3)
+    system = sym.compile(parts)
+    given = {"Omega": 0.9, "k": 0.02}
+    begin = per.trace(system, "c", (-0.05, 0.1), start=0.1, values=given, tol=FINE)
+    (torus,) = begin.labelled(per.Label.TORUS)
+    held = {"c": per.TorusCondition()}
+    curve = per.trace(system, "k", (-0.05, 0.02), guess=torus.orbit, determined=held, tol=FINE)
+    assert [p.label.value for p in curve.special_points] == ["EP", "R1", "EP"]
+    beyond = [p for p in curve if p.parameter < -1e-9]
+    growth = np.exp(2 * np.pi / 0.9 * np.sqrt(0.05))
+    end = min(curve, key=lambda point: point.parameter)
+    assert end.multipliers == pytest.approx(np.array([growth, 1 / growth]), rel=1e-9)
+    (told,) = curve.remarks
+    assert told.startswith(
+        f"{len(beyond)} of {len(curve)} points are neutral saddles, no tori (NS): the pair"
+    )
+
+
 def test_curve_is_saved_with_what_it_is(tmp_path: object) -> None:
     """Assert that a curve's points stay marginal, and its labels, through a file."""
     path = f"{tmp_path}/curve.nc"

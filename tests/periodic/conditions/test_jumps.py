@@ -111,6 +111,8 @@ def test_curve_of_doublings() -> None:
     assert {curve[0].parameter, curve[-1].parameter} == {0.97, 1.03}
     for point in (curve[0], curve[-1]):
         assert np.abs(shot(point).multipliers + 1).min() < 1e-7
+    kinked = f"with kinks, {len(curve)} of {len(curve)} points"
+    assert curve.remarks == (f"generalised period doublings (GPD) are not looked for on orbits {kinked}",)
 
 
 def test_curve_of_peaks() -> None:

@@ -60,6 +60,11 @@ def test_hopf_curve_passes_takens() -> None:
     for found in curve:
         root = np.sqrt(complex(found.parameter))
         assert np.abs(found.multipliers**2 - root**2).min() < 1e-9
+    beyond = sum(found.parameter > 1e-8 for found in curve)
+    (told,) = curve.remarks
+    assert "points are neutral saddles, no Hopf points (HB): the pair that is held is real" in told
+    assert beyond <= int(told.split()[0]) <= beyond + 1  # one may lie on BT to rounding
+    assert told.endswith(" to 1")
 
 
 def test_predator_and_prey() -> None:
