@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, scheme_for
@@ -93,7 +93,8 @@ class CondensedCollocation(Collocation):
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
-        return ContactError(found.orbit, found.multiplier, found.parameter, found.rounding, variation)
+        named = {f.name: getattr(found, f.name) for f in fields(found)}
+        return ContactError(**named, variation=variation)
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)
