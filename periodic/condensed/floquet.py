@@ -17,6 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from periodic.condensed.chain import Chain, pays
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.subspace import invariant
@@ -65,6 +66,26 @@ class Floquet:
     @cached_property
     def _system(self) -> Coupled:
         return Coupled(self.given, self.given.from_rest, wraps=0.0)
+
+    @cached_property
+    def chain(self) -> Chain | None:
+        """The same interval by interval, where that pays."""
+        return Chain(self._system) if pays(self._system) else None
+
+    @cached_property
+    def free(self) -> tuple[Array, Array]:
+        """Unknowns (P ka + P o, coordinates) and coordinates at the end, of each coordinate at the beginning.
+
+        Of systems that are followed interval by interval.
+        """
+        return self.driven(None, np.eye(len(self.kept)))
+
+    def driven(self, right: Array | None, basis: Array) -> tuple[Array, Array]:
+        """Return the same of motions from a basis (coordinates, r), driven by right-hand sides (., r)."""
+        assert self.chain is not None
+        begun = basis[len(basis) - len(self.given.others) :]
+        found, modes, own = self.chain.run(right, self.modes(basis), begun)
+        return found, np.concatenate([modes.real, modes.imag, own])[self.kept]
 
     @cached_property
     def _factors(self) -> Any:
@@ -140,6 +161,8 @@ class Floquet:
 
     def answers(self, basis: Array) -> Array:
         """Return forces and own states at the points in free motion from the columns of a basis."""
+        if self.chain is not None:
+            return self.driven(None, basis)[0]
         return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
 
     def modes(self, basis: Array) -> Complex:
@@ -169,6 +192,9 @@ class Floquet:
 
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
+        if self.chain is not None:
+            square = basis.shape[0] == basis.shape[1]
+            return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]
         factor, across, partner = self._grown
         return factor * basis + across * basis[partner] + self._left @ self.answers(basis)
 

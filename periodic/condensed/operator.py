@@ -67,13 +67,40 @@ class Condensed:
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         system, k = self.system, len(self.orbit.phases)
+        solved = self._at_once if self._floquet.chain is None else self._by_interval
+        inner, outer = solved(rows, right)
+        stages = system.stages(inner, np.concatenate([right[:1], outer]))
+        each = zip(right[0], np.moveaxis(stages, 2, 0), outer.T, strict=True)
+        return tuple(self._recovered(float(constant), at, more, k) for constant, at, more in each)
+
+    def _at_once(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
+        """Forces and own states, (size, columns), and dy."""
+        system = self.system
         matrix, constant = self._bordered(rows)
         aim = np.concatenate([system.right[:, :1], -constant[:, None]]) * right[:1]
         aim[system.size + len(self.own) :] += right[1:]
         found = _finite(np.linalg.solve(matrix, aim))
-        stages = system.stages(found[: system.size], np.concatenate([right[:1], found[system.size :]]))
-        each = zip(right[0], np.moveaxis(stages, 2, 0), found[system.size :].T, strict=True)
-        return tuple(self._recovered(float(constant), at, outer, k) for constant, at, outer in each)
+        return found[: system.size], found[system.size :]
+
+    def _by_interval(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
+        """The same by what the period begins with, the only unknowns beside dy."""
+        system, floquet = self.system, self._floquet
+        count = len(floquet.kept)
+        unknowns, ends = floquet.free
+        driven, left = floquet.driven(system.right, np.zeros((count, system.right.shape[1])))
+        inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
+        outer = outer + inner @ driven
+        matrix = np.block([[np.eye(count) - ends, -left[:, 1:]], [inner @ unknowns, outer[:, 1:]]])
+        aim = np.concatenate([left[:, :1], -outer[:, :1]]) * right[:1]
+        aim[count + len(self.own) :] += right[1:]
+        found = _finite(np.linalg.solve(matrix, aim))
+        given = np.concatenate([right[:1], found[count:]])
+        return unknowns @ found[:count] + driven @ given, found[count:]
+
+    @cached_property
+    def _floquet(self) -> Floquet:
+        """Free motion beside the orbit."""
+        return Floquet(self.given)
 
     def _bordered(self, rows: Sequence[Row]) -> tuple[Array, Array]:
         """The equations with the rows of event nodes and side conditions, and these rows' constants."""
@@ -128,7 +155,7 @@ class Condensed:
     @cached_property
     def leading(self) -> Leading:
         """Free motion in the invariant subspace of the leading multipliers."""
-        return Leading(Floquet(self.given))
+        return Leading(self._floquet)
 
     @property
     def fundamental(self) -> Array:
