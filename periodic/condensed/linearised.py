@@ -108,7 +108,9 @@ class Linearised:
     @cached_property
     def others(self) -> NDArray[np.int_]:
         """Indices of the own states."""
-        return np.setdiff1d(np.arange(self.orbit.nodes.shape[1]), self.part.states)
+        own = np.ones(self.orbit.nodes.shape[1], dtype=bool)
+        own[list(self.part.states)] = False
+        return np.flatnonzero(own)
 
     @cached_property
     def flexibility(self) -> Flexibility:

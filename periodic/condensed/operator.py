@@ -138,18 +138,12 @@ class Condensed:
         nodes[0] = stages[-1, -1] + constant * (orbit.stages[-1, -1] - orbit.nodes[0])
         knots = np.concatenate([nodes[:-1, None], stages], axis=1)
         rates = scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-        n, points = orbit.nodes.shape[1], orbit.stages.shape[0] * orbit.stages.shape[1]
-        shape = (points, n)
-        columns = np.concatenate(
-            [
-                np.full((points, 1), constant),
-                rates.reshape(shape),
-                stages.reshape(shape),
-                np.tile(outer, (points, 1)),
-            ],
-            axis=1,
-        )
-        unknowns = np.einsum("pmw,pw->pm", self.given.local.unknowns, columns).reshape(orbit.algebraic.shape)
+        by_unknown, n = self.given.local.unknowns, orbit.nodes.shape[1]
+        columns = np.empty((len(by_unknown), by_unknown.shape[2], 1))
+        columns[:, 0], columns[:, 1 + 2 * n :, 0] = constant, outer
+        columns[:, 1 : 1 + n, 0] = rates.reshape(-1, n)
+        columns[:, 1 + n : 1 + 2 * n, 0] = stages.reshape(-1, n)
+        unknowns = (by_unknown @ columns).reshape(orbit.algebraic.shape)
         return Increment.of(orbit, nodes, stages, unknowns, outer[:k], outer[k:])
 
     @cached_property

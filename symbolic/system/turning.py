@@ -39,12 +39,27 @@ class Turning:
         e = self.expressions
         return ca.Function("slope", [e.parameter], [ca.jacobian(e.frequency, e.parameter)])
 
+    @cached_property
+    def _plain(self) -> tuple[float, Array] | None:
+        """omega = a + b . p with its a and b, where it is so."""
+        e, count = self.expressions, len(self.parameters)
+        if any(ca.which_depends(e.frequency, e.parameter, 2, True)):
+            return None
+        none = np.zeros(count)
+        return float(self._function(none)), np.array(ca.DM(self._slope(none)).full()).ravel()
+
     def omega(self, parameter: Array) -> float:
         """Return omega at parameters (p,)."""
-        return float(self._function(parameter))
+        if self._plain is None:
+            return float(self._function(parameter))
+        begun, slope = self._plain
+        used = np.flatnonzero(slope)
+        return begun + float(slope[used] @ parameter[used])
 
     def gradient(self, parameter: Array) -> Array:
         """Return d omega / dp, shape (p,)."""
+        if self._plain is not None:
+            return self._plain[1].copy()
         return np.array(ca.DM(self._slope(parameter)).full()).ravel()
 
     @cached_property

@@ -59,6 +59,8 @@ class Response:
     def _distinct(self) -> tuple[Array, NDArray[np.int_]]:
         """Widths that differ by more than rounding, and which of them each interval has."""
         rounded = np.round(self.grid.width / self.period, 13)
+        if (rounded == rounded[0]).all():
+            return self.grid.width[:1], np.zeros(len(rounded), dtype=int)
         _, first, which = np.unique(rounded, return_index=True, return_inverse=True)
         return self.grid.width[first], which
 

@@ -26,7 +26,8 @@ _SOURCES = tuple(f"periodic.condensed.native:{name}.c" for name in ("modes", "mo
 
 _SIZES = ("count", "points", "modes", "states", "forces", "widths", "terms")
 _OF_MODES = ("exponents", "inputs", "outputs", "direct", "direct_rate")
-_GIVEN = ("width", "place", "taylor", "derivatives", *_OF_MODES)
+_OF_SCHEME = ("place", "taylor", "derivatives")
+_GIVEN = ("width", *_OF_SCHEME, *_OF_MODES)
 _LAID = ("growth", "moment", "slope", "local", "impulse", "shown")
 
 
@@ -74,16 +75,15 @@ class NativeResponse(Response):
     def _with(self, tables: Sequence[NDArray[Any]]) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
         """The call with tables."""
         widths, which = self._distinct
-        modes, (s, k) = self.modes, self.modes.direct.shape
-        call = _Call(len(which), self.scheme.ncol, len(modes.exponents), s, k, len(widths), TERMS)
+        modes, call = self.modes, _Call.from_buffer_copy(_of_scheme(self.scheme)[0])
+        call.states, call.forces = modes.direct.shape
+        call.count, call.modes, call.widths = len(which), len(modes.exponents), len(widths)
         kept: list[Any] = [np.ascontiguousarray(which, dtype=np.intp), plain(widths)]
-        kept += _of_scheme(self.scheme)
         kept += map(_complex, (modes.exponents, modes.inputs, modes.outputs))
         kept += map(plain, (modes.direct, modes.direct_rate))
         kept += tables
-        for name, array in zip(("which", *_GIVEN, *_LAID), kept, strict=True):
+        for name, array in zip(("which", "width", *_OF_MODES, *_LAID), kept, strict=True):
             setattr(call, name, address(array))
-        call.near = NEAR
         return call, dict(zip(_LAID, tables, strict=True)), kept
 
     @cached_property
@@ -244,16 +244,22 @@ def _complex(array: NDArray[Any]) -> Complex:
 
 def _room(shapes: Sequence[tuple[int, ...]]) -> list[Complex]:
     """Arrays of complex numbers, one after the other in memory."""
-    ends = np.cumsum([math.prod(shape) for shape in shapes])
-    block = np.empty(ends[-1], dtype=np.complex128)
-    return [block[e - math.prod(shape) : e].reshape(shape) for e, shape in zip(ends, shapes, strict=True)]
+    sizes = [math.prod(shape) for shape in shapes]
+    block, found, first = np.empty(sum(sizes), dtype=np.complex128), [], 0
+    for shape, size in zip(shapes, sizes, strict=True):
+        found.append(block[first : first + size].reshape(shape))
+        first += size
+    return found
 
 
 @cache
-def _of_scheme(scheme: Scheme) -> list[Array]:
-    """Collocation points, Taylor series and derivatives of a scheme's moments."""
-    moments = moments_of(scheme)
-    return [plain(array) for array in (moments.places, moments.taylor, moments.derivatives)]
+def _of_scheme(scheme: Scheme) -> tuple[_Call, Sequence[Array]]:
+    """A call with what belongs to a scheme, and the arrays that it has addresses of."""
+    moments, call = moments_of(scheme), _Call(points=scheme.ncol, terms=TERMS, near=NEAR)
+    kept = [plain(array) for array in (moments.places, moments.taylor, moments.derivatives)]
+    for name, array in zip(_OF_SCHEME, kept, strict=True):
+        setattr(call, name, address(array))
+    return call, kept
 
 
 @cache
