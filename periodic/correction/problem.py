@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -70,6 +70,8 @@ class Problem:
         of an autonomous system, {"F": FoldCondition()} for a curve of folds in two parameters.
     wider : Wider, optional
         The system that results are of, where another one is solved in its place.
+    sizes : tuple of float, optional
+        Sizes of the further free parameters (SI), of which those count that are 0 in the system.
 
     Raises
     ------
@@ -82,6 +84,7 @@ class Problem:
     bounds: tuple[float, float]
     determined: Mapping[str, Condition] = field(default_factory=dict)
     wider: Wider | None = field(default=None, repr=False)
+    sizes: tuple[float, ...] = field(default=(), repr=False)
     begin: float = field(init=False, repr=False, default=0.0)
 
     def __post_init__(self) -> None:
@@ -140,16 +143,34 @@ class Problem:
         -------
         float or ndarray, shape (q,)
             In SI units; the range alone of a branch in one parameter. Infinite of those that a condition of
-            all orbits determines, and of those that are 0 in the system: these have no size of their own.
+            all orbits determines, and of those that are 0 in the system and where the curve begins: these
+            have no size.
         """
         if all(condition.intrinsic for condition in self.conditions):
             return self.scale
         units = np.array([self.scale, *(np.inf for _ in self.others)])
         for k, (index, condition) in enumerate(zip(self.others, self.conditions, strict=True), start=1):
-            nominal = abs(float(self.system.nominal[index]))
-            if nominal > 0 and not condition.intrinsic:
-                units[k] = max(nominal, abs(float(orbit.parameter[index])))
+            size = abs(float(self.system.nominal[index])) or (self.sizes[k - 1] if self.sizes else 0.0)
+            if size > 0 and not condition.intrinsic:
+                units[k] = max(size, abs(float(orbit.parameter[index])))
         return units
+
+    def begun_at(self, parameter: Array) -> Problem:
+        """Return the same with the sizes that further free parameters have at the beginning.
+
+        Parameters
+        ----------
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+
+        Returns
+        -------
+        Problem
+            The problem, whose branches begin where they did.
+        """
+        low, high = self.bounds
+        ends = (low, high) if self.begin == low else (high, low)
+        return replace(self, bounds=ends, sizes=tuple(abs(float(parameter[k])) for k in self.others))
 
     @cached_property
     def trivial(self) -> int:

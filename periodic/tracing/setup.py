@@ -149,7 +149,7 @@ def setup(
             condition.check(system, first)
     work = Work(method.control.max_newton)
     return Setup(
-        problem=problem,
+        problem=problem.begun_at(first),
         method=method,
         guess=guess,
         parameter=first,

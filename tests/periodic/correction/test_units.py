@@ -40,6 +40,28 @@ def test_tip_of_a_tongue() -> None:
     assert np.abs(np.diff(np.log(curve.column("Omega")))).max() < 0.2
 
 
+def test_tip_of_a_tongue_over_a_detuning() -> None:
+    """Assert that a second parameter which is 0 in the system has the size that it begins with.
+
+    Its curve goes round the tip as that of the stiffness 1 + d does, to the same ends.
+    """
+    ends = []
+    for zero in (0.0, 1.0):
+
+        def rates(x: Any, p: Any, wave: Any, own: float = 1.0 - zero) -> dict[str, Any]:
+            return {"x": x.v, "v": -0.05 * x.v - (own + p.d - 2 * p.depth * wave.cos) * x.x}
+
+        names, values = {"x": 0.0, "v": 0.0}, {"depth": 0.2, "d": zero, "Omega": 2.0}
+        system = sym.compile(sym.Equations(rates, names, values, frequency="Omega"))
+        doubling = per.trace(system, "d", (zero - 0.6, zero + 0.6)).labelled("PD")[-1]
+        held = {"d": per.DoublingCondition()}
+        curve = per.trace(system, "depth", (0.01, 0.5), guess=doubling.orbit, determined=held)
+        assert [curve[0].parameter, curve[-1].parameter] == [0.5, 0.5]
+        assert 0.05 < curve.values.min() < 0.055
+        ends.append(curve.column("d")[[0, -1]] - zero)
+    assert ends[0] == pytest.approx(ends[1], rel=1e-8)
+
+
 def test_units() -> None:
     """Assert which parameters count: not those that all orbits have a condition for."""
     system = mathieu()
