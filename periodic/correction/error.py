@@ -106,6 +106,9 @@ SMALL = 0.1
 BEST = 2e-12
 """Relative error of an orbit that rounding may leave; beside a touch it is far more in the multipliers."""
 
+LAST_DIGITS = 4 * float(np.finfo(float).eps)
+"""To how much of itself a parameter is known at the most."""
+
 STEEP = 0.1
 """Part of a branch's direction that the parameter is, below which it is about a fold."""
 
@@ -182,14 +185,16 @@ def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) 
 def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     """The way along the branch from where a step across it leads to the orbit of the same parameter.
 
-    None about a fold, where the orbit of the same parameter is far away, or there is none.
+    That is known to rounding alone, which beside a touch moves a contact; it is added to the way. None about
+    a fold, where the orbit of the same parameter is far away, or there is none.
     """
     kernel = found.kernel
     still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
     length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
     if abs(kernel.parameter) < STEEP * length * problem.scale:
         return kernel.scaled(0.0)
-    return kernel.scaled(-found.increment.parameter / kernel.parameter)
+    shift, least = found.increment.parameter, LAST_DIGITS * abs(problem.value(found.orbit))
+    return kernel.scaled(-(shift + float(np.copysign(least, shift))) / kernel.parameter)
 
 
 def _stage_shift(orbit: Orbit, later: Array) -> Array:

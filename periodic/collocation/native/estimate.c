@@ -10,7 +10,7 @@ struct estimate {
     double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
     double *monodromy;                                             /* that of the better orbit, (n, n) */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
-    double fold, steep, rounding, fast;                            /* limits: see estimate.py */
+    double fold, steep, rounding, digits, fast;                    /* limits: see estimate.py */
     double apart, shift;                                           /* errors of the states and of the parameter */
     whole unresolved;                                              /* whether a vibration is too fast for the mesh */
 };
@@ -146,7 +146,8 @@ static double moved_by(const struct call *c, const struct change *d)
     return most;
 }
 
-/* How far along the branch the orbit of the same parameter lies, in kernels; 0 about a fold. */
+/* How far along the branch the orbit of the same parameter lies, which is known to its last digits, in kernels;
+   0 about a fold. */
 static double to_same_parameter(const struct call *c, const struct estimate *e, const double *weights)
 {
     const whole n = c->n, k = c->k, each = (c->ncol + 1) * n;
@@ -163,7 +164,8 @@ static double to_same_parameter(const struct call *c, const struct estimate *e, 
         }
     }
     const double length = sqrt(states / (e->unit * e->unit) + own * own);
-    return fabs(own) < e->fold * length ? 0 : -c->increment.outer[k] / c->kernel.outer[k];
+    const double shift = c->increment.outer[k], least = e->digits * fabs(c->parameter[c->free]);
+    return fabs(own) < e->fold * length ? 0 : -(shift + copysign(least, shift)) / c->kernel.outer[k];
 }
 
 /* Go to the orbit that the increment leads to, and so many kernels further. */

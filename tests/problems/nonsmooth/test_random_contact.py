@@ -86,6 +86,16 @@ def test_folds_beside_a_touch() -> None:
     assert wrong(case, branch, 132) == []
 
 
+def test_last_digits_of_the_parameter() -> None:
+    """Assert that errors tell what the parameter's last digits are to multipliers beside a touch, 2e-7."""
+    case = drawn("clearances", 130)
+    touched = 1.715949071
+    beside = [point for point in traced(case) if 1e-10 < point.parameter - touched < 1e-7]
+    assert beside
+    for point in beside:
+        assert judged(case.exact, point, case.names).multipliers < max(1e-8, 3 * point.error.by_orbit)
+
+
 @pytest.mark.long
 def test_rounding_beside_a_touch() -> None:
     """Assert orbits to 1e-14 and multipliers from a contact of 1e-4 rad on, to what is claimed, at k = 2e4.
