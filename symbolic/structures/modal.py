@@ -51,18 +51,18 @@ class ModalForm:
         How forces drive z.
     matrices : Matrices
         The matrices that they are of.
-    complete : bool
-        Whether they are all.
     own : bool
         Whether they are of M, C and K (and G) alone, nothing damped mode by mode.
+    undamped : ndarray, shape (n, J), optional
+        The undamped modes phi, phi' M phi = 1, where they are not all.
     """
 
     exponents: Complex
     shapes: Complex
     inputs: Complex
     matrices: Matrices
-    complete: bool = True
     own: bool = False
+    undamped: Array | None = field(default=None, repr=False)
     _residuals: dict[tuple[int, ...], Array] = field(default_factory=dict, init=False, repr=False)
 
     def residual(self, freedoms: Sequence[int]) -> Array:
@@ -73,17 +73,22 @@ class ModalForm:
         return self._residuals[key]
 
     def _residual(self, freedoms: tuple[int, ...]) -> Array:
+        """What K^-1 makes of loads without any part in the modes that are kept.
+
+        The difference of whole and modal flexibility would be rounding: the lowest modes are most of it.
+        """
         n, k = len(self.shapes), len(freedoms)
-        if self.complete:
+        if self.undamped is None:
             return np.zeros((n, k))
+        phi, mass, stiffness = self.undamped, self.matrices.M, self.matrices.K
         loads = np.zeros((n, k))
         loads[list(freedoms), np.arange(k)] = 1.0
-        stiffness = self.matrices.K
+        loads -= mass @ (phi @ (phi.T @ loads))
         if sparse.issparse(stiffness):
-            whole: Array = np.array(splu(sparse.csc_array(stiffness)).solve(loads), dtype=float)
+            found: Array = np.array(splu(sparse.csc_array(stiffness)).solve(loads), dtype=float)
         else:
-            whole = np.linalg.solve(stiffness, loads).astype(float)
-        return np.asarray(whole - self.static(freedoms))
+            found = np.linalg.solve(stiffness, loads).astype(float)
+        return np.asarray(found - phi @ (phi.T @ (mass @ found)))
 
     def static(self, freedoms: Sequence[int]) -> Array:
         """Return the static flexibility (n, k) in m/N of the modes."""
@@ -197,9 +202,8 @@ def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shap
     drive = np.concatenate([1 / (2 * root), -1 / (2 * root[single])])
     every = np.concatenate([shapes, shapes[:, single]], axis=1)
     twice = np.concatenate([np.where(oscillates, 2.0, 1.0), np.ones(len(single))])
-    return ModalForm(
-        exponents, every * twice + 0j, drive[:, None] * every.T, matrices, shapes.shape[1] == matrices.size
-    )
+    undamped = None if shapes.shape[1] == matrices.size else shapes
+    return ModalForm(exponents, every * twice + 0j, drive[:, None] * every.T, matrices, undamped=undamped)
 
 
 def _coupled(name: str, matrices: Matrices, damping: Array) -> ModalForm:
