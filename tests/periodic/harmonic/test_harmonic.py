@@ -375,6 +375,19 @@ def test_fundamental_matrices(name: str, harmonics: int) -> None:
     assert np.abs(found.fundamental(orbit) - exact).max() < 1e-9 * np.abs(exact).max()
 
 
+def test_large_matrices_are_not_taken_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the same from a Krylov space alone, as from all eigenvalues, to 9 digits."""
+    matrix, mesh = MATRICES["two negative pairs"], mesh_for(40, 2 * np.pi)
+    nodes, stages = np.zeros((mesh.ntst + 1, 4)), np.zeros((mesh.ntst, 2, 4))
+    orbit = FourierOrbit(mesh, nodes, stages, np.zeros((mesh.ntst, 2, 0)), np.zeros(0), np.ones(3))
+    with monkeypatch.context() as changed:
+        changed.delattr(hill, "_dense")
+        found = hill.floquet(constant(matrix), orbit).fundamental(orbit)
+    monkeypatch.setattr(hill, "DENSE", 10_000)
+    whole = hill.floquet(constant(matrix), orbit).fundamental(orbit)
+    assert found == pytest.approx(whole, abs=1e-9 * np.abs(whole).max())
+
+
 def test_spurious_exponents_of_a_kinked_equation() -> None:
     """Assert that n exponents are found where the spectrum falls slowly, and their error is told."""
     system = MeissnerOscillator()

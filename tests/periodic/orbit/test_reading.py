@@ -14,6 +14,7 @@ from support.traces import RPM, disc, duffing, duffing_system
 
 import periodic as per
 import symbolic as sym
+from periodic.orbit.layout import layout_of
 from symbolic.scenes.building import build
 from symbolic.scenes.files import load
 
@@ -178,3 +179,19 @@ def test_switching_to_a_branch_from_an_orbit_of_other_scales() -> None:
     swing = np.ptp(expected["x"](t))
     assert found.period == pytest.approx(expected.period, rel=1e-12)
     assert found["x"](t) == pytest.approx(expected["x"](t), abs=0.2 * swing)
+
+
+def test_a_layout_fits_its_own_system_alone() -> None:
+    """Assert that a system with a state or a parameter more, or another unit, has another layout."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 0.5)
+    one = sym.compile(model)
+    more = sym.compile(model + sym.Damper(x, 0.1))
+    two = sym.compile(model + sym.Mass(y, 1.0) + sym.Spring(y, 1.0))
+    turned = sym.coordinate("x", unit="rad")
+    other = sym.compile(sym.Mass(turned, 1.0) + sym.Spring(turned, 1.0) + sym.HarmonicForce(turned, 0.5))
+    systems = (one, more, two, other)
+    for system in systems:
+        assert [layout_of(system).fits(another) for another in systems] == [
+            another is system for another in systems
+        ]

@@ -211,6 +211,15 @@ def test_regions(axes: Axes) -> None:
         ValueError, match="^a curve over Omega has no second parameter; it must be traced with"
     ):
         per.plot_regions(duffing(), axes)
+    over_force = per.trace(
+        system, "F", (0.5, 0.51), guess=fold.orbit, determined={"Omega": per.FoldCondition()}
+    )
+    with pytest.raises(
+        ValueError, match=r"^curves are in the planes of \[\('F', 'Omega'\), \('Omega', 'F'\)\]"
+    ):
+        per.plot_regions([border, over_force], axes)
+    with pytest.raises(ValueError, match="^curves is empty; it must have a branch"):
+        per.plot_regions([], axes)
 
 
 def test_campbell(axes: Axes) -> None:

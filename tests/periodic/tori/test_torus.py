@@ -9,6 +9,9 @@ import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.system import index_of
+from periodic.tori.invariant import Invariance, unknowns
+from periodic.tori.torus import Family, first
 
 
 @cache
@@ -48,6 +51,24 @@ def test_velocity_is_in_SI() -> None:
     """Assert dx/dt = n dx/dtau."""
     states = [q.name for q in whirl().layout.states]
     assert whirl().section("x'") == pytest.approx(2.0 * whirl().states[:, states.index("x'")], rel=1e-12)
+
+
+def test_family_goes_on_the_way_it_has_come() -> None:
+    """Assert the length and direction of two steps, and that the second is foreseen to second order."""
+    system, born = sym.scene("jeffcott-internal-damping"), branch().labelled("NS")[0]
+    equations = Invariance(system, index_of(system, "n"), 1e-10)
+    family, off = Family(equations, 1e-8), []
+    weights = np.concatenate([np.full(11 * len(system.states), 1 / 11), [1.0, 1.0]])
+    now, tangent = family.start(*first(system, born, 11))
+    assert weights @ tangent**2 == pytest.approx(1)
+    for length in (0.1, 0.05):
+        found = family.corrected(now, tangent, length)
+        assert found is not None
+        way = unknowns(found[0], equations.free) - unknowns(now, equations.free)
+        assert weights @ (tangent * way) == pytest.approx(length, rel=1e-9)
+        assert found[1] == pytest.approx(way / np.sqrt(weights @ way**2), rel=1e-12)
+        off.append(np.sqrt(weights @ (way - length * tangent) ** 2))
+    assert off[0] < 0.01 and 2.5 < off[0] / off[1] < 6
 
 
 def test_what_is_no_torus_is_refused() -> None:

@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 
 import periodic as per
 import symbolic as sym
+from periodic.results.stop import Stop
+from periodic.tracing.start import Start
 
 F = sym.functions
 FEW = per.ArclengthControl(max_points=3)
@@ -72,6 +74,19 @@ def test_what_was_tried_is_said() -> None:
         "nor was one found from other values of Omega, a simulation left to settle; "
         "guess=per.sampled(...) takes a motion from a simulation"
     )
+
+
+@pytest.mark.parametrize("factor", [0.25, 4.0])
+def test_way_that_ends_before_the_wanted_value_is_none(factor: float) -> None:
+    """Assert that an approach from below or above counts only where it arrives; there it gives its orbit."""
+    system = forced(lambda x, p, wave: {"x": x.v, "v": -0.1 * x.v - x.x + p.F * wave.cos}, Omega=0.8, F=0.2)
+    run = per.continuation(per.Problem(system, "F", (0.1, 0.3)), start=0.2)
+    there = next(run).orbit
+    stop = Stop(per.Reason.SMALL_STEP, "")
+    short = Start(run.solver, lambda solver, orbit, sign, most: (orbit, stop))
+    assert short._approached(there, factor) is None
+    whole = Start(run.solver, lambda solver, orbit, sign, most: (there, stop))
+    assert whole._approached(there, factor) is there
 
 
 @pytest.mark.parametrize(("friction", "holds"), [(0.6, True), (0.1, False)])

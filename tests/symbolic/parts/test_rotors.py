@@ -84,6 +84,19 @@ def test_stiffness_and_damping(e: float) -> None:
     assert damping == pytest.approx(printed[1], rel=1e-12)
 
 
+def test_eccentricity_is_over_the_clearance() -> None:
+    """Assert the output of a film at displacements (3, 4) and (-1, 0) of ten, and at the centre."""
+    x, y = sym.coordinates("x", 2)
+    film = sym.JournalBearing(x, y, viscosity=0.02, radius=0.1, length=0.1, clearance=10.0)
+    system = sym.compile(film + sym.Mass(x, 1.0) + sym.Mass(y, 1.0))
+    states = np.array([[3.0, 0.0, 4.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]])
+    states = states / [state.scale for state in system.states]
+    none = np.zeros((3, 0))
+    found = system.output(0 * states, states, none, np.zeros(3), system.nominal)
+    at = [output.name for output in system.outputs].index("eccentricity")
+    assert found[:, at] == pytest.approx([0.5, 0.1, 0.0], abs=1e-12)
+
+
 def test_internal_damping_destabilises_where_it_should() -> None:
     """Assert the closed-form threshold of a shaft with c_i = c_e/3: Omega = (1 + c_e/c_i) sqrt(k/m)."""
     x, y = sym.coordinates("x", 2)
