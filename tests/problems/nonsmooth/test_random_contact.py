@@ -6,7 +6,7 @@ drawn from it are those of an event-exact integration that shares nothing with t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pytest
@@ -16,6 +16,10 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 
 import periodic as per
 from periodic import Reason
+from periodic.collocation.jumping.turn import LastTurn
+from periodic.correction.change import Beyond
+from periodic.orbit.orbit import Orbit
+from periodic.system import System
 
 
 def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
@@ -131,3 +135,17 @@ def test_six_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFixt
         for each in rows:
             print(f"  {each.seed}  {each.points} points, {each.told}")
     assert [(each.seed, said) for each in rows for said in (*each.wrong, *each.gaps, *each.unjudged)] == []
+
+
+def test_what_ends_where_friction_turns_leaves_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that beyond the end of an excursion each mesh that is tried lacks its event nodes."""
+    gone, beyond = [], LastTurn.beyond
+
+    def noted(end: LastTurn, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        for found in beyond(end, system, orbit):
+            gone.append(len(orbit.mesh.events) - len(found.mesh.events))
+            yield found
+
+    monkeypatch.setattr(LastTurn, "beyond", noted)
+    traced(drawn("friction", 119))
+    assert gone and min(gone) >= 2
