@@ -279,9 +279,8 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
         nearest = next((length for length in SHORT if length < half), half)
         if then[i] > (max(half, nearest) if same else nearest):
             continue
-        part = (now[i] ** 2 - nearest**2) / (2 * now[i] * (now[i] - then[i])) if same else 1.0
-        if not same:
-            part = (now[i] - nearest) / (now[i] - then[i])
+        shorter = now[i] - then[i]
+        part = (now[i] ** 2 - nearest**2) / (2 * now[i] * shorter) if same else (now[i] - nearest) / shorter
         found.append(Meeting(system, i, (first, second), nearest, min(float(part), 1.0), shortest))
     return min(found, key=lambda meeting: meeting.part, default=None)
 

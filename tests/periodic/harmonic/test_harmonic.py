@@ -7,15 +7,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 from support.flows import AUTONOMOUS, feedback, period, van_der_pol
 from support.numpy_systems import (
     AlgebraicOscillator,
     Array,
     BilinearOscillator,
     LinearOscillator,
-    MeissnerOscillator,
-    Quantity,
 )
 from support.traces import (
     DUFFING_A,
@@ -29,9 +26,7 @@ from support.traces import (
 )
 
 import periodic as per
-from periodic.harmonic import hill
-from periodic.harmonic.series import FourierOrbit, mesh_for, series
-from periodic.system import System
+from periodic.harmonic.series import FourierOrbit
 
 HB = per.HarmonicBalance
 DISC = "vitrea79-810N"
@@ -326,78 +321,6 @@ def test_curves_need_piecewise_polynomials() -> None:
     fold = duffing().labelled(per.Label.FOLD)[0].orbit
     with pytest.raises(ValueError, match="FourierOrbit.*need one found by Collocation or Shooting"):
         per.trace(system, "Omega", (2, 3), guess=fold, determined={"F": per.FoldCondition()}, method=HB())
-
-
-def constant(matrix: Array) -> System:
-    """A system x' = matrix x + cos tau."""
-    count = len(matrix)
-
-    class Flow(LinearOscillator):
-        states = tuple(Quantity(f"x{k}") for k in range(count))
-        outputs = states
-
-        def linearise(self, rate, state, algebraic, phase, parameter, free=()):  # type: ignore[no-untyped-def]
-            lines = LinearOscillator.linearise(self, rate, state, algebraic, phase, parameter, ())
-            points = len(state)
-            return type(lines)(
-                rate - state @ matrix.T - np.cos(phase)[:, None],
-                np.tile(np.eye(count), (points, 1, 1)),
-                np.tile(-matrix, (points, 1, 1)),
-                np.zeros((points, count, 0)),
-                np.sin(phase)[:, None] * np.ones(count),
-                np.zeros((points, count, len(free))),
-            )
-
-    return Flow()
-
-
-MATRICES = {
-    "defective": np.array([[-0.3, 1.0, 0.0], [0.0, -0.3, 1.0], [0.0, 0.0, -0.3]]),
-    "negative": np.array([[-0.1, 0.5, 0.0], [-0.5, -0.1, 0.0], [0.0, 0.0, -0.2]]),
-    "two negative pairs": np.kron(np.diag([1.0, 3.0]), [[-0.1, 0.5], [-0.5, -0.1]]),
-    "equal": np.kron(np.eye(2), [[-0.1, 0.7], [-0.7, -0.1]]),
-    "fast and stiff": np.array([[0.0, 1.0, 0.0], [-90.0, -0.2, 1.0], [0.0, 0.0, -6.0]]),
-}
-
-
-@pytest.mark.parametrize("harmonics", [8, 40])
-@pytest.mark.parametrize("name", MATRICES)
-def test_fundamental_matrices(name: str, harmonics: int) -> None:
-    """Assert Hill's fundamental matrices where they are matrix exponentials, hard to sort or not."""
-    matrix = MATRICES[name]
-    mesh = mesh_for(harmonics, 2 * np.pi)
-    nodes, stages = np.zeros((mesh.ntst + 1, len(matrix))), np.zeros((mesh.ntst, 2, len(matrix)))
-    orbit = FourierOrbit(mesh, nodes, stages, np.zeros((mesh.ntst, 2, 0)), np.zeros(0), np.ones(3))
-    found = hill.floquet(constant(matrix), orbit)
-    exact = expm(matrix * mesh.nodes(np.zeros(0))[:, None, None])
-    assert found.resolved
-    # A threefold exponent is known to the cube root of rounding, its invariant subspace far better.
-    assert np.abs(found.fundamental(orbit) - exact).max() < 1e-9 * np.abs(exact).max()
-
-
-def test_large_matrices_are_not_taken_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert the same from a Krylov space alone, as from all eigenvalues, to 9 digits."""
-    matrix, mesh = MATRICES["two negative pairs"], mesh_for(40, 2 * np.pi)
-    nodes, stages = np.zeros((mesh.ntst + 1, 4)), np.zeros((mesh.ntst, 2, 4))
-    orbit = FourierOrbit(mesh, nodes, stages, np.zeros((mesh.ntst, 2, 0)), np.zeros(0), np.ones(3))
-    with monkeypatch.context() as changed:
-        changed.delattr(hill, "_dense")
-        found = hill.floquet(constant(matrix), orbit).fundamental(orbit)
-    monkeypatch.setattr(hill, "DENSE", 10_000)
-    whole = hill.floquet(constant(matrix), orbit).fundamental(orbit)
-    assert found == pytest.approx(whole, abs=1e-9 * np.abs(whole).max())
-
-
-def test_spurious_exponents_of_a_kinked_equation() -> None:
-    """Assert that n exponents are found where the spectrum falls slowly, and their error is told."""
-    system = MeissnerOscillator()
-    orbit = series(per.trace(system, "Omega", (0.8, 0.81))[0].orbit, mesh_for(60, 2 * np.pi))
-    found = hill.floquet(system, orbit)
-    off = distance(np.linalg.eigvals(found.fundamental(orbit)[-1]), system.exact_multipliers())
-    finer = series(orbit, mesh_for(90, 2 * np.pi))
-    assert found.resolved
-    assert off < 2e-5
-    assert found.error(system, finer) > off
 
 
 @pytest.mark.parametrize(
