@@ -14,12 +14,14 @@ from pathlib import Path
 
 from reports.benchmarks.peers.told import median, tell
 
-DUFFING = (0.3, 1.0, 0.1, 1.0, 1.0, 0.0, 0.5, 0.0, 1e9)
-CHAIN = (1.6, 1.0, 0.05, 1.0, 0.1, 0.05, 0.3, 0.0, 1e9)
-STOPPED = (1.6, 1.0, 0.05, 1.0, 0.0, 0.05, 0.3, 1.0, 1.0)
-"""Omega where the branch begins, m, c, k, k3, link, F, stop, gap in SI, as in `reports.benchmarks.work`."""
+DUFFING = (0.3, 1.0, 0.1, 1.0, 1.0, 0.0, 0.5, 0.0, 1e9, 1)
+CHAIN = (1.6, 1.0, 0.05, 1.0, 0.1, 0.05, 0.3, 0.0, 1e9, 1e9)
+LOCAL = (*CHAIN[:-1], 1)
+STOPPED = (1.6, 1.0, 0.05, 1.0, 0.0, 0.05, 0.3, 1.0, 1.0, 1e9)
+"""Omega where the branch begins, m, c, k, k3, link, F, stop, gap in SI, as in `reports.benchmarks.work`, and
+how many oscillators have k3."""
 
-PROBLEMS = {"duffing": DUFFING, "chain": CHAIN, "stopped": STOPPED}
+PROBLEMS = {"duffing": DUFFING, "chain": CHAIN, "local": LOCAL, "stopped": STOPPED}
 
 FOLD = 5
 """AUTO's type of a fold (LP) of periodic orbits."""

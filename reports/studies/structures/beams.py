@@ -34,7 +34,14 @@ def cantilever(
     elements: int, part: Tip, *, condense: bool = True, force: float = FORCE
 ) -> sym.CompiledSystem:
     """Return the compiled cantilever, damped by 1 % in each mode."""
-    structure = sym.Structure(beam(elements), damping=DAMPING)
+    return with_tip(beam(elements), part, condense=condense, force=force)
+
+
+def with_tip(
+    matrices: sym.Matrices, part: Tip, *, condense: bool = True, force: float = FORCE
+) -> sym.CompiledSystem:
+    """Return a compiled structure, damped by 1 % in each mode, with something at its tip."""
+    structure = sym.Structure(matrices, damping=DAMPING)
     tip = structure["tip"]
     model = structure + part(tip) + sym.HarmonicForce(tip, force, 3.0)
     return sym.compile(model, condense=condense)

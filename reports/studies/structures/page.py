@@ -6,6 +6,7 @@ from pathlib import Path
 
 from reports.studies.pages.page import Page
 from reports.studies.structures.accuracy import ACCURACY
+from reports.studies.structures.chain import ONE_OF_MANY
 from reports.studies.structures.modes import MODES
 from reports.studies.structures.peer import BESIDE
 from reports.studies.structures.rotor import ROTOR
@@ -19,6 +20,7 @@ REPORT = Page(
         "size": SIZE,
         "accuracy": ACCURACY,
         "peer": BESIDE,
+        "chain": ONE_OF_MANY,
         "tips": TIPS,
         "modes": MODES,
         "rotor": ROTOR,

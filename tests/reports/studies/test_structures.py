@@ -8,7 +8,7 @@ import pytest
 
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
-from reports.studies.structures import accuracy, modes, peer, rotor, size
+from reports.studies.structures import accuracy, chain, modes, peer, rotor, size
 from reports.studies.structures.page import REPORT
 
 FOLDER = REPORT.folder
@@ -35,6 +35,33 @@ def test_size_is_fresh() -> None:
     assert size.row(size.CONDENSED, 10)["folds"] == pytest.approx(kept["folds"], rel=1e-8)
     assert max(row["points"] for row in rows) < 1.4 * min(row["points"] for row in rows)
     assert {row["unknown"] for row in rows} == {2}
+
+
+def test_twenty_thousand_freedoms_are_kept() -> None:
+    """Assert the folds of 20 000 degrees of freedom against those reduced, and their cost beside 20's.
+
+    And that fewer elements in plane stress have both folds to 1 %, anew.
+    """
+    kept = REPORT.kept(FOLDER)["size"].rows
+    full, reduced = (next(r for r in reversed(kept) if r["method"] == m) for m in (size.PLANE, size.REDUCED))
+    assert full["freedoms"] == reduced["freedoms"] == 20160
+    assert full["folds"] == pytest.approx(reduced["folds"], rel=1e-6)
+    few = next(r for r in kept if r["method"] == size.CONDENSED and r["freedoms"] == 20)
+    assert full["ms"] < 2 * few["ms"]
+    anew = size.branch(size.of_reduced(8), size.METHODS[size.REDUCED].discretisation)
+    assert [point.parameter for point in anew.labelled("LP")] == pytest.approx(full["folds"], rel=0.01)
+
+
+def test_chain_is_fresh() -> None:
+    """Assert that all ways have the folds of ten oscillators to 1e-6, and who is quicker; one anew, 1e-8."""
+    rows = REPORT.kept(FOLDER)["chain"].rows
+    kept = next(r for r in rows if r["way"] == chain.CONDENSED and r["states"] == 20)
+    for row in (r for r in rows if r["states"] == 20):
+        assert sorted(row["folds"]) == pytest.approx(sorted(kept["folds"]), rel=1e-6)
+    assert chain.own(10, chain.CONDENSED)["folds"] == pytest.approx(kept["folds"], rel=1e-8)
+    seconds = {r["way"]: r["s"] for r in rows if r["states"] == 50}
+    assert 3 * seconds[chain.CONDENSED] < seconds[chain.WHOLE]
+    assert 15 * seconds[chain.CONDENSED] < seconds[chain.AUTO]
 
 
 def test_peer_is_fresh() -> None:
