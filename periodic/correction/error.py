@@ -110,7 +110,10 @@ LAST_DIGITS = 4 * float(np.finfo(float).eps)
 """To how much of itself a parameter is known at the most."""
 
 STEEP = 0.1
-"""Part of a branch's direction that the parameter is, below which it is about a fold."""
+"""Part of a branch's direction that the parameter is, below which it is about a fold,"""
+
+TURNING = 1e-3
+"""... and below which it is at one: no orbit beside it has that parameter to its last digits."""
 
 
 def deferred(
@@ -185,16 +188,18 @@ def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) 
 def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     """The way along the branch from where a step across it leads to the orbit of the same parameter.
 
-    That is known to rounding alone, which beside a touch moves a contact; it is added to the way. None about
-    a fold, where the orbit of the same parameter is far away, or there is none.
+    None about a fold, where the orbit of the same parameter is far away, or there is none. The parameter is
+    known to rounding alone, which beside a touch moves a contact: it is added to the way but at a fold.
     """
     kernel = found.kernel
     still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
     length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
-    if abs(kernel.parameter) < STEEP * length * problem.scale:
+    part = abs(kernel.parameter) / (length * problem.scale)
+    if part < TURNING:
         return kernel.scaled(0.0)
     shift, least = found.increment.parameter, LAST_DIGITS * abs(problem.value(found.orbit))
-    return kernel.scaled(-(shift + float(np.copysign(least, shift))) / kernel.parameter)
+    way = (shift if part >= STEEP else 0.0) + float(np.copysign(least, shift))
+    return kernel.scaled(-way / kernel.parameter)
 
 
 def _stage_shift(orbit: Orbit, later: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from periodic.collocation.multipliers.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.correction.error import LAST_DIGITS, STEEP, ErrorEstimate, Halved, relative
+from periodic.correction.error import LAST_DIGITS, STEEP, TURNING, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP as STEEP_RATE
@@ -21,15 +21,27 @@ from periodic.stability.spectrum import Spectrum
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
 _ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy")
-_NUMBERS = ("along", "scale", "unit", "fold", "steep", "rounding", "digits", "fast", "apart", "shift")
+_NUMBERS = (
+    "along",
+    "scale",
+    "unit",
+    "fold",
+    "turning",
+    "steep",
+    "rounding",
+    "digits",
+    "fast",
+    "apart",
+    "shift",
+)
 
 
 class Estimate(ctypes.Structure):
     """`struct estimate` of estimate.c.
 
-    Limits: `fold` is the part of the branch's direction that the parameter is about a fold, `steep` the rate
-    beside kinks that counts half, `rounding` what of a switch's terms it may be off by, `digits` to how much
-    of itself the parameter is known, `fast` the turn of a vibration in an interval.
+    Limits: `fold` is the part of the branch's direction that the parameter is about a fold, `turning` at one,
+    `steep` the rate beside kinks that counts half, `rounding` what of a switch's terms it may be off by,
+    `digits` to how much of itself the parameter is known, `fast` the turn of a vibration in an interval.
     """
 
     _fields_ = (
@@ -59,7 +71,7 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     monodromy: Array = np.empty((n, n))
     kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
-    own.fold, own.steep, own.fast = STEEP, STEEP_RATE, FAST
+    own.fold, own.turning, own.steep, own.fast = STEEP, TURNING, STEEP_RATE, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
     code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept
