@@ -152,6 +152,8 @@ def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
     """Derivatives of the rows in the event nodes' phases, which move and stretch the intervals."""
     grid, points = orbit.grid, orbit.mesh.scheme.points
     k = len(orbit.phases)
+    if k == 0:
+        return np.zeros((*d_phase.shape, 0))
     shift = grid.left_gradient[:, None, :] + grid.width_gradient[:, None, :] * points[:, None]
     stretch = np.repeat(grid.width_gradient / grid.width[:, None], len(points), axis=0)
     rate = orbit.knot_rates[:, 1:].reshape(len(d_phase), -1, 1)

@@ -92,17 +92,20 @@ static void closed_form(const struct response *r, complex_ x, const double *grow
     const whole points = r->points, row = points, order = (1 + points) * points;
     const double size = x.re * x.re + x.im * x.im;
     const complex_ inverse = {x.re / size, -x.im / size};
+    complex_ power[17], steep[17];
+    power[0] = inverse;
+    for (whole p = 0; p < points; p++) {
+        power[p + 1] = times(power[p], inverse);
+        steep[p] = scaled(power[p + 1], -(double)(p + 1));
+    }
     for (whole b = 0; b < points; b++) {
         complex_ value[16], change[16];
         for (whole e = 0; e <= points; e++) {
             value[e] = change[e] = (complex_){0, 0};
-            complex_ power = inverse;
             for (whole p = 0; p < points; p++) {
                 const double c = r->derivatives[p * order + e * row + b];
-                const complex_ next = times(power, inverse);
-                value[e] = plus(value[e], scaled(power, c));
-                change[e] = plus(change[e], scaled(next, -c * (double)(p + 1)));
-                power = next;
+                value[e] = plus(value[e], scaled(power[p], c));
+                change[e] = plus(change[e], scaled(steep[p], c));
             }
         }
         for (whole a = 0; a < points; a++) {

@@ -20,37 +20,35 @@ static void within(const struct response *r, const struct change *q, whole i, co
     for (whole j = 0; j < J; j++) {
         const complex_ lambda = at(r->exponents, j), z = at(q->history, i * J + j);
         const double *growth = r->growth + 2 * (u * J + j) * points;
-        complex_ driven[16];
-        for (whole b = 0; b < points; b++) {
-            driven[b] = (complex_){0, 0};
-            for (whole l = 0; l < k; l++)
-                driven[b] = plus(driven[b], scaled(at(r->inputs, j * k + l), forces[b * k + l]));
-        }
         for (whole a = 0; a < points; a++) {
             const whole row = ((u * J + j) * points + a) * points;
+            double *to = inner + 2 * (j * points + a) * all;
             complex_ answer = {0, 0}, steeper = {0, 0};
-            for (whole b = 0; b < points; b++) {
-                answer = plus(answer, times(at(r->moment, row + b), driven[b]));
-                steeper = plus(steeper, times(at(r->slope, row + b), driven[b]));
+            memset(to + 2 * q->wider, 0, 2 * q->others * sizeof(double));
+            for (whole l = 0; l < k; l++) {
+                const complex_ input = at(r->inputs, j * k + l);
+                complex_ moved = {0, 0}, steep = {0, 0};
+                for (whole b = 0; b < points; b++) {
+                    moved = plus(moved, scaled(at(r->moment, row + b), forces[b * k + l]));
+                    steep = plus(steep, scaled(at(r->slope, row + b), forces[b * k + l]));
+                }
+                answer = plus(answer, times(moved, input));
+                steeper = plus(steeper, times(steep, input));
+                for (whole c = 0; c < q->others; c++) {
+                    const complex_ other = times(moved, at(q->inputs, (c * J + j) * k + l));
+                    put(to, q->wider + c, plus(at(to, q->wider + c), scaled(other, h)));
+                }
             }
             const complex_ grown = times(at(growth, a), z);
             const complex_ turned = plus(scaled(steeper, h), scaled(grown, r->place[a]));
             put(stages, j * points + a, plus(grown, scaled(answer, h)));
-            double *to = inner + 2 * (j * points + a) * all;
             for (whole c = 0; c < q->wider; c++) {
                 const double wider = q->stretch[i * q->wider + c];
                 put(to, c, plus(scaled(answer, wider), times(turned, scaled(lambda, wider))));
             }
             for (whole c = 0; c < q->others; c++) {
-                complex_ other = {0, 0};
-                for (whole l = 0; l < k; l++) {
-                    complex_ moved = {0, 0};
-                    for (whole b = 0; b < points; b++)
-                        moved = plus(moved, scaled(at(r->moment, row + b), forces[b * k + l]));
-                    other = plus(other, times(moved, at(q->inputs, (c * J + j) * k + l)));
-                }
                 const complex_ faster = scaled(at(q->exponents, c * J + j), h);
-                put(to, q->wider + c, plus(times(turned, faster), scaled(other, h)));
+                put(to, q->wider + c, plus(times(turned, faster), at(to, q->wider + c)));
             }
         }
     }
