@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.chain import pays
 from periodic.condensed.coupled import Coupled, folded
 from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
@@ -67,7 +68,7 @@ class Condensed:
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         system, k = self.system, len(self.orbit.phases)
-        solved = self._at_once if self._floquet.chain is None else self._by_interval
+        solved = self._by_interval if pays(system) else self._at_once
         inner, outer = solved(rows, right)
         stages = system.stages(inner, np.concatenate([right[:1], outer]))
         each = zip(right[0], np.moveaxis(stages, 2, 0), outer.T, strict=True)
