@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +13,12 @@ from support.stops import judged as exactly_judged
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation import touch
 from periodic.collocation.dense import Dense
 from periodic.orbit.construction import at_rest
-from periodic.orbit.mesh import uniform
+from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 
 UP, DOWN = (0.65, 0.8), (0.8, 0.65)
 STIFFNESSES = [5.0, 1e2, 1e4]
@@ -114,3 +118,18 @@ def test_excursion_between_collocation_points_is_seen() -> None:
     assert found.value == pytest.approx(1e-4, abs=1e-12)
     begin, end = (phase for _, phase in Dense(system, orbit).passages(0))
     assert end - begin == pytest.approx(0.02, abs=1e-9)
+
+
+def test_excursions_that_end_take_their_intervals_with_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the mesh beyond a touch is wanted with MIN_INTERVALS fewer for each excursion gone."""
+    lost, spread = [], touch.spread
+
+    def noted(orbit: Orbit, wanted: Array, events: tuple[EventNode, ...], *rest: Any) -> Mesh:
+        gone = (len(orbit.mesh.events) - len(events)) // 2
+        lost.append((orbit.mesh.ntst - float(wanted @ orbit.grid.width), gone))
+        return spread(orbit, wanted, events, *rest)
+
+    monkeypatch.setattr(touch, "spread", noted)
+    per.trace(stopped(1e3), "Omega", (0.6, 0.8), start=0.8)
+    assert lost and all(gone > 0 for _, gone in lost)
+    assert [less for less, _ in lost] == pytest.approx([touch.MIN_INTERVALS * gone for _, gone in lost])

@@ -11,6 +11,7 @@ from support.cantilevers import cantilever
 import periodic as per
 import symbolic as sym
 from periodic.condensed import refinement
+from periodic.condensed.estimate import ContactError
 
 
 def stop(tip: Any) -> list[sym.Part]:
@@ -49,3 +50,23 @@ def test_too_many_unknowns_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> No
     found = per.trace(system, "Omega", (3.2, 3.3), start=3.2, tol=1e-9)
     assert found.stop.reason is per.Reason.INACCURATE
     assert "over 60 unknown forces and own states" in str(found.stop)
+
+
+def test_multipliers_ask_for_intervals_by_their_order() -> None:
+    """Assert that errors 10 and 1000 times the aim ask for 10^(1/(2s-1)) and its cube as many intervals.
+
+    Multipliers by Radau IIA of s points are of the order 2s - 1 where forces depend on the motion.
+    """
+    run = per.continuation(per.Problem(cantilever(1, stop, damping=0.05), "Omega", (3.2, 3.3)), tol=1e-6)
+    solver = run.solver
+    solution = solver.at_parameter(next(run).orbit, 1.0)
+    assert len(solution.orbit.phases)
+    method, aim, finest = solver.discretisation, refinement.AIM * 1e-6 / refinement.SAFETY, []
+    for ratio in (1.0, 10.0, 1000.0):
+        error = ContactError(0.0, ratio * aim, variation=ratio * aim)
+        asked = method.refine(solver.problem.system, solution.orbit, error)
+        assert isinstance(asked, refinement.CondensedRefinement)
+        finest.append(asked._wanted.max())
+    order = 2 * solution.orbit.mesh.scheme.ncol - 1
+    assert finest[1] / finest[0] == pytest.approx(10 ** (1 / order), rel=1e-9)
+    assert finest[2] / finest[0] == pytest.approx(1000 ** (1 / order), rel=1e-9)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -102,3 +104,17 @@ def test_fewest_harmonics_are_for_each_period(harmonics: int, periods: int, leas
     method = HB(harmonics=harmonics).at(1e-6)
     refinement = method.refine(LinearOscillator(), orbit, ErrorEstimate(0.0, 0.0, 0.0))
     assert refinement.refined().ntst == mesh_for(least, mesh.period).ntst
+
+
+@pytest.mark.parametrize(("least", "expected"), [(4, 9), (12, 12)])
+def test_guess_has_the_harmonics_that_are_heard(least: int, expected: int) -> None:
+    """Assert as many as one ten-thousandth of the motion's span reaches, and no fewer than asked for."""
+    mesh = mesh_for(20, 2 * np.pi)
+    tau = np.linspace(0, 2 * np.pi, 4001)
+    wave = 100 * np.cos(tau) + np.cos(9 * tau) + 1e-3 * np.cos(15 * tau)
+    states = np.column_stack([wave, np.gradient(wave, tau)])
+    system = LinearOscillator()
+    near = series(per.sampled(tau, states, np.zeros((4001, 0)), system.nominal, system=system), mesh)
+    near = replace(near, nodes=near.nodes * [1, 1e-3], stages=near.stages * [1, 1e-3])
+    found = HB(harmonics=least).guess(system, system.nominal, near)
+    assert isinstance(found, FourierOrbit) and found.harmonics == expected
