@@ -56,12 +56,19 @@ class Covering:
     def tests(self, module: Path, line: int) -> list[str]:
         """Return the tests that execute a line, nearest folder first, there the quickest first.
 
-        Of a line that is executed at import, those that execute its function, or anything in the module.
+        Of a line that is executed at import, those that execute its function, or anything in the module; of a
+        module without functions those of its room.
         """
         found = self._executing(module)
         together = _together(ast.parse(module.read_text("utf-8")), line)
         executing = (set().union(*(found.get(k, ()) for k in lines)) for lines in together)
-        return sorted(next(filter(None, executing), set()), key=lambda test: self._rank(module, test))
+        chosen = next(filter(None, executing), None) or self._beside(module)
+        return sorted(chosen, key=lambda test: self._rank(module, test))
+
+    def _beside(self, module: Path) -> set[str]:
+        room = Path("tests") / module.parent
+        every = (f"{owner.replace('.', '/')}.py::{name}" for owner, name in self._seconds)
+        return {test for test in every if Path(test.partition("::")[0]).parent == room}
 
     def _executing(self, module: Path) -> dict[int, set[str]]:
         found: dict[int, set[str]] = {}

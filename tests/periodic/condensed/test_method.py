@@ -12,6 +12,8 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 import symbolic as sym
 from periodic.condensed.floquet import LASTING
+from periodic.condensed.operator import Condensed
+from periodic.tracing.suited import suited
 
 
 @cache
@@ -110,3 +112,19 @@ def test_journal_has_the_leading_multipliers(tmp_path: Path) -> None:
     system = cantilever(1, cubic)
     of = per.trace(system, "Omega", (3.0, 3.05), tol=1e-5, watch=per.Watch(journal=journal))
     assert len(per.recovered(journal).points) == len(of.points)
+
+
+def test_increments_are_periodic() -> None:
+    """Assert that what answers a step ends where it begins: of the equations, and of states that lack."""
+    system, orbit = cantilever(1, cubic), branch(1)[2].orbit
+    method = per.Collocation().at(1e-6)
+    problem, method = suited(method, per.Problem(system, "Omega", (3.0, 8.0)))
+    operator = method.linearise(problem.system, orbit, problem.free)
+    assert isinstance(operator, Condensed)
+    held = [per.Amplitude("tip").linearise(problem.system, orbit, problem.free)]
+    places = operator.system.places
+    lacking = np.random.default_rng(1).standard_normal((*orbit.stages.shape[:2], len(places)))
+    for found in (operator.answered(held, lacking), operator.solve(held, np.ones((2, 1)))[0]):
+        assert np.abs(found.nodes).max() > 0
+        assert found.nodes[0] == pytest.approx(found.nodes[-1], rel=1e-9, abs=1e-13)
+        assert found.nodes[1:] == pytest.approx(found.stages[:, -1], rel=1e-9, abs=1e-13)

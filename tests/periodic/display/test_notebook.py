@@ -56,7 +56,7 @@ def test_point_and_orbit() -> None:
     """Assert the sizes of each signal, and multipliers of the point."""
     point = duffing()[10]
     text = point._repr_html_()
-    assert text.endswith(point.orbit._repr_html_()) and f"{point.multipliers[0]:.5g}" in text
+    assert text.endswith(point.orbit._repr_html_()) and f", multipliers {point.multipliers[0]:.5g}" in text
     (row, *_) = [[cell.text for cell in row] for row in parsed(text).iter("tr")][1:]
     assert row[0] == "x (m)" and float(str(row[3])) == pytest.approx(point.peak_to_peak("x"), rel=1e-3)
 
@@ -68,6 +68,7 @@ def test_equilibria() -> None:
     headings = [cell.text for cell in parsed(branch._repr_html_()).iter("th")]
     assert headings == [None, "k (N/m)", "x (m)", "Re lambda max (1/s)", "stable"]
     assert "equilibrium" in branch[0]._repr_html_()
+    assert ", eigenvalues (1/s) " in branch[0]._repr_html_()
 
 
 def test_sketch_keeps_within_its_frame() -> None:

@@ -228,6 +228,10 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
         "harmonics of Samples is 2; it must be a whole number from 1 to 1",
     ),
     (
+        lambda: sym.Samples((1.0, 2.0, 3.0, 4.0, 5.0), harmonics=0),
+        "harmonics of Samples is 0; it must be a whole number from 1 to 2",
+    ),
+    (
         lambda: sym.FourierSeries(),
         "cosines of a FourierSeries is (); it must be at least one number, or sines given",
     ),

@@ -1,0 +1,50 @@
+"""How long a mass sticks, foreseen from where it comes to rest, where the rest of the motion is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symbolic as sym
+from periodic.collocation.stick import _stretch
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import uniform
+from periodic.orbit.scheme import Scheme
+from periodic.system import index_of, slides_of
+
+
+@pytest.mark.parametrize("begin", [0.0, 0.5])
+@pytest.mark.parametrize("side", [1, -1])
+def test_release_of_a_mass_that_another_pulls(side: int, begin: float) -> None:
+    """Assert where a spring pulls a mass off, to 1e-4.
+
+    A mass at x = 0 on friction F = 1, joined by a spring 1 to a mass 1 that begins at y = 0, y' = 1.5 beside
+    it; while x sticks y = 1.5 sin(tau - begin), and x comes off where that is 1.
+    """
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    model = sym.Mass(x, 1.0) + sym.Mass(y, 1.0) + sym.Spring(x, 1.0, to=y) + sym.CoulombFriction(x, 1.0)
+    system = sym.compile(model + sym.HarmonicForce(x, 0.0))
+    parameter = system.nominal
+    parameter[index_of(system, "Omega")] = 1.0
+    orbit = at_rest(system, uniform(Scheme(), 8), parameter)
+    names = [state.name for state in system.states]
+    state = np.zeros(len(names))
+    state[names.index("y'")] = side * 1.5
+    (switch,) = slides_of(system)
+    found = _stretch(system, orbit, switch, state, begin)
+    assert found.release is not None
+    assert found.release[1] == pytest.approx(begin + np.arcsin(1 / 1.5), abs=1e-4)
+
+
+def test_stretch_without_end() -> None:
+    """Assert that a mass which is pulled less than friction holds is not released within a period."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    model = sym.Mass(x, 1.0) + sym.Mass(y, 1.0) + sym.Spring(x, 1.0, to=y) + sym.CoulombFriction(x, 1.0)
+    system = sym.compile(model + sym.HarmonicForce(x, 0.0))
+    orbit = at_rest(system, uniform(Scheme(), 8), system.nominal)
+    names = [state.name for state in system.states]
+    state = np.zeros(len(names))
+    state[names.index("y'")] = 0.9
+    (switch,) = slides_of(system)
+    found = _stretch(system, orbit, switch, state, 0.0)
+    assert found.release is None and found.size == np.inf
