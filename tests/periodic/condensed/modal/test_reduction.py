@@ -51,7 +51,7 @@ def test_slow_forces_are_followed() -> None:
 
 
 def test_which_are_left_out() -> None:
-    """Assert that fast modes go whose static share, the weakest first, is a tenth of the tolerance at most."""
+    """Assert that fast modes go whose static share, the weakest first, is a tenth of the tolerance."""
     exponents = np.array([-1.0, -100.0, -200.0, -400.0]) + 5j
     outputs = np.abs(exponents) * np.array([[1e-9, 1.0, 2e-4, 1e-4]])
     modes = Modes(exponents, np.ones((4, 1), complex), outputs + 0j, np.zeros((1, 1)), np.zeros((1, 1)))
