@@ -38,7 +38,8 @@ def beam(
     mass_per_length : float
         rho A in kg/m.
     elements : int
-        Number of elements.
+        Number of elements. Rounding of the stiffness matrix, of condition n^4, changes the first frequency by
+        6e-5 with 1000 of them and leaves nothing of it with 10 000.
     left, right : {"free", "pinned", "clamped"}
         Its ends: pinned without deflection, clamped without slope either.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import tracemalloc
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import symbolic as sym
 from periodic import ArclengthControl, Branch, trace
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.structures.beams import beam, cubic
+from reports.studies.structures.plane import plane_beam
 
 RANGE = (2.0, 70.0)
 """Of Omega, rad/s: the beam's first three modes lie at 3.5, 22 and 62."""
@@ -40,7 +41,7 @@ def friction(tip: Any) -> sym.Part:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What sits at the tip, the force there, damping, tolerance, sizes, and Omega where it is checked."""
+    """What sits at the tip of which beam, force, damping, tolerance, sizes, Omega where it is checked."""
 
     part: Callable[[Any], sym.Part]
     force: float
@@ -48,10 +49,11 @@ class Case:
     tolerance: float
     elements: tuple[int, ...]
     at: float
+    bare: Callable[[int], sym.Matrices] = beam
 
     def system(self, elements: int, *, condense: bool = True) -> sym.CompiledSystem:
         """Return the compiled beam."""
-        structure = sym.Structure(beam(elements), damping=self.damping)
+        structure = sym.Structure(self.bare(elements), damping=self.damping)
         tip = structure["tip"]
         model = structure + self.part(tip) + sym.HarmonicForce(tip, self.force, 3.0)
         return sym.compile(model, condense=condense)
@@ -62,10 +64,11 @@ class Case:
         return trace(system, "Omega", RANGE, start=RANGE[0], tol=self.tolerance, control=control)
 
 
+CUBIC = Case(part=cubic, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200, 1000), at=3.0)
+
 CASES: Mapping[str, Case] = {
-    "cubic spring": Case(
-        part=cubic, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200, 1000), at=3.0
-    ),
+    "cubic spring": CUBIC,
+    "cubic spring, plane stress": replace(CUBIC, elements=(20,), bare=plane_beam),
     "stop": Case(part=stop, force=0.01, damping=0.05, tolerance=1e-5, elements=(10, 50, 200), at=3.5),
     "friction": Case(part=friction, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200), at=4.0),
 }
@@ -75,6 +78,8 @@ def row(name: str, elements: int) -> dict[str, Any]:
     """Return points, time and memory of a branch, and its special points."""
     case = CASES[name]
     system = case.system(elements)
+    part = system.linear
+    assert part is not None
     begin = time.process_time()
     found = case.branch(system)
     took = time.process_time() - begin
@@ -85,7 +90,7 @@ def row(name: str, elements: int) -> dict[str, Any]:
     special = [p for p in found.special_points if p.label.value not in ("EP", "UZ")]
     return {
         "name": name,
-        "freedoms": 2 * elements,
+        "freedoms": part.size // 2,
         "points": len(found),
         "ms": 1e3 * took / len(found),
         "memory": memory / 1e6,
@@ -112,10 +117,11 @@ def compute(tell: Tell) -> Found:
     rows, numbers = [], {}
     for name, case in CASES.items():
         for elements in case.elements:
-            tell(f"{name}, {2 * elements} degrees of freedom")
+            tell(f"{name}, size {elements}")
             rows.append(row(name, elements))
-        tell(f"{name}, time integration")
-        numbers[f"{name}: from time integration"] = apart(name)
+        if case.bare is beam:
+            tell(f"{name}, time integration")
+            numbers[f"{name}: from time integration"] = apart(name)
     return Found(numbers=numbers, rows=rows)
 
 

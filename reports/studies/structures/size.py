@@ -162,6 +162,7 @@ def compute(tell: Tell) -> Found:
 def context(kept: Kept) -> Mapping[str, Any]:
     """Return the ratios that the text tells."""
     cost = {(r["method"], r["freedoms"]): r["ms"] for r in kept.rows}
+    folds = {r["freedoms"]: r["folds"] for r in kept.rows if r["method"] == CONDENSED}
     full, reduced = (next(r for r in reversed(kept.rows) if r["method"] == name) for name in (PLANE, REDUCED))
     both = zip(full["folds"], reduced["folds"], strict=True)
     return {
@@ -170,6 +171,7 @@ def context(kept: Kept) -> Mapping[str, Any]:
         "kept_modes": MODES,
         "error": kept.numbers["error of the reduction"],
         "off": max(abs(a / b - 1) for a, b in both),
+        "rounded": max(abs(a / b - 1) for a, b in zip(folds[2000], folds[400], strict=True)),
         "largest": full,
         "growth": cost[CONDENSED, 2000] / cost[CONDENSED, 20],
         "full": cost[FULL, 4] / cost[CONDENSED, 2000],
