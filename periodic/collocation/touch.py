@@ -14,7 +14,7 @@ Systems, 2008, chapter 7.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,9 @@ SYMMETRIC = 1e-7
 BRIEF = 2.0
 """Excursions at most so many times as long as one that ends end with it, or are about to."""
 
+NEARLY = 0.1
+"""Length (rad) of an excursion that a step may end whose depth, in a guess, goes before its length."""
+
 ALIKE = 1e-3
 """Excursions whose lengths differ by this part end at once."""
 
@@ -63,6 +66,7 @@ class Birth:
     shortest: float
     ripple: float = 0.0
     short_of: float = 0.0
+    otherwise: Change | None = None
 
     touches = True
     strict = True
@@ -115,6 +119,7 @@ class Meeting:
 
     touches = False
     strict = False
+    otherwise = None
 
     @property
     def final(self) -> bool:
@@ -258,6 +263,23 @@ def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Chan
     beyond it is none of the system, on this mesh.
     """
     return _birth(system, before, after, shortest) or _meeting(system, before, after, shortest)
+
+
+def or_meeting(system: System, birth: Birth, before: Orbit, after: Orbit) -> Birth:
+    """Return a touch, and if it may be that of an excursion which ends, that one's end as another way."""
+    meeting = _meeting(system, before, after, birth.shortest)
+    if meeting is None or not _within(after, meeting, birth):
+        return birth
+    short = before.mesh.segment_lengths(before.phases)[meeting.segment] < NEARLY
+    return replace(birth, otherwise=meeting) if short else birth
+
+
+def _within(orbit: Orbit, meeting: Meeting, birth: Birth) -> bool:
+    """Whether a touch may be that of an excursion which ends."""
+    begin, switch = orbit.phases[meeting.segment], birth.extremum.switch
+    length = orbit.mesh.segment_lengths(orbit.phases)[meeting.segment]
+    inside = bool(np.mod(birth.extremum.phase - begin, orbit.mesh.period) <= length)
+    return inside and all(event.switch == switch for event in meeting.events)
 
 
 def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Meeting | None:

@@ -7,11 +7,13 @@ from dataclasses import dataclass, fields, replace
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, scheme_for
+from periodic.collocation.touch import Birth, or_meeting
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
+from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement
@@ -94,11 +96,19 @@ class CondensedCollocation(Collocation):
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
         named = {f.name: getattr(found, f.name) for f in fields(found)}
+        if isinstance(operator, Condensed):
+            share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
+            named["rounding"] = max(found.rounding, share * found.by_orbit)
         return ContactError(**named, variation=variation)
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)
         return Condensed(given, event_rows(system, orbit, free), brief=True)
+
+    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
+        """Return the change that `Collocation` tells; a touch within a brief excursion may be its end."""
+        found = super().change(system, before, after)
+        return or_meeting(system, found, before, after) if isinstance(found, Birth) else found
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""

@@ -48,6 +48,13 @@ class Condensed:
         """The largest residual."""
         return max(self.given.local.residual, float(np.abs(self.given.affine[:, :, 0]).max()))
 
+    @property
+    def rounding(self) -> float:
+        """About what rounding leaves in the states, relative: phases of fast modes are known no better."""
+        response = self.given.response
+        turned = float(np.abs(response.modes.exponents).max(initial=0.0)) * response.period
+        return float(np.finfo(float).eps * turned * np.sqrt(self.orbit.mesh.ntst))
+
     @cached_property
     def system(self) -> Coupled:
         """The equations of forces and own states in periodic motion."""

@@ -49,6 +49,10 @@ class Change(Protocol):
         """Whether orbits past it on the same mesh are none of the system."""
 
     @property
+    def otherwise(self) -> Change | None:
+        """What it is where no orbit meets its condition, if anything."""
+
+    @property
     def final(self) -> bool:
         """Whether the branch cannot be followed nearer to the change than where the step ends."""
 

@@ -70,6 +70,7 @@ class FirstImpact:
     shortest: float
 
     touches = True
+    otherwise = None
     strict = True
     final = True
 
@@ -110,6 +111,7 @@ class LastImpact:
     shortest: float
 
     touches = False
+    otherwise = None
     strict = False
 
     @property

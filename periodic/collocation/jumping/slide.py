@@ -113,6 +113,7 @@ class Beginning:
 
     final = True
     strict = True
+    otherwise = None
 
     @property
     def condition(self) -> SideCondition:
@@ -173,6 +174,7 @@ class Ending:
     shortest: float
 
     touches = False
+    otherwise = None
 
     @property
     def condition(self) -> SideCondition:

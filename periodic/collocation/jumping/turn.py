@@ -25,6 +25,7 @@ class LastTurn:
     shortest: float
 
     touches = False
+    otherwise = None
     strict = False
 
     @property

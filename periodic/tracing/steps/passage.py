@@ -62,6 +62,9 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
     for _ in range(TOUCHES):
         guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
         found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), ITERATIONS)
+        if not found.ok and change.otherwise is not None:
+            change, near = change.otherwise, None
+            continue
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)

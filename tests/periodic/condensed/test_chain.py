@@ -13,7 +13,7 @@ from support.cantilevers import cantilever
 import periodic as per
 import symbolic as sym
 from periodic.collocation.event import event_rows
-from periodic.condensed import floquet
+from periodic.condensed import floquet, operator
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
 
@@ -44,12 +44,13 @@ def test_is_the_same_as_all_equations_at_once(at_tip: Any, monkeypatch: pytest.M
     assert orbit.mesh.events
     found = []
     for chained in (True, False):
-        monkeypatch.setattr(floquet, "pays", lambda _, chained=chained: chained)
-        operator = Condensed(Linearised.about(system, orbit, ()), event_rows(system, orbit, ()))
-        increment, kernel = operator.solve([], np.array([[1.0, 0.0]]))
-        values = np.linalg.eigvals(operator.fundamental[-1])
-        found.append((increment.nodes, increment.phases, np.sort_complex(values), operator.fundamental))
-        assert not np.any(kernel.nodes) and (operator.leading.floquet.chain is not None) == chained
+        for module in (floquet, operator):
+            monkeypatch.setattr(module, "pays", lambda _, chained=chained: chained)
+        equations = Condensed(Linearised.about(system, orbit, ()), event_rows(system, orbit, ()))
+        increment, kernel = equations.solve([], np.array([[1.0, 0.0]]))
+        values = np.linalg.eigvals(equations.fundamental[-1])
+        found.append((increment.nodes, increment.phases, np.sort_complex(values), equations.fundamental))
+        assert not np.any(kernel.nodes) and (equations.leading.floquet.chain is not None) == chained
     for ours, other in zip(*found, strict=True):
         assert np.abs(ours - other).max() < 1e-10 * max(1.0, float(np.abs(other).max()))
 

@@ -72,3 +72,20 @@ def test_special_points() -> None:
     """Assert that the branch touches, folds twice in contact and parts, in this order."""
     labels = [point.label for point in branch().special_points if point.label is not per.Label.USER]
     assert [str(label) for label in labels] == ["EP", "GR", "LP", "LP", "GR", "EP"]
+
+
+@pytest.mark.long
+def test_contacts_that_part_and_join_again() -> None:
+    """Assert that a beam between two stops passes where both of its contacts part, and where they join.
+
+    Two at a time by symmetry.
+    """
+    given = sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=10)
+    structure = sym.Structure(given, damping=0.02)
+    tip = structure["tip"]
+    model = structure + sym.Gap(tip, 30.0, -0.01, 0.01) + sym.HarmonicForce(tip, 0.02, 3.0)
+    found = per.trace(sym.compile(model), "Omega", (2.0, 4.0), start=2.0)
+    assert found.stop.reason is per.Reason.BOUND and found.shortfall == ""
+    places = [point.parameter for point in found.labelled("GR")]
+    assert places == pytest.approx([2.051069, 3.262614, 3.272653], abs=2e-6)
+    assert [len(p.orbit.mesh.events) for p in (found.points[0], found.points[-1])] == [0, 4]
