@@ -36,7 +36,7 @@ def said(outcome: Outcome) -> str:
     return f"{place}\n        {told}  ({outcome.seconds:.0f} s, {outcome.asked} tests execute it)"
 
 
-def page(outcomes: Sequence[Outcome], seed: int, commit: str) -> tuple[str, bool]:
+def page(outcomes: Sequence[Outcome], seed: int, commit: str, limit: float) -> tuple[str, bool]:
     """Return the page in Markdown, and whether every mutant that changes a result is noticed."""
     fates = Counter(map(fate, outcomes))
     changing = fates[NOTICED] + fates[SURVIVED]
@@ -46,7 +46,8 @@ def page(outcomes: Sequence[Outcome], seed: int, commit: str) -> tuple[str, bool
         "# Mutants: tests that would notice",
         "",
         f"{len(outcomes)} small changes of `symbolic/` and `periodic/`, drawn at random (seed {seed}) from",
-        f"commit `{commit}`, each held against the tests that execute the changed line (`make mutants`).",
+        f"commit `{commit}`, each held against the tests that execute the changed line, for",
+        f"about {limit:.0f} s of the processor at the most (`make mutants`).",
         f"{fates[SAME]} change no result. **Of the {changing} others {found} were noticed as they were",
         f"drawn ({found / max(changing, 1):.0%}), {fates[NOTICED]} with tests written for the others**;",
         "how many of other mutants are noticed is for another seed to tell (`make mutants SEED=1`).",

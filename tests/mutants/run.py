@@ -75,7 +75,7 @@ def main() -> int:
                 out.write(json.dumps(asdict(outcomes[place])) + "\n")
         found.append(outcomes[place])
         print(f"{number:3} {said(found[-1])}", flush=True)
-    text, all_noticed = page(found, asked.seed, commit)
+    text, all_noticed = page(found, asked.seed, commit, asked.limit)
     if asked.page:
         (ROOT / asked.page).write_text(text, "utf-8")
     print(text.partition("\n## ")[0])

@@ -89,10 +89,14 @@ def test_stop_is_fresh() -> None:
 
 @pytest.mark.long
 def test_rotor_is_fresh() -> None:
-    """Assert the special points of both rotors anew to 1e-7, those of the rub to 1e-6."""
-    hardening, rub = REPORT.kept(FOLDER)["rotor"].rows
-    other = rotor.rubbing(rotor.reduced(rotor.DISCS[1]))
-    made = (hardening, rotor.system(rotor.reduced()), 1e-7), (rub, other, 1e-6)
+    """Assert the special points of three rotors anew to 1e-7, those of the rub and the film to 1e-6."""
+    hardening, rub, film = REPORT.kept(FOLDER)["rotor"].rows
+    ends, ring = rotor.ELEMENTS, rotor.DISCS[1]
+    made = (
+        (hardening, rotor.system(rotor.reduced(ends)), 1e-7),
+        (rub, rotor.rubbing(rotor.reduced(ring)), 1e-6),
+        (film, rotor.floating(rotor.reduced(ring, ends, bearings=(0,), kept=rotor.FEW)), 1e-6),
+    )
     for row, system, close in made:
         found = rotor.special(rotor.branch(system))
         assert [label for label, _ in found] == [label for label, _ in row["special"]]
