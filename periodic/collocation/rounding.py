@@ -20,6 +20,9 @@ TERMS = 4
 """How many times the rounding of the terms that cancel in it a switch may be off its level at the most."""
 
 
+UNTOLD = 0.1
+"""Part of a contact's length that when it begins may be off by, above which its multipliers are not known."""
+
 LIKELY = 2
 """How many times it may well be."""
 
@@ -44,12 +47,16 @@ def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
 def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
     """Return about by how much they are off as contacts begin and end where rounding has it.
 
-    What rounding leaves there adds up along the orbit, with the root of the number of mesh points.
+    What rounding leaves there adds up along the orbit, with the root of the number of mesh points. They are
+    not known where a contact is no longer than that.
     """
-    late, off = 0.0, aside(orbit, rows)
+    late, off, lengths = 0.0, aside(orbit, rows), orbit.mesh.segment_lengths(orbit.phases)
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
         slope = abs(float(row.nodes[start] @ rate_before(orbit, i)) + float(row.outer[i]))
-        late += float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
+        own = float(off[i]) / slope if slope > 0 and orbit.mesh.events[i].level == 0 else 0.0
+        if own > UNTOLD * min(lengths[i], lengths[i - 1]):
+            return np.inf
+        late += own
     if not late:
         return 0.0
     every = float(np.sqrt(orbit.mesh.ntst))

@@ -100,6 +100,19 @@ def test_last_digits_of_the_parameter() -> None:
         assert judged(case.exact, point, case.names).multipliers < max(1e-8, 3 * point.error.by_orbit)
 
 
+def test_contact_that_is_rounding() -> None:
+    """Assert that nothing is claimed of multipliers where a contact is 1e-7 rad long, and 1e-15 deep."""
+    case = drawn("chains", 1019)
+    branch = traced(case)
+    lengths = [point.orbit.mesh.segment_lengths(point.orbit.phases).min() for point in branch]
+    assert all(
+        np.isinf(point.error.multiplier)
+        for point, length in zip(branch, lengths, strict=True)
+        if length < 1.1e-7
+    )
+    assert verdicts(case, branch, 1019, len(branch)).wrong == []
+
+
 @pytest.mark.long
 def test_rounding_beside_a_touch() -> None:
     """Assert orbits to 1e-14 and multipliers from a contact of 1e-4 rad on, to what is claimed, at k = 2e4.
