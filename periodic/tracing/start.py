@@ -136,7 +136,8 @@ class Start:
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
-        return resting(problem.system, guess)
+        rest = resting(problem.system, guess)
+        return None if rest is None else self._adopted(self.solver, rest)
 
     def _settled(self, guess: Orbit) -> Orbit | None:
         """A simulation that is left to settle; none of free oscillations and equilibria."""

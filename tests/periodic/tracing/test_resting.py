@@ -65,9 +65,10 @@ def test_load_that_cannot_be_borne() -> None:
 
 
 def test_rotor_in_a_journal_bearing() -> None:
-    """Assert its first orbit, half a clearance wide, and multipliers by three methods to 8 digits."""
+    """Assert its first orbit and multipliers by collocation, shooting and harmonics to 8 digits."""
     found = []
-    for condense, method in ((True, None), (False, None), (False, per.Shooting())):
+    harmonics = per.HarmonicBalance()
+    for condense, method in ((True, None), (False, None), (False, per.Shooting()), (False, harmonics)):
         branch = per.trace(rotor(condense), "speed", (100.0, 101.0), tol=1e-9, method=method, control=FEW)
         assert len(branch) == 2
         times = np.linspace(0.0, 2 * np.pi / 100.0, 50)
