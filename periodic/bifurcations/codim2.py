@@ -44,11 +44,16 @@ def second_at(solution: Solution, at: float) -> float:
     The trivial multiplier is left out. Two that coincide are known to the square root of the multipliers'
     error only, their sum to the error itself.
     """
-    found = solution.spectrum.nontrivial
-    factors = (found - at) / (1 + np.abs(found))
-    value = float(np.poly(factors)[-2].real)
+    factors, value = _second(solution, at)
     both_out = np.poly(-np.abs(factors))[-3:-2].sum()  # products of all but two
     return value if abs(value) > noise(solution) * both_out else 0.0
+
+
+def _second(solution: Solution, at: float) -> tuple[Complex, float]:
+    """The factors d_i, and the sum whatever its error."""
+    found = solution.spectrum.nontrivial
+    factors = (found - at) / (1 + np.abs(found))
+    return factors, float(np.poly(factors)[-2].real)
 
 
 def _cosine(solution: Solution) -> float:
@@ -73,19 +78,37 @@ def _torus_beside(solution: Solution) -> float:
     return torus_of(_beside(solution), noise(solution))
 
 
+def _sharp_beside(solution: Solution) -> float:
+    return torus_of(_beside(solution), 0.0)
+
+
+def _resonance(label: Label, at: float) -> TestFunction:
+    """Where two multipliers are 1, or -1, on a curve that holds one there."""
+    return TestFunction(
+        label=label,
+        value=lambda solution: second_at(solution, at),
+        sharp=lambda solution: _second(solution, at)[1],
+    )
+
+
+def _torus_too(label: Label) -> TestFunction:
+    """Where a pair passes the circle on a curve that holds another multiplier there."""
+    return TestFunction(label=label, value=_torus_beside, sharp=_sharp_beside, genuine=_complex_beside)
+
+
 def _complex_beside(solution: Solution) -> bool:
     return complex_pair(_beside(solution))
 
 
 FOLDS = (
-    TestFunction(label=Label.RESONANCE_1, value=lambda solution: second_at(solution, 1.0)),
+    _resonance(Label.RESONANCE_1, 1.0),
     TestFunction(label=Label.FOLD_DOUBLING, value=doubling),
-    TestFunction(label=Label.FOLD_TORUS, value=_torus_beside, genuine=_complex_beside),
+    _torus_too(Label.FOLD_TORUS),
 )
 DOUBLINGS = (
-    TestFunction(label=Label.RESONANCE_2, value=lambda solution: second_at(solution, -1.0)),
+    _resonance(Label.RESONANCE_2, -1.0),
     TestFunction(label=Label.FOLD_DOUBLING, value=branching),
-    TestFunction(label=Label.DOUBLING_TORUS, value=_torus_beside, genuine=_complex_beside),
+    _torus_too(Label.DOUBLING_TORUS),
     GENERALISED,
 )
 TORI = (

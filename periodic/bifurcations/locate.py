@@ -166,14 +166,14 @@ def _root(
     found = crossing(stretch, span, test) if test.singular and ends[0] * ends[1] < 0 else None
     if found is None and test.singular and stretch.base.orbit.equilibrium and ends[0] * ends[1] < 0:
         raise RejectedError("the step leads to another branch, which crosses this one")
-    return found or stretch.root(span, test.value, test.precision * ds, aside=test is not FOLD)
+    return found or stretch.root(span, test.placed, test.precision * ds, aside=test is not FOLD)
 
 
 def _again(solver: Solver, near: Solution, ds: float, test: TestFunction) -> Solution:
     """Locate the zero of a test function about a solution near it."""
     around = Stretch(solver, near, {0.0: near})
     for reach in (0.05 * ds, 0.5 * ds):
-        ends = [test.value(around.at(side)) for side in (-reach, reach)]
+        ends = [test.placed(around.at(side)) for side in (-reach, reach)]
         if ends[0] * ends[1] < 0:
             return _root(around, (-reach, reach), ds, test)[1]
     raise RejectedError("a special point was not found again on a finer mesh")

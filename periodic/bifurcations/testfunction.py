@@ -42,6 +42,8 @@ class TestFunction:
         parabola would touch 0.
     local : callable, optional
         A function of the same sign that is to be followed there, smooth about a change of sign.
+    sharp : callable, optional
+        The function where `value` is 0 for its noise: it places a change of sign that is beyond doubt.
     touches : callable
         Whether a turn of the branch, between a base and a new solution, is of that kind.
     singular : bool
@@ -57,6 +59,7 @@ class TestFunction:
     twice: Callable[[Solution, Solution], bool] = lambda base, new: False
     dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
     local: Callable[[Solution], float] | None = None
+    sharp: Callable[[Solution], float] | None = None
     touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
     singular: bool = False
     name: str = ""
@@ -65,6 +68,11 @@ class TestFunction:
     def key(self) -> str:
         """What tells it from others along a branch."""
         return f"{self.label} {self.name}"
+
+    @property
+    def placed(self) -> Callable[[Solution], float]:
+        """The function whose zero is sought within a change of sign."""
+        return self.sharp or self.value
 
     def margin(self, solution: Solution) -> float:
         """Return how far a solution is from such a point.

@@ -32,6 +32,12 @@ def torus(solution: Solution) -> float:
     return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0
 
 
+def _sharp(solution: Solution) -> float:
+    """The same of products that are known without error."""
+    spectrum = solution.spectrum
+    return torus_of(spectrum.nontrivial, 0.0) if spectrum.known else 0.0
+
+
 @cache
 def _both(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """First and second of all pairs."""
@@ -91,6 +97,7 @@ TORUS = TestFunction(
     value=torus,
     genuine=_genuine,
     local=_pair_nearest_the_circle,
+    sharp=_sharp,
     twice=lambda base, new: bool(_dips(base, new)),
     dips=_dips,
 )

@@ -33,6 +33,14 @@ def test_two_tori_within_a_step(begin: float) -> None:
     assert places(branch, Label.TORUS) == pytest.approx([0.30, 0.36], rel=1e-7)
 
 
+@pytest.mark.parametrize("begin", [0.0, 0.2])
+def test_torus_is_placed_as_multipliers_are_known(begin: float) -> None:
+    """Assert that log |mu| = (.03^2 - (mu - .33)^2) T/2 is 0 within the multipliers' error."""
+    (torus,) = per.trace(growing(), "mu", (begin, 0.34), tol=1e-4).labelled(Label.TORUS)
+    growth = (9e-4 - (torus.parameter - 0.33) ** 2) * np.pi / 0.7
+    assert abs(growth) < torus.error.multiplier < 1e-4
+
+
 INNER, A, B, D1, D2 = 10, 2.0, 5.45, 0.008, 0.004
 """Brusselator with diffusion between fixed ends, so many inner points."""
 
