@@ -104,7 +104,7 @@ class Chain:
         if right is not None:
             found += self.inverse @ self._by_interval(right)
         count, leaves, now = len(exponents), self._leaves, 0.0
-        z, grown = modes, response.table.growth[self.intervals, :, -1]
+        z, grown = modes, response.grown[self.intervals]
         for i, interval in enumerate(self.intervals):
             begin = response.start[interval]
             if i == 0 or interval > self.intervals[i - 1] + 1:

@@ -244,7 +244,12 @@ class Leading:
     def basis(self) -> Array:
         """Orthonormal basis of the subspace, (coordinates, r)."""
         size = len(self.floquet.kept)
-        return np.eye(size) if size <= SMALL else invariant(self.floquet, LEADING, LIGHT)
+        return np.eye(size) if self._all else invariant(self.floquet, LEADING, LIGHT)
+
+    @property
+    def _all(self) -> bool:
+        """Whether it is the whole space, in its own coordinates."""
+        return len(self.floquet.kept) <= SMALL
 
     @property
     def monodromy(self) -> Array:
@@ -258,7 +263,7 @@ class Leading:
     @cached_property
     def fundamental(self) -> Array:
         """The motion that begins with the basis, in that basis: (N+1, r, r)."""
-        return np.asarray(self.basis.T @ self._motion)
+        return self._motion if self._all else np.asarray(self.basis.T @ self._motion)
 
     @cached_property
     def states(self) -> Array:

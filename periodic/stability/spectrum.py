@@ -75,10 +75,27 @@ class Pair:
         """Return the member of another orbit's pairs to which this one leads."""
         both = ((other, sign) for sign in (1, -1) for other in others)
         found, sign = min(both, key=lambda choice: self._apart(*choice))
-        if sign > 0:
-            return found
-        left = None if found.left is None else found.left.conj()
-        return replace(found, argument=-found.argument, turned=-found.turned, left=left)
+        return found if sign > 0 else found.conjugate()
+
+    def conjugate(self) -> Pair:
+        """Return the pair's other member."""
+        left = None if self.left is None else self.left.conj()
+        return replace(self, argument=-self.argument, turned=-self.turned, left=left)
+
+
+FEW = 3
+"""Up to so many pairs each finds its nearest by itself sooner than all of them in arrays."""
+
+
+def nearest(pairs: Sequence[Pair], others: Sequence[Pair]) -> list[Pair]:
+    """Return the members of another orbit's pairs to which each of these leads, see `Pair.nearest`."""
+    if len(pairs) <= FEW:
+        return [pair.nearest(others) for pair in pairs]
+    own, other = (np.array([(pair.argument, pair.turned) for pair in some]) for some in (pairs, others))
+    least, along = np.moveaxis(np.concatenate([other, -other]) - own[:, None], 2, 0)
+    apart = np.abs(least + math.tau * np.round((along - least) / math.tau)) + np.abs(along)
+    chosen = map(int, apart.argmin(axis=1))
+    return [others[k] if k < len(others) else others[k - len(others)].conjugate() for k in chosen]
 
 
 @dataclass(frozen=True, eq=False)

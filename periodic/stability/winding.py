@@ -20,7 +20,7 @@ import numpy as np
 
 from periodic.checks import positive
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum
+from periodic.stability.spectrum import Complex, Pair, Spectrum, nearest
 
 ORDER = 4
 """What a cubic does not show goes with this power of the step."""
@@ -222,5 +222,5 @@ def _matched(before: Spectrum, after: Spectrum) -> list[tuple[Pair, Pair]]:
     A pair may be born of two real multipliers or end in them.
     """
     if len(before.pairs) <= len(after.pairs):
-        return [(a, a.nearest(after.pairs)) for a in before.pairs]
-    return [(b.nearest(before.pairs), b) for b in after.pairs]
+        return list(zip(before.pairs, nearest(before.pairs, after.pairs), strict=True))
+    return list(zip(nearest(after.pairs, before.pairs), after.pairs, strict=True))

@@ -168,7 +168,7 @@ class Flexibility:
         response, size = self.response, len(chosen)
         shown = response.shown[inside][..., chosen]
         left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)
-        decay = response.table.growth[inside][:, chosen, -1]
+        decay = response.grown[inside][:, chosen]
         own, width, found = np.zeros_like(left).reshape(size, -1), left[0, 0].size, []
         for i, rows in enumerate(shown):
             found.append(real_product(rows.reshape(-1, size), own))

@@ -99,6 +99,12 @@ class Response:
         return self._table.take(self._distinct[1], len(self.modes.exponents))
 
     @cached_property
+    def grown(self) -> Complex:
+        """How the modes grow in each interval, (N, J)."""
+        growth = self._table.growth[:, -1].reshape(-1, len(self.modes.exponents))
+        return np.asarray(growth[self._distinct[1]])
+
+    @cached_property
     def closing(self) -> Complex:
         """1/(1 - exp(lambda T)): how a mode's periodic motion follows from that of one period, (J,)."""
         with np.errstate(all="ignore"):
@@ -170,7 +176,7 @@ class Response:
         flat = weights.reshape(count, points * s, r)
         size = len(self.modes.exponents)
         seen = np.swapaxes(self.shown.reshape(count, -1, size), 1, 2) @ flat
-        driven, grown = _joined(seen[::-1].copy(), self.table.growth[::-1, :, -1].copy())
+        driven, grown = _joined(seen[::-1].copy(), self.grown[::-1].copy())
         ends = np.zeros_like(driven)
         # the period before takes what all of this one asks for at its beginning
         ends[0] = np.asarray(closing).reshape(-1, 1) * driven[-1]
@@ -309,7 +315,7 @@ class Response:
 
     def _chain(self, left: Complex) -> tuple[Complex, Complex]:
         """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J)."""
-        return _joined(left.copy(), self.table.growth[:, :, -1].copy())
+        return _joined(left.copy(), self.grown.copy())
 
     @cached_property
     def growth(self) -> Complex:

@@ -92,6 +92,11 @@ class NativeResponse(Response):
         return Table(*(self._each(name) for name in _LAID[:3]))
 
     @cached_property
+    def grown(self) -> Complex:
+        """How the modes grow in each interval, (N, J)."""
+        return np.asarray(self._laid[1]["growth"][:, :, -1][self._distinct[1]])
+
+    @cached_property
     def local(self) -> Array:
         """States at the points of an interval by its own forces, (N, a, s, b, k)."""
         return self._each("local")

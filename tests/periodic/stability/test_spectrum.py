@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.spectrum import Pair, Spectrum, nearest
 from periodic.stability.winding import meetings
 
 
@@ -40,3 +40,21 @@ def test_pairs_that_pass_each_other_meet(way: int) -> None:
     assert meeting.place == pytest.approx(0.6 if way > 0 else 0.4, abs=1e-9)
     assert meeting.growth == pytest.approx(0.0, abs=1e-12)
     assert meetings(before, turning(0.55, 2 * np.pi + 0.85, mixed=0.2)) == []
+
+
+def test_each_of_many_pairs_leads_where_it_does_alone() -> None:
+    """Assert the nearest of 30 pairs, or its conjugate, for all of 25 at once as for each by itself."""
+    random = np.random.default_rng(1)
+
+    def drawn(count: int) -> list[Pair]:
+        both = random.uniform([0.0, -30.0], [np.pi, 30.0], (count, 2)).tolist()
+        return [
+            Pair(argument, 1.0, 1.0, turned, np.array([1j]), k) for k, (argument, turned) in enumerate(both)
+        ]
+
+    pairs, others = drawn(25), drawn(30)
+    found, alone = nearest(pairs, others), [pair.nearest(others) for pair in pairs]
+    assert {pair.place for pair in found if pair.argument < 0}
+    for ours, theirs in zip(found, alone, strict=True):
+        assert (ours.place, ours.argument, ours.turned) == (theirs.place, theirs.argument, theirs.turned)
+        assert np.array_equal(ours.left, theirs.left)
