@@ -67,17 +67,12 @@ class Coupled:
         by_place = self.given.local.forces[:, :, [1 + self.n + place for place in self.places]]
         return np.flatnonzero(by_place.any(axis=(0, 1)))
 
-    @cached_property
     def _by_active(self) -> Array:
         """States that are felt by the active forces, where equations are: (R, s, C a ka)."""
         if self.count == 0:
             return np.zeros((self.points, len(self.felt), 0))
         found = self.flexibility.between(self.felt, self.active).block(self.held, everywhere=self._own)
         return np.asarray(found.reshape(-1, len(self.felt), self.count))
-
-    def _at(self, at: NDArray[np.int_]) -> Array:
-        """Rows of these states at points where equations are, (R, s, C a ka)."""
-        return self._by_active[at] if len(at) < len(self._by_active) else self._by_active
 
     @cached_property
     def _rows_of_forces(self) -> Array:
@@ -127,11 +122,14 @@ class Coupled:
         found[each[first], :, -1, -1] += self.wraps * begun[first]
         return found.reshape(*rates.shape[:2], self.points, -1)
 
-    def _inner(self, rows: Array, at: NDArray[np.int_]) -> Array:
-        """Rows at some points, (R, r, w) of (1, d rate, d state, dy), as rows in u, (R r, size)."""
+    def _inner(self, rows: Array, at: NDArray[np.int_], felt: Array) -> Array:
+        """Rows at some points, (R, r, w) of (1, d rate, d state, dy), as rows in u, (R r, size).
+
+        felt: states that are felt there by the active forces, (R, s, C a ka).
+        """
         n, others = self.n, self.others
         by_place = rows[:, :, [1 + n + self.places[k] for k in self.felt]]
-        inner = by_place @ self._at(at)
+        inner = by_place @ felt
         if len(others):
             own = self._rate_blocks(rows[:, :, 1 + others], at)
             own[np.arange(len(at)), :, at] += rows[:, :, 1 + n + others]
@@ -157,11 +155,16 @@ class Coupled:
     @cached_property
     def matrix(self) -> Array:
         """The equations, (size, size)."""
-        matrix = np.empty((self.size, self.size), dtype=self.kind)
-        matrix[: self.count] = -self._inner(self._rows_of_forces, self.at)
+        return self.assembled()
+
+    def assembled(self) -> Array:
+        """Return them, to be kept by who asks."""
+        matrix, felt = np.empty((self.size, self.size), dtype=self.kind), self._by_active()
+        here = felt[self.at] if len(self.at) < len(felt) else felt
+        np.negative(self._inner(self._rows_of_forces, self.at, here), out=matrix[: self.count])
         matrix[np.arange(self.count), np.arange(self.count)] += 1.0
         if len(self.others):
-            matrix[self.count :] = self._inner(self.given.local.own, np.arange(self.points))
+            matrix[self.count :] = self._inner(self.given.local.own, np.arange(self.points), felt)
         return matrix
 
     @cached_property

@@ -89,9 +89,10 @@ class Floquet:
 
     @cached_property
     def _factors(self) -> Any:
-        if not np.isfinite(self._system.matrix).all():
+        matrix = self._system.assembled()
+        if not np.isfinite(matrix).all():
             raise FloatingPointError("the equations of free motion are not finite")
-        return scipy.linalg.lu_factor(self._system.matrix, check_finite=False)
+        return scipy.linalg.lu_factor(matrix, check_finite=False)
 
     @cached_property
     def _excited(self) -> Array:

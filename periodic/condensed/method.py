@@ -91,7 +91,8 @@ class CondensedCollocation(Collocation):
         part = linear_of(problem.system)
         velocities = () if part is None else part.velocities
         beside = OneSided(self._brief)
-        found = deferred(self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside)
+        given = self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside
+        found = deferred(*given, lengths=True)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])

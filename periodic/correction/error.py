@@ -125,6 +125,7 @@ def deferred(
     only_at_points: tuple[int, ...] = (),
     solved: Solved | None = None,
     kinked: bool | None = None,
+    lengths: bool = False,
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
@@ -133,10 +134,13 @@ def deferred(
     the same parameter but about a fold; `kinked` says whether they do, by default whether the mesh has event
     nodes. The states `only_at_points` count at the orbit's mesh points alone,
     not between them. `solved` linearises and solves in one; by default
-    `periodic.correction.newton.linearised`, with `linearise`.
+    `periodic.correction.newton.linearised`, with `linearise`. `lengths` says whether the constraint holds the
+    lengths of brief excursions too, as it does in steps: at a fold beside a touch these change far more along
+    the branch than the states do.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
+    onto = replace(onto, phases=tangent.phases) if lengths else onto
     across = ArclengthConstraint(fine, onto, 0.0, problem.units(fine), problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
     solve = solved or partial(linearised, linearise)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 import pytest
 from support.cantilevers import cantilever
 
@@ -41,6 +42,24 @@ def test_motion_is_that_of_all_states(
     assert ours.minimum["tip"] == pytest.approx(full.minimum["tip"], abs=digits * span)
     assert abs(max(abs(ours.multipliers)) - max(abs(full.multipliers))) < 10 * digits
     assert len(ours.orbit.phases) == len(full.orbit.phases) > 0
+
+
+def test_fold_beside_a_touch() -> None:
+    """Assert the LP 1e-5 past the GR where a spring engages: to 1e-10, its multipliers to 1e-7.
+
+    Its contact is held by the error estimate, else the orbit would be asked for to 1e-12 (890 intervals).
+    """
+
+    def fold(tol: float) -> per.Point:
+        system = cantilever(10, lambda tip: [sym.OneSidedSpring(tip, 300.0, 0.01)], force=0.02, damping=0.02)
+        few = per.ArclengthControl(max_points=5)
+        return per.trace(system, "Omega", (2.0, 4.0), control=few, tol=tol).labelled(per.Label.FOLD)[0]
+
+    ours, fine = fold(1e-6), fold(1e-8)
+    assert ours.parameter == pytest.approx(fine.parameter, rel=1e-10)
+    apart = np.abs(ours.multipliers[:, None] - fine.multipliers)
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-7
+    assert ours.orbit.mesh.ntst < 500
 
 
 def test_too_many_unknowns_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
