@@ -26,8 +26,14 @@ def pays(system: Coupled) -> bool:
     """Return whether equations are better solved interval by interval than all at once."""
     coordinates = 2 * len(system.given.response.modes.exponents) + len(system.others)
     intervals = system.intervals if len(system.others) else len(system.held)
-    each = system.ncol * (len(system.active) + len(system.others))
-    at_once = system.size**2 * (0.7 * system.size + 4.0 * coordinates)
+    return cheaper(
+        system.size, coordinates, intervals, system.ncol * (len(system.active) + len(system.others))
+    )
+
+
+def cheaper(size: float, coordinates: int, intervals: float, each: int) -> bool:
+    """Return whether so many equations are, of intervals with `each` of them, that begin with coordinates."""
+    at_once = size**2 * (0.7 * size + 4.0 * coordinates)
     return at_once > intervals * (INTERVAL + 4.0 * each * coordinates**2)
 
 

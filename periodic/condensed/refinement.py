@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from periodic.collocation.method import CollocationRefinement
 from periodic.condensed.estimate import ContactError
-from periodic.condensed.linearised import local_rows
+from periodic.condensed.linearised import answer, local_rows
+from periodic.condensed.memory import Memory
 from periodic.correction.error import SAFETY
 from periodic.correction.meshes import AIM
 from periodic.orbit.mesh import EventNode, Mesh
@@ -26,8 +27,8 @@ FEWEST = 16
 """Intervals a period at the least beside contacts: forces that drive the structure are polynomials there."""
 
 
-LARGEST = 3000
-"""Unknowns at the most: their equations are dense, and the error estimate doubles them (288 MB)."""
+LARGEST = 1e9
+"""Bytes that an orbit's equations may take, see `periodic.condensed.memory`."""
 
 
 class CondensedRefinement(CollocationRefinement):
@@ -45,12 +46,12 @@ class CondensedRefinement(CollocationRefinement):
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
-        more = f"; more would be over {LARGEST} unknown forces and own states" if self._limited else ""
+        more = f"; more would take over {LARGEST / 1e9:g} GB of memory" if self._limited else ""
         return super().shortfall + more
 
     @property
     def _limited(self) -> bool:
-        """Whether the orbit needs more intervals than there may be unknowns for."""
+        """Whether the orbit needs more intervals than there is memory for."""
         if self._misplaced or self._most == self.method.ntst_max:
             return False
         wanted = float(self._wanted @ self.orbit.grid.width) if self.system.switches else super()._ntst
@@ -59,17 +60,25 @@ class CondensedRefinement(CollocationRefinement):
     @cached_property
     def _most(self) -> int:
         """Intervals at the most."""
-        part, most = linear_of(self.system), self.method.ntst_max
+        part, most, orbit = linear_of(self.system), self.method.ntst_max, self.orbit
         assert part is not None
-        points, own = self.orbit.mesh.scheme.ncol, self.orbit.nodes.shape[1] - len(part.states)
-        if most * points * (len(part.forces) + own) <= LARGEST:
-            return most
         # the next mesh is FINER at the most
-        if self.orbit.mesh.ntst * points * (len(part.forces) + own) <= LARGEST / FINER:
+        if self._memory(part.size, 1.0).peak(min(most, int(FINER * orbit.mesh.ntst))) <= LARGEST:
             return most
+        response, _ = answer(self.system, orbit, orbit.parameter, (), self.method.tolerance)
         active = self._felt[1]
-        each = points * (len(part.forces) * max(float(active.mean()), 1 / len(active)) + own)
-        return max(self.method.ntst_min, min(most, int(LARGEST / each)))
+        share = max(float(active.mean()), 1 / len(active))
+        modes = len(response.modes.exponents)
+        return max(self.method.ntst_min, self._memory(modes, share).most(most, LARGEST))
+
+    def _memory(self, modes: int, active: float) -> Memory:
+        """What it takes with so many modes, and forces in such a part of the intervals."""
+        part, orbit = linear_of(self.system), self.orbit
+        assert part is not None
+        places, forces = len(part.states), len(part.forces)
+        own = orbit.nodes.shape[1] - places
+        kinked = own > 0 or len(orbit.phases) > 0
+        return Memory(orbit.mesh.scheme.ncol, places, forces, own, modes, active, kinked)
 
     @property
     def _ntst(self) -> int:

@@ -62,13 +62,13 @@ def test_fold_beside_a_touch() -> None:
     assert ours.orbit.mesh.ntst < 500
 
 
-def test_too_many_unknowns_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that meshes grow to no more unknowns than there may be, and that the reason is said."""
-    monkeypatch.setattr(refinement, "LARGEST", 60)
+def test_too_much_memory_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that meshes grow to no more than there may be memory for, and that the reason is said."""
+    monkeypatch.setattr(refinement, "LARGEST", 2e5)
     system = cantilever(1, stop, damping=0.05)
     found = per.trace(system, "Omega", (3.2, 3.3), start=3.2, tol=1e-9)
     assert found.stop.reason is per.Reason.INACCURATE
-    assert "over 60 unknown forces and own states" in str(found.stop)
+    assert "more would take over 0.0002 GB of memory" in str(found.stop)
 
 
 def test_multipliers_ask_for_intervals_by_their_order() -> None:

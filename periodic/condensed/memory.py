@@ -1,0 +1,78 @@
+"""How much memory the orbits of a condensed branch take at their peak, about."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass
+
+from periodic.condensed.chain import cheaper
+from periodic.condensed.floquet import LEADING, SMALL
+
+REAL, COMPLEX = 8.0, 16.0
+"""Bytes of a number."""
+
+KEPT = 6
+"""Orbits that are kept with their equations while a special point is located."""
+
+SOLVING = 6
+"""Matrices at once of equations that are being set up and solved; of an orbit's two systems are kept."""
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What the equations of an orbit are made of.
+
+    Parameters
+    ----------
+    points : int
+        Collocation points of an interval.
+    places, forces, own, modes : int
+        States of the linear part, forces, own states and modes.
+    active : float
+        Part of the intervals that have forces which depend on the motion.
+    kinked : bool
+        Whether errors are those of equations on the halved mesh, as beside kinks and with own states; else
+        these are never made, and the orbit's own all at once.
+    """
+
+    points: int
+    places: int
+    forces: int
+    own: int
+    modes: int
+    active: float
+    kinked: bool
+
+    def peak(self, intervals: int) -> float:
+        """Return the bytes that orbits of so many intervals take, with their error estimates."""
+        return self._matrices(intervals) + intervals * self._each
+
+    def most(self, intervals: int, limit: float) -> int:
+        """Return how many intervals, of at most so many, take no more than `limit` bytes."""
+        return bisect_right(range(1, intervals + 1), limit, key=self.peak)
+
+    @property
+    def _coordinates(self) -> int:
+        return 2 * self.modes + self.own
+
+    def _matrices(self, intervals: int) -> float:
+        """Bytes of equations all at once."""
+        each = self.points * (self.forces + self.own)
+        held = intervals if self.own else self.active * intervals
+        size = self.points * (self.active * self.forces + self.own) * intervals
+        finer = 2 if self.kinked else 1
+        if self.kinked and cheaper(finer * size, self._coordinates, finer * held, each):
+            return 0.0
+        return REAL * size**2 * (2 * KEPT + SOLVING * finer**2)
+
+    @property
+    def _each(self) -> float:
+        """Bytes of the motion in an interval, of which tables are made on the halved mesh as well."""
+        a, c = self.points, self._coordinates
+        followed = c if c <= SMALL else 2 * LEADING
+        tables = COMPLEX * self.modes * a * (self.forces + self.places)
+        tables += REAL * a**2 * self.forces * self.places
+        rows = a * (self.forces + self.own) * (1.0 if self.own else self.active)
+        tables += 2 * REAL * rows * c
+        motion = REAL * c * followed
+        return KEPT * (tables + motion) + max(5 * motion, 2 * tables)
