@@ -6,8 +6,8 @@ from .bifurcations.switching import SwitchError, branched, doubled
 from .bifurcations.testfunction import TestFunction
 from .collocation.kinks import KinkSettings
 from .collocation.method import Collocation
-from .condensed.motion import motion
-from .condensed.recovery import recovery
+from .condensed.whole.motion import motion
+from .condensed.whole.recovery import recovery
 from .conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from .conditions.extremes import Maximum, Minimum, PeakToPeak
 from .conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean

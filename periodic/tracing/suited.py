@@ -7,7 +7,7 @@ from typing import cast
 
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.wider import WholeSystem
+from periodic.condensed.whole.wider import WholeSystem
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem

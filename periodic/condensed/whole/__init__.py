@@ -1,0 +1,1 @@
+"""Condensed orbits seen with all states of the structure."""
