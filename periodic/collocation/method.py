@@ -225,7 +225,8 @@ class Collocation(Discretisation):
         error = found.error
         if error is UNKNOWN:
             return error
-        missing = np.inf if slide.wrong(system, orbit) else 0.0
+        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        missing = np.inf if any(abs(place.value) > own for place in slide.wrong(system, orbit)) else 0.0
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
@@ -295,7 +296,7 @@ class CollocationRefinement(Refinement):
     @cached_property
     def _misplaced(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(slide.wrong(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(slide.wrong(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:

@@ -1,4 +1,4 @@
-"""Rates of a motion at a single point, from the equations."""
+"""Rates of a motion at a single point, and their slopes, from the equations."""
 
 from __future__ import annotations
 
@@ -32,3 +32,16 @@ def rate_at(
         if np.abs(change).max() <= CLOSE * (1 + np.abs(found).max()):
             break
     return found[0, :n]
+
+
+def slope_at(
+    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
+) -> Array:
+    """Return dx'/dx (n, n) there, from x' and z.
+
+    Raises numpy.linalg.LinAlgError where the equations do not determine it.
+    """
+    n = x.shape[1]
+    line = linearise(system, rate[None], x, algebraic[None], phase, orbit.parameter, side[None])
+    matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
+    return np.asarray(-np.linalg.solve(matrix, line.d_state[0])[:n])

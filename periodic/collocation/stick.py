@@ -7,13 +7,14 @@ there, with the part sigma of the jump, -1 < sigma < 1, that keeps s' = 0. It le
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from periodic.collocation.jumping.slide import wrong
-from periodic.collocation.rates import rate_at
+from periodic.collocation.rates import rate_at, slope_at
 from periodic.collocation.sides import STUCK, group, sides, sticks
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -23,8 +24,11 @@ from periodic.system import System, jumps_of, slides_of
 VANISHING = 0.1
 """Part of the bound of what matters below which a stretch of sticking is given up again."""
 
-STEPS = 400
-"""Steps in a period by which the end of a new stretch of sticking is looked for."""
+H = 2 * np.pi / 400
+"""Step (rad) by which the end of a new stretch of sticking is looked for."""
+
+GAMMA = 1 - 1 / np.sqrt(2)
+"""Of ROS2."""
 
 WRONG = 1e-9
 """How far a switch, sigma or a phase may be on the wrong side."""
@@ -65,14 +69,16 @@ def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[P
             found += slip.passages if slip.size > least else ()
     if new:  # beyond a crossing that should stick an orbit tells nothing
         return found + new
-    missed = iter(_missed(system, orbit, switch))
-    for event, phase in missed:
+    held = -np.inf
+    for event, phase in _missed(system, orbit, switch):
+        if phase < held:  # noise of a stop, or the way back from beyond it
+            continue
         stretch = _stretch(system, orbit, switch, orbit.state(np.array([phase]))[0], phase)
         if stretch.release is None:
             found.append((event, phase, 1.0))
         else:
             found += [(event, phase, 1.0), stretch.release] if stretch.size > least else []
-            next(missed, None)  # the way back from beyond a stop
+            held = stretch.release[1]
     return found
 
 
@@ -180,22 +186,22 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
 
 
 def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: float) -> _Stretch:
-    """What sticking at a state comes to: Runge-Kutta steps until sigma reaches 1 or -1."""
+    """What sticking at a state comes to: steps of Rosenbrock's method until sigma reaches 1 or -1."""
     sigma = _sigma(system, state, phase, orbit, switch)
     if not abs(sigma) < 1:
         return _Stretch()
     (up, down), motion = slides_of(system)[switch], _Motion(system, orbit, switch, phase)
     try:
-        speed = min(motion.speeds(state, phase))
+        speed, held = min(motion.speeds(state, phase)), motion.steps(state, phase)
     except np.linalg.LinAlgError:  # the equations do not determine the rates, as without a mass
         return _Stretch()
-    h, x, tau = 2 * np.pi / STEPS, state, phase
+    x, tau = state, phase
     while tau < phase + orbit.mesh.period:
-        x = x + h * motion.rate(x + h / 2 * motion.rate(x, tau, STUCK), tau + h / 2, STUCK)
-        before, sigma, tau = sigma, _sigma(system, x, tau + h, orbit, switch), tau + h
+        x = held(x, tau)
+        before, sigma, tau = sigma, _sigma(system, x, tau + H, orbit, switch), tau + H
         if abs(sigma) >= 1:
             way = 1 if sigma > 0 else -1
-            place = tau - h * float(np.clip((sigma - way) / (sigma - before), 0, 1))
+            place = tau - H * float(np.clip((sigma - way) / (sigma - before), 0, 1))
             release = (EventNode(up if way > 0 else down, way), place, 1.0)
             return _Stretch(release, speed * (place - phase))
     return _Stretch(None, np.inf)
@@ -212,11 +218,34 @@ class _Motion:
 
     def rate(self, state: Array, phase: float, side: float) -> Array:
         """x' there."""
+        guess, at = np.zeros_like(state), np.array([phase])
+        return rate_at(self.system, self.orbit, state[None], guess, self._unknown, at, self._mode(side))
+
+    def steps(self, state: Array, phase: float) -> Callable[[Array, float], Array]:
+        """Steps of H while it sticks, of second order and damped however fast the system's modes are.
+
+        ROS2 (Verwer, Spee, Blom & Hundsdorfer, SIAM J. Sci. Comput. 20 (1999) 1456), which keeps its order
+        with the slope of where the sticking begins.
+        """
+        at, mode, rate = np.array([phase]), self._mode(STUCK), self.rate(state, phase, STUCK)
+        slope = slope_at(self.system, self.orbit, state[None], rate, self._unknown, at, mode)
+        damped = np.linalg.inv(np.eye(len(state)) - GAMMA * H * slope)
+
+        def step(x: Array, tau: float) -> Array:
+            first = damped @ self.rate(x, tau, STUCK)
+            second = damped @ (self.rate(x + H * first, tau + H, STUCK) - 2 * first)
+            return np.asarray(x + H / 2 * (3 * first + second))
+
+        return step
+
+    @property
+    def _unknown(self) -> Array:
+        return self.orbit.algebraic_guess(np.array([self.phase]))[0]
+
+    def _mode(self, side: float) -> Array:
         mode = np.zeros(len(jumps_of(self.system)))
         mode[jumps_of(self.system).index(self.switch)] = side
-        unknown = self.orbit.algebraic_guess(np.array([self.phase]))[0]
-        at = np.array([phase])
-        return rate_at(self.system, self.orbit, state[None], np.zeros_like(state), unknown, at, mode)
+        return mode
 
     def speeds(self, state: Array, phase: float) -> tuple[float, float]:
         """|ds/dtau| on either side."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Literal, TypeVar
 
 import numpy as np
 import scipy
@@ -20,6 +20,12 @@ MOST = 1000
 
 STEP = 0.05
 """Longest step in tau, so that no event is passed over."""
+
+STIFF = 10.0
+"""Modes that turn by so many rad within the longest step are not followed."""
+
+LOOSE = 1e-6
+"""Tolerance from which on they need not be; to a finer one LSODA takes as few steps."""
 
 Mode = TypeVar("Mode")
 """What the equations depend on besides: it is the same between two events."""
@@ -42,12 +48,18 @@ def pieced(
     start: Array,
     phase: Array,
     tolerance: float,
+    *,
+    fastest: float = 0.0,
 ) -> tuple[Array, Array]:
     """Return phases and states, a row each: those asked for, and every jump of the state before and after it.
+
+    fastest: largest |eigenvalue| of the equations' slope, per rad of tau: modes far faster than the steps,
+    which ring and die away, are LSODA's worst case, and Radau IIA's best.
 
     Raises IntegrationError.
     """
     at, y, found = float(phase[0]), start, [(phase[:1], start[None])]
+    method: Literal["Radau", "LSODA"] = "Radau" if fastest * STEP > STIFF and tolerance >= LOOSE else "LSODA"
     left = MOST * math.ceil((phase[-1] - phase[0]) / (2 * math.pi))
     while True:
         later, here = phase[phase > at], events(mode)
@@ -56,7 +68,7 @@ def pieced(
                 rates(mode),
                 (at, phase[-1]),
                 y,
-                method="LSODA",
+                method=method,
                 t_eval=later,
                 events=[_terminal(event.value) for event in here],
                 rtol=tolerance,

@@ -111,7 +111,9 @@ class Flow:
             return [*(impact(k, sides) for k in system.resets), *slips]
 
         sides = () if sliding is None else sliding.begin(float(phase[0]), start)
-        tau, values = pieced(rates, events, sides, start, phase, self.tolerance)
+        slope = np.array(self._rates[1](start, float(phase[0]), parameter))
+        fastest = float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
+        tau, values = pieced(rates, events, sides, start, phase, self.tolerance, fastest=fastest)
         return Trajectory(tau, values[:, :n], values[:, n:])
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:

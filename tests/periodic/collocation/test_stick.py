@@ -39,6 +39,24 @@ def test_release_of_a_mass_that_another_pulls(side: int, begin: float) -> None:
     assert found.release[1] == pytest.approx(begin + np.arcsin(1 / 1.5), abs=1e-4)
 
 
+def test_release_beside_a_fast_mode() -> None:
+    """Assert the same where a part of y rings within a hundredth of a step, and shifts it by 5e-7."""
+    x, y, z = (sym.coordinate(name) for name in "xyz")
+    model = sym.Mass(x, 1.0) + sym.Mass(y, 1.0) + sym.Spring(x, 1.0, to=y) + sym.CoulombFriction(x, 1.0)
+    fast = sym.Mass(z, 1e-6) + sym.Spring(z, 100.0, to=y)
+    system = sym.compile(model + fast + sym.HarmonicForce(x, 0.0))
+    parameter = system.nominal
+    parameter[index_of(system, "Omega")] = 1.0
+    orbit = at_rest(system, uniform(Scheme(), 8), parameter)
+    names = [state.name for state in system.states]
+    state = np.zeros(len(names))
+    state[names.index("y'")] = 1.5
+    (switch,) = slides_of(system)
+    found = _stretch(system, orbit, switch, state, 0.0)
+    assert found.release is not None
+    assert found.release[1] == pytest.approx(np.arcsin(1 / 1.5), abs=1e-4)
+
+
 def test_stretch_without_end() -> None:
     """Assert that a mass which is pulled less than friction holds is not released within a period."""
     x, y = sym.coordinate("x"), sym.coordinate("y")

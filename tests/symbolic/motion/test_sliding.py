@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+import scipy.integrate
 from reference.contact import period
 from support.drawn.contact import Drawn
 
@@ -56,3 +59,23 @@ def test_friction_and_a_wall() -> None:
     end = int(np.abs(motion.phase - (motion.phase[late] + 2 * np.pi)).argmin())
     found = period(model.exact(), 0.5, begin, float(motion.phase[late]))
     np.testing.assert_allclose(found.end, [motion["q0"][end], motion["q0'"][end]], atol=1e-8)
+
+
+def test_fast_modes_need_no_steps_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert a beam's tip on friction, ringing, to 1e-4 of one followed to 1e-10; by Radau."""
+    structure = sym.Structure(
+        sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=3), damping=0.02
+    )
+    tip, asked = structure["tip"], list[str]()
+    parts = structure + sym.CoulombFriction(tip, 0.002) + sym.HarmonicForce(tip, 0.02, 2.0)
+    system = sym.compile(parts, condense=False)
+    solve = scipy.integrate.solve_ivp
+
+    def noted(*given: Any, **options: Any) -> Any:
+        asked.append(options["method"])
+        return solve(*given, **options)
+
+    monkeypatch.setattr(scipy.integrate, "solve_ivp", noted)
+    loose, tight = (sym.simulate(system, settle=0, periods=2, tolerance=tol) for tol in (1e-6, 1e-10))
+    assert asked[0] == "Radau" and asked[-1] == "LSODA"
+    assert np.abs(loose["tip"] - tight["tip"]).max() < 1e-4 * np.ptp(tight["tip"])
