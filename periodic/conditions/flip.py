@@ -42,7 +42,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     Parameters
     ----------
     system : System
-        The equations.
+        The equations of a forced system: the map of an autonomous one is that of a section.
     orbit : Orbit
         The orbit at the doubling, a piecewise polynomial without event nodes.
 

@@ -322,3 +322,5 @@ def test_pendula() -> None:
         determined={**rotating, "torque": per.DoublingCondition()},
     )
     assert curve.column("torque")[-1] == pytest.approx(0.31382985295369, rel=1e-10)
+    (remark,) = curve.remarks
+    assert remark == "generalised period doublings (GPD) are not looked for on orbits of an autonomous system"

@@ -31,12 +31,13 @@ def _simple(solution: Solution) -> bool:
 
 
 def _coefficient(solution: Solution) -> float:
-    """The cubic coefficient; 0 where it is not known: also beside kinks, and of condensed systems.
+    """The cubic coefficient; 0 where it is not known: beside kinks, of condensed and of autonomous systems.
 
     Of these the branch says so in a remark; where the coefficient cannot be computed a warning does.
     """
-    system, orbit = solution.problem.system, solution.orbit
-    if len(orbit.phases) or linear_of(system) is not None or not _simple(solution):
+    problem, orbit = solution.problem, solution.orbit
+    system, known = problem.system, _simple(solution) and not problem.autonomous
+    if len(orbit.phases) or linear_of(system) is not None or not known:
         return 0.0
     try:
         found = flip_coefficient(system, orbit)

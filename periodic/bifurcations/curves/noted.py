@@ -87,9 +87,14 @@ def _real(found: Complex, equilibrium: bool) -> bool:
 
 
 def _flips(points: Sequence[Point], made: Mapping[str, Any]) -> str:
-    condensed = made.get("method", {}).get("is") in CONDENSED
+    """Say of which orbits the cubic coefficient is not known."""
     kinked = sum(len(p.orbit.phases) > 0 for p in points)
-    if not (condensed or kinked):
+    if made.get("method", {}).get("is") in CONDENSED:
+        where = "of a condensed system"
+    elif any(p.trivial is not None for p in points):
+        where = "of an autonomous system"
+    elif kinked:
+        where = f"with kinks, {kinked} of {len(points)} points"
+    else:
         return ""
-    where = "of a condensed system" if condensed else f"with kinks, {kinked} of {len(points)} points"
     return f"generalised period doublings (GPD) are not looked for on orbits {where}"
