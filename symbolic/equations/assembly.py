@@ -19,6 +19,7 @@ import casadi as ca
 
 from symbolic.checks import refusal, typed
 from symbolic.equations.excitation import Excitation, Order
+from symbolic.equations.impulse import struck
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, Place, State, Unknown
@@ -125,6 +126,7 @@ class Assembly:
     switches: list[tuple[SwitchInfo, ca.SX]] = field(default_factory=list, init=False)
     smooth: list[ca.SX] = field(default_factory=list, init=False)
     resets: dict[int, dict[State, ca.SX]] = field(default_factory=dict, init=False)
+    impacts: dict[int, tuple[Motion, ca.SX]] = field(default_factory=dict, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
     structures: list[Body] = field(default_factory=list, init=False)
     places: list[Place] = field(default_factory=list, init=False)
@@ -154,6 +156,8 @@ class Assembly:
                 joint.close(self)
         for structure in self.structures:
             (structure.condense if condense else structure.expand)(self)
+        for k, (motion, after) in self.impacts.items():
+            self.resets[k] = struck(self.motions.values(), motion, after, self.omega)
 
     @contextmanager
     def owned(self, owner: str) -> Iterator[None]:
@@ -532,6 +536,23 @@ class Assembly:
         """
         self.resets[len(self.switches)] = to
         self.switch(name, expression, -1)
+
+    def impact(self, name: str, expression: ca.SX, motion: Motion, after: ca.SX) -> None:
+        """Add a switch at whose fall through 0 an impulse on a coordinate gives it a new velocity.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+        expression : casadi.SX
+            s(x, tau, p), positive but at the event itself.
+        motion : Motion
+            That of the coordinate.
+        after : casadi.SX
+            Its new velocity; those that inertia couples to it change along.
+        """
+        self.impacts[len(self.switches)] = motion, after
+        self.reset(name, expression, {motion.velocity: after})
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

@@ -16,6 +16,8 @@ from symbolic.equations.variables import Coordinate, Parameter, Value
 class RigidStop(Part):
     """Wall that a coordinate does not pass: q <= gap, and dq/dt becomes -e dq/dt where q arrives at the gap.
 
+    Coordinates that inertia couples to q, as in a structure, get what the wall's impulse gives them.
+
     Parameters
     ----------
     q : Coordinate
@@ -52,9 +54,8 @@ class RigidStop(Part):
         e = assembly.parameter(self.restitution, "restitution")
         side, which = (-1, "-gap") if self.below else (1, "gap")
         free = (gap - side * motion.position.symbol) / motion.position.scale
-        assembly.reset(
-            f"impact at {self.q.name} = {which}", free, {motion.velocity: -e * motion.velocity.symbol}
-        )
+        after = -e * motion.velocity.symbol
+        assembly.impact(f"impact at {self.q.name} = {which}", free, motion, after)
         assembly.sketch.wall(self.q, gap, side)
         before = Before(self, gap)
         assembly.joints[before] = before
