@@ -69,8 +69,10 @@ CUBIC = Case(part=cubic, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 
 CASES: Mapping[str, Case] = {
     "cubic spring": CUBIC,
     "cubic spring, plane stress": replace(CUBIC, elements=(20,), bare=plane_beam),
-    "stop": Case(part=stop, force=0.01, damping=0.05, tolerance=1e-5, elements=(10, 50, 200), at=3.5),
-    "friction": Case(part=friction, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200), at=4.0),
+    "stop": Case(part=stop, force=0.01, damping=0.05, tolerance=1e-5, elements=(10, 50, 200, 1000), at=3.5),
+    "friction": Case(
+        part=friction, force=0.1, damping=0.01, tolerance=1e-6, elements=(10, 50, 200, 1000), at=4.0
+    ),
 }
 
 
