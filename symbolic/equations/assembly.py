@@ -19,10 +19,9 @@ import casadi as ca
 
 from symbolic.checks import refusal, typed
 from symbolic.equations.excitation import Excitation, Order
-from symbolic.equations.impulse import struck
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
-from symbolic.equations.terms import Motion, Place, State, Unknown
+from symbolic.equations.terms import Motion, Place, State, Unknown, struck
 from symbolic.equations.units import ANGULAR
 from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
 from symbolic.mistakes import explained

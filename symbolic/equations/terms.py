@@ -1,7 +1,8 @@
-"""What an assembly keeps of states, unknowns and the motions of coordinates."""
+"""What an assembly keeps of states, unknowns and motions of coordinates, and what an impulse does to them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,3 +57,38 @@ class Place:
     freedom: int
     unknown: ca.SX
     unit_force: float
+
+
+def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -> dict[State, ca.SX]:
+    """Return the velocities after an impulse on one coordinate that gives it the velocity `after`.
+
+    With M the mass matrix and e the coordinate, they change by M^-1 e (v+ - v-) / (e^T M^-1 e), in the
+    coordinates that inertia couples to it.
+    """
+    every = list(motions)
+    rates = ca.vertcat(*[m.velocity.derivative for m in every])
+    coupling = ca.jacobian(ca.vertcat(*[m.force for m in every]), rates)
+    own = ca.diag(ca.vertcat(*[m.mass for m in every]))
+    mass = own - ca.substitute(coupling, omega, ca.SX(1))  # forces have rates times omega^2
+    place = next(i for i, m in enumerate(every) if m is hit)
+    joined = _joined(mass, place)
+    if joined == [place]:
+        return {hit.velocity: after}
+    unit = ca.SX([1.0 if i == place else 0.0 for i in joined])
+    change = ca.solve(mass[joined, joined], unit)
+    size = (after - hit.velocity.symbol) / change[joined.index(place)]
+    return {
+        every[i].velocity: every[i].velocity.symbol + change[row] * size if i != place else after
+        for row, i in enumerate(joined)
+    }
+
+
+def _joined(mass: ca.SX, place: int) -> list[int]:
+    """The coordinates that a mass matrix joins to one, itself included, in order."""
+    pattern = ca.DM(mass.sparsity(), 1).full() != 0
+    pattern |= pattern.T
+    found, new = {place}, {place}
+    while new:
+        new = {int(j) for i in new for j in pattern[i].nonzero()[0]} - found
+        found |= new
+    return sorted(found)
