@@ -69,7 +69,8 @@ def test_two_tori_one_way_within_a_step() -> None:
     system = diffusing()
     born = per.equilibria(system, "l", (0.5, 0.6)).labelled(Label.HOPF)[0]
     assert born.parameter == pytest.approx(0.5112781470, abs=1e-9)
-    guess = per.hopf(system, born.orbit, "l")
+    # Nearer by, rounding decides whether the first orbit is this one or another of the branch.
+    guess = per.hopf(system, born.orbit, "l", distance=0.05)
     branch = per.trace(
         system, "l", (0.511, 2.0), start=None, guess=guess, determined={"omega": per.PhaseCondition()}
     )
