@@ -33,9 +33,10 @@ def resting(system: System, start: Orbit) -> Orbit | None:
     follow: a film, say, has no stiffness where it has no load, and ends at its clearance. None where the
     other is at rest already, and where the load cannot be added.
     """
-    balance = _Balance.of(system, start.parameter)
     point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
     try:
+        with np.errstate(divide="raise", invalid="raise"):  # a mode that nothing holds has no rest
+            balance = _Balance.of(system, start.parameter)
         missing = balance.rows(point)[0]
         if _balanced(missing, point):
             return None

@@ -551,7 +551,7 @@ class Assembly:
             Its new velocity; those that inertia couples to it change along.
         """
         self.impacts[len(self.switches)] = motion, after
-        self.reset(name, expression, {motion.velocity: after})
+        self.switch(name, expression, -1)
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

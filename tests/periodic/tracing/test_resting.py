@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -62,6 +64,22 @@ def test_load_that_cannot_be_borne() -> None:
         sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Damper(x, 1.0) + sym.ConstantForce(x, 1.0)
     )
     assert resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+
+
+def test_linear_part_without_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that there is no rest, where a mode has no stiffness or modes are not found."""
+
+    def lost(parameter: object) -> None:
+        raise ArithmeticError("modes cannot be followed")
+
+    one = np.ones((1, 1))
+    drifting = SimpleNamespace(direct=one, outputs=one, inputs=one, exponents=np.zeros(1, dtype=complex))
+    system = rotor(condense=False)
+    start = at_rest(system, uniform(Scheme(), 4), system.nominal)
+    for modes in (lambda parameter: drifting, lost):
+        part = SimpleNamespace(modes=modes, states=(0,), forces=(0,))
+        monkeypatch.setattr("periodic.tracing.resting.linear_of", lambda _, part=part: part)
+        assert resting(system, start) is None
 
 
 def test_rotor_in_a_journal_bearing() -> None:
