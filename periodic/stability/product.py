@@ -49,9 +49,10 @@ def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]
         return _of_block(steps, np.eye(1))
     steps, basis = _joined(steps), np.eye(n)
     for _ in range(PERIODS):
-        begun, triangles = basis, np.empty_like(steps)
+        begun, packed = basis, np.empty_like(steps)
         for j, step in enumerate(steps):
-            basis, triangles[j] = _orthogonal(step @ basis)
+            basis, packed[j] = _orthogonal(step @ basis)
+        triangles = np.triu(packed)
         sizes = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
         growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
         turn = begun.T @ basis
@@ -65,10 +66,10 @@ def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]
 
 
 def _orthogonal(matrix: Array) -> tuple[Array, Array]:
-    """Q and R of a matrix; LAPACK itself, for matrices so small that numpy's own way to it takes longer."""
+    """Q of a matrix, and R above what LAPACK keeps below it; numpy's own way to it takes longer."""
     lapack = scipy.linalg.lapack
     packed, tau, _, _ = lapack.dgeqrf(matrix)
-    return lapack.dorgqr(packed, tau)[0], np.triu(packed)
+    return lapack.dorgqr(packed, tau)[0], packed
 
 
 def _joined(steps: Array) -> Array:
