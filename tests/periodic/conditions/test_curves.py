@@ -229,10 +229,14 @@ def test_torus_curve_passes_neutral_saddles() -> None:
     growth = np.exp(2 * np.pi / 0.9 * np.sqrt(0.05))
     end = min(curve, key=lambda point: point.parameter)
     assert end.multipliers == pytest.approx(np.array([growth, 1 / growth]), rel=1e-9)
-    (told,) = curve.remarks
+    # at R1, k = 0, nothing holds the mean: an orbit placed within 1e-8 of it is not known to tol, and is told
+    *singular, told = curve.remarks
     assert told.startswith(
         f"{len(beyond)} of {len(curve)} points are neutral saddles, no tori (NS): the pair"
     )
+    (placed,) = curve.labelled(per.Label.RESONANCE_1)
+    assert placed.parameter == pytest.approx(0, abs=5e-8)
+    assert all(f"1 of {len(curve)} points: " in remark and "near k =" in remark for remark in singular)
 
 
 def test_curve_is_saved_with_what_it_is(tmp_path: object) -> None:
