@@ -42,13 +42,14 @@ class Sought:
 
     since: the parameter up to which values have been looked for, that of the last point, from which the base
     may differ by its error where it was solved again on a new mesh. course: of the test functions in the step
-    before.
+    before. final: whether the step ends where the pattern changes, and cannot be followed nearer to it.
     """
 
     values: Sequence[float]
     since: float
     tests: tuple[TestFunction, ...] = ()
     course: Course = field(default_factory=Course)
+    final: bool = False
 
 
 def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sought: Sought) -> list[Found]:
@@ -58,7 +59,7 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     """
     stretch = Stretch(solver, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    folds = [] if from_turn else _folds(stretch, new, ds, sought.course)
+    folds = [] if from_turn else _folds(stretch, new, ds, sought)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *folds, Found(Label.NONE, ds, new)]
     _check_ways(pieces)
@@ -98,11 +99,18 @@ def _check_ways(pieces: list[Found]) -> None:
             raise RejectedError("the step ends on another part of the branch")
 
 
-def _folds(stretch: Stretch, new: Solution, ds: float, course: Course) -> list[Found]:
-    """Locate the folds within a step, those that are more than an error of the parameter."""
-    if FOLD.value(stretch.base) * FOLD.value(new) < 0 and not turns(stretch.base, new, ds):
+def _folds(stretch: Stretch, new: Solution, ds: float, sought: Sought) -> list[Found]:
+    """Locate the folds within a step, those that are more than an error of the parameter.
+
+    One that cannot be told from the change of pattern at its end is there, or is named with what lies beyond.
+    """
+    base = stretch.base
+    if FOLD.value(base) * FOLD.value(new) < 0 and not turns(base, new, ds):
         return []
-    return _where(stretch, new, ds, FOLD, course)
+    if sought.final and FOLD.value(base) != 0 and FOLD.value(new) == 0:
+        turned = base.tangent.parameter * new.tangent.parameter < 0
+        return [Found(Label.FOLD, ds, new)] if turned else []
+    return _where(stretch, new, ds, FOLD, sought.course)
 
 
 def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction, course: Course) -> list[Found]:
@@ -154,8 +162,16 @@ def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestF
         return [Found(test.label, distance, solution)]  # it has no size for its error to be a part of
     better = _accepted(solver, refined(solver, solution))
     if better is not solution:
+        if not _alike(solver, solution, better):
+            raise RejectedError("on another mesh a special point has other events")
         solution = _again(solver, better, ds, test)
     return [Found(test.label, distance, solution, test.name)]
+
+
+def _alike(solver: Solver, old: Solution, new: Solution) -> bool:
+    """Whether an orbit has the events on a new mesh that it had."""
+    method, system = solver.discretisation, solver.problem.system
+    return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
 
 
 def _root(

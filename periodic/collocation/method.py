@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
+from typing import ClassVar
 
 import numpy as np
 
@@ -86,6 +87,9 @@ class Collocation(Discretisation):
     solver: LinearSolver = condensation
     condense: bool | None = None
     tolerance: float = 1e-7
+
+    ends_below: ClassVar[float] = touch.SHORT[-1]
+    """Length (rad) of an excursion below which a touch within it that is foreseen may be its end."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -243,7 +247,10 @@ class Collocation(Discretisation):
         if not system.switches:
             return None
         found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
-        return min((c for c in found if c is not None), key=lambda c: (not c.strict, c.part), default=None)
+        first = min((c for c in found if c is not None), key=lambda c: (not c.strict, c.part), default=None)
+        if not isinstance(first, touch.Birth):
+            return first
+        return touch.or_meeting(system, first, before, after, self.ends_below)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""

@@ -41,9 +41,6 @@ SYMMETRIC = 1e-7
 BRIEF = 2.0
 """Excursions at most so many times as long as one that ends end with it, or are about to."""
 
-NEARLY = 0.1
-"""Length (rad) of an excursion that a step may end whose depth, in a guess, goes before its length."""
-
 ALIKE = 1e-3
 """Excursions whose lengths differ by this part end at once."""
 
@@ -265,13 +262,16 @@ def change(system: System, before: Orbit, after: Orbit, shortest: float) -> Chan
     return _birth(system, before, after, shortest) or _meeting(system, before, after, shortest)
 
 
-def or_meeting(system: System, birth: Birth, before: Orbit, after: Orbit) -> Birth:
-    """Return a touch, and if it may be that of an excursion which ends, that one's end as another way."""
+def or_meeting(system: System, birth: Birth, before: Orbit, after: Orbit, short: float) -> Birth:
+    """Return a touch, and if it may be that of an excursion which ends, that one's end as another way.
+
+    short: length (rad) of the excursions of which that is believed. In a guess depth goes before length.
+    """
     meeting = _meeting(system, before, after, birth.shortest)
     if meeting is None or not _within(after, meeting, birth):
         return birth
-    short = before.mesh.segment_lengths(before.phases)[meeting.segment] < NEARLY
-    return replace(birth, otherwise=meeting) if short else birth
+    length = before.mesh.segment_lengths(before.phases)[meeting.segment]
+    return replace(birth, otherwise=meeting) if length < short else birth
 
 
 def _within(orbit: Orbit, meeting: Meeting, birth: Birth) -> bool:

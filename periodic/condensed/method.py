@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, scheme_for
-from periodic.collocation.touch import Birth, or_meeting
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
-from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement
@@ -41,6 +40,8 @@ class CondensedCollocation(Collocation):
 
     ntst: int = 12
     ntst_min: int = 6
+
+    ends_below: ClassVar[float] = 0.1
 
     def at(self, tolerance: float) -> CondensedCollocation:
         """Return it with scheme, depth of event nodes and meshes for a tolerance.
@@ -105,11 +106,6 @@ class CondensedCollocation(Collocation):
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)
         return Condensed(given, event_rows(system, orbit, free), brief=True)
-
-    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
-        """Return the change that `Collocation` tells; a touch within a brief excursion may be its end."""
-        found = super().change(system, before, after)
-        return or_meeting(system, found, before, after) if isinstance(found, Birth) else found
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""

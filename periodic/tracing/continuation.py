@@ -276,7 +276,8 @@ class Continuation:
             try:
                 tried = self._stepper.step(base, ds)
                 base, new, length = tried.base, tried.new, tried.ds
-                found = special_points(self.solver, base, new, length, sought)
+                final = tried.change is not None and tried.change.change.final
+                found = special_points(self.solver, base, new, length, replace(sought, final=final))
                 self._check_balance(base, new, found, length)
                 further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))

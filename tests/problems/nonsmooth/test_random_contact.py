@@ -7,6 +7,8 @@ drawn from it are those of an event-exact integration that shares nothing with t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,10 +18,13 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 
 import periodic as per
 from periodic import Reason
+from periodic.bifurcations.locate import special_points
+from periodic.bifurcations.turning import Found
 from periodic.collocation.jumping.turn import LastTurn
 from periodic.correction.change import Beyond
 from periodic.orbit.orbit import Orbit
 from periodic.system import System
+from periodic.tracing import continuation
 
 
 def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
@@ -100,17 +105,54 @@ def test_last_digits_of_the_parameter() -> None:
         assert judged(case.exact, point, case.names).multipliers < max(1e-8, 3 * point.error.by_orbit)
 
 
-def test_contact_that_is_rounding() -> None:
-    """Assert that nothing is claimed of multipliers where a contact is 1e-7 rad long, and 1e-15 deep."""
+def briefest(branch: per.Branch) -> list[float]:
+    """The shortest stretch between event nodes (rad) of each point."""
+    return [float(point.orbit.mesh.segment_lengths(point.orbit.phases).min()) for point in branch]
+
+
+BESIDE = 1.0920005367814
+"""Where the contact of chains 1019 ends; 5e-11 beside it lies a fold, of a contact of 1e-4 rad."""
+
+
+def test_contact_ends_beside_a_fold() -> None:
+    """Assert that a step may end at both, and that no shorter contact is followed; all points are judged."""
     case = drawn("chains", 1019)
     branch = traced(case)
-    lengths = [point.orbit.mesh.segment_lengths(point.orbit.phases).min() for point in branch]
-    assert all(
-        np.isinf(point.error.multiplier)
-        for point, length in zip(branch, lengths, strict=True)
-        if length < 1.1e-7
-    )
+    assert branch.stop.reason is Reason.BOUND
+    assert min(briefest(branch)) > 9e-5
+    beside = [p for p in branch.special_points if abs(p.parameter - BESIDE) < 1e-10]
+    assert [point.label for point in beside] == [per.Label.GRAZING, per.Label.FOLD]
+    assert wrong(case, branch, len(branch)) == []
+
+
+@pytest.mark.parametrize("leaves", [True, False])
+def test_contact_that_is_brief_already(leaves: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it ends where a step has gone past where contacts do; where it is kept, no false label.
+
+    At 1e-7 rad, 1e-15 deep, its multipliers are rounding, and seem to pass 1: nothing is claimed of them.
+    """
+    case = drawn("chains", 1019)
+    monkeypatch.setattr(continuation, "special_points", _never_final)
+    if not leaves:
+        monkeypatch.setattr(per.Collocation, "ends_below", 0.0)
+    branch = traced(case)
+    beside = [p for p in branch.special_points if abs(p.parameter - BESIDE) < 1e-10]
+    assert min(briefest(branch)) < 9e-5
+    assert [p.label for p in beside if p.label is not per.Label.FAILED] == [
+        per.Label.FOLD,
+        *([per.Label.GRAZING] if leaves else []),
+    ]
+    assert (branch.stop.reason is Reason.BOUND) == leaves
+    rounding = [p for p, length in zip(branch, briefest(branch), strict=True) if length < 1.5e-7]
+    assert bool(rounding) != leaves
+    assert all(np.isinf(point.error.multiplier) for point in rounding)
     assert verdicts(case, branch, 1019, len(branch)).wrong == []
+
+
+def _never_final(*given: Any) -> list[Found]:
+    """Special points of a step that knows nothing of a change of pattern at its end."""
+    solver, base, new, ds, sought = given
+    return special_points(solver, base, new, ds, replace(sought, final=False))
 
 
 @pytest.mark.long
