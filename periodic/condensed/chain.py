@@ -22,18 +22,23 @@ INTERVAL = 6e4
 """Operations that an interval costs at the least."""
 
 
-def pays(system: Coupled) -> bool:
-    """Return whether equations are better solved interval by interval than all at once."""
-    coordinates = 2 * len(system.given.response.modes.exponents) + len(system.others)
+def pays(system: Coupled, columns: int) -> bool:
+    """Return whether equations with right-hand sides are better solved interval by interval than at once."""
+    response = system.given.response
+    coordinates = 2 * len(response.modes.exponents) + len(system.others)
     intervals = system.intervals if len(system.others) else len(system.held)
-    return cheaper(
-        system.size, coordinates, intervals, system.ncol * (len(system.active) + len(system.others))
-    )
+    each = system.ncol * (len(system.active) + len(system.others))
+    # between equal intervals only how many lie in between counts
+    way = 4.0 * coordinates / system.intervals + 2.0 * columns if response.uniform else 4.0 * coordinates
+    return cheaper(system.size, coordinates, intervals, each, way)
 
 
-def cheaper(size: float, coordinates: int, intervals: float, each: int) -> bool:
-    """Return whether so many equations are, of intervals with `each` of them, that begin with coordinates."""
-    at_once = size**2 * (0.7 * size + 4.0 * coordinates)
+def cheaper(size: float, coordinates: int, intervals: float, each: int, way: float) -> bool:
+    """Return whether so many equations are, of intervals with `each` of them, that begin with coordinates.
+
+    way: operations that it takes to make one of their coefficients, and to use it.
+    """
+    at_once = size**2 * (0.7 * size + way)
     return at_once > intervals * (INTERVAL + 4.0 * each * coordinates**2)
 
 

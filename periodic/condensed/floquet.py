@@ -70,7 +70,7 @@ class Floquet:
     @cached_property
     def chain(self) -> Chain | None:
         """The same interval by interval, where that pays."""
-        return Chain(self._system) if pays(self._system) else None
+        return Chain(self._system) if pays(self._system, min(len(self.kept), SMALL)) else None
 
     @cached_property
     def free(self) -> tuple[Array, Array]:

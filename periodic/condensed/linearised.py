@@ -128,8 +128,14 @@ class Linearised:
         return np.ascontiguousarray(self.orbit.algebraic[:, :, list(self.part.forces)])
 
     @cached_property
+    def _motion(self) -> tuple[Complex, Array]:
+        """The modes' periodic motion under the forces, (N+1, J), and the states that it shows, (N, a, s)."""
+        return self.response.motion(self.forces)
+
+    @cached_property
     def _slopes(self) -> tuple[Array, Complex]:
-        return slopes(self.response, self.forces, self.orbit.grid.width_gradient, self.changes)
+        given = self.response, self.forces, self.orbit.grid.width_gradient, self.changes
+        return slopes(*given, history=self._motion[0])
 
     @property
     def begun(self) -> Complex:
@@ -141,7 +147,6 @@ class Linearised:
         """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
-        made = self.flexibility.applied(self.forces[..., None])[..., 0]
-        return np.concatenate([(made - stages)[..., None], self._slopes[0]], axis=3).reshape(
+        return np.concatenate([(self._motion[1] - stages)[..., None], self._slopes[0]], axis=3).reshape(
             count * points, s, -1
         )

@@ -33,6 +33,8 @@ class Memory:
     kinked : bool
         Whether errors are those of equations on the halved mesh, as beside kinks and with own states; else
         these are never made, and the orbit's own all at once.
+    even : bool
+        Whether intervals are equal.
     """
 
     points: int
@@ -42,6 +44,7 @@ class Memory:
     modes: int
     active: float
     kinked: bool
+    even: bool = False
 
     def peak(self, intervals: int) -> float:
         """Return the bytes that orbits of so many intervals take, with their error estimates."""
@@ -61,7 +64,8 @@ class Memory:
         held = intervals if self.own else self.active * intervals
         size = self.points * (self.active * self.forces + self.own) * intervals
         finer = 2 if self.kinked else 1
-        if self.kinked and cheaper(finer * size, self._coordinates, finer * held, each):
+        way = 4.0 * self._coordinates / (finer * intervals if self.even else 1)
+        if self.kinked and cheaper(finer * size, self._coordinates, finer * held, each, way):
             return 0.0
         return REAL * size**2 * (2 * KEPT + SOLVING * finer**2)
 

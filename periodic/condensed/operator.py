@@ -75,7 +75,7 @@ class Condensed:
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         system, k = self.system, len(self.orbit.phases)
-        solved = self._by_interval if pays(system) else self._at_once
+        solved = self._by_interval if pays(system, right.shape[1]) else self._at_once
         inner, outer = solved(rows, right)
         stages = system.stages(inner, np.concatenate([right[:1], outer]))
         each = zip(right[0], np.moveaxis(stages, 2, 0), outer.T, strict=True)

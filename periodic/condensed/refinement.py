@@ -78,7 +78,8 @@ class CondensedRefinement(CollocationRefinement):
         places, forces = len(part.states), len(part.forces)
         own = orbit.nodes.shape[1] - places
         kinked = own > 0 or len(orbit.phases) > 0
-        return Memory(orbit.mesh.scheme.ncol, places, forces, own, modes, active, kinked)
+        known = orbit.mesh.scheme.ncol, places, forces, own, modes, active, kinked
+        return Memory(*known, even=not self.system.switches)
 
     @property
     def _ntst(self) -> int:

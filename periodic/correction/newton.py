@@ -326,8 +326,11 @@ def sizes(
     parts = [np.abs(increment.nodes).max() / large, np.abs(increment.stages).max() / large]
     parts.append(np.abs(increment.phases).max(initial=0.0))
     nominal = np.maximum(np.abs(system.nominal[chosen]), settings.tiny)
-    least = np.minimum(settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
-    parts += list(np.abs(increment.parameters) / np.maximum(np.abs(orbit.parameter[chosen]), least))
+    compared = np.abs(orbit.parameter[chosen])
+    if (compared < nominal).any():
+        least = np.minimum(settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
+        compared = np.maximum(compared, least)
+    parts += list(np.abs(increment.parameters) / compared)
     regular = float(max(parts))
     change = moved_unknowns(system, orbit.algebraic, increment.algebraic) - orbit.algebraic
     unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)

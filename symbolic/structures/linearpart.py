@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -129,7 +130,7 @@ class LinearPart:
             return None
         at = self._at(omega)
         scale = -rate / omega
-        if any(structure.varying for structure in self.structures):
+        if self._varying:
             changes = [_change(structure, omega) for structure in self.structures]
             known = [change for change in changes if change is not None]
             if len(known) < len(changes):
@@ -221,8 +222,25 @@ class LinearPart:
         if omega not in self._known:
             if len(self._known) > 8:
                 self._known.clear()
-            self._known[omega] = self._made(omega)
+            self._known[omega] = self._made(omega) if self._varying else self._timed(omega)
         return self._known[omega]
+
+    @cached_property
+    def _varying(self) -> bool:
+        """Whether the matrices of a structure depend on Omega."""
+        return any(structure.varying for structure in self.structures)
+
+    @cached_property
+    def _unit(self) -> Modes:
+        """The modes at 1 rad/s."""
+        return self._made(1.0)
+
+    def _timed(self, omega: float) -> Modes:
+        """The modes of matrices that do not depend on Omega: it only scales the time."""
+        at = self._unit
+        outputs = at.outputs.copy()
+        outputs[1::2] /= omega
+        return Modes(at.exponents / omega, at.inputs / omega, outputs, at.direct, at.direct_rate)
 
     def _made(self, omega: float) -> Modes:
         exponents, inputs, outputs = [], [], []

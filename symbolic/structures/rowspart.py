@@ -20,6 +20,9 @@ STEP = 1e-6
 NOTHING = 1e-9
 """Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
 
+SAME = 16 * np.finfo(float).eps
+"""Part of the largest coefficient by which matrices differ that are the same but for rounding."""
+
 DEFECTIVE = 1e12
 """Condition of the eigenvectors above which they do not span the motion."""
 
@@ -32,6 +35,13 @@ class Eigen:
     vectors: Complex
     inverse: Complex
     rates: Array
+
+    def faster(self, times: float, scales: Array) -> Eigen:
+        """Return that of all rates so many times as large, in states that are (n,) times as large."""
+        vectors = scales[:, None] * self.vectors
+        lengths = np.linalg.norm(vectors, axis=0)
+        inverse = lengths[:, None] * self.inverse / scales
+        return Eigen(times * self.values, vectors / lengths, inverse, times * scales[:, None] * self.rates)
 
     @cached_property
     def kept(self) -> NDArray[np.bool_]:
@@ -74,6 +84,8 @@ class RowsPart:
         SI value of one internal unit of each state.
     rates : tuple of int
         Which of `places`, by their order, are velocities.
+    moving : tuple of int
+        Which of all states are velocities: rates by the phase, as Omega scales the time.
     omega : callable
         Parameters (p,) to Omega in rad/s.
     """
@@ -85,8 +97,12 @@ class RowsPart:
     varying: tuple[int, ...]
     scales: Array
     rates: tuple[int, ...]
+    moving: tuple[int, ...]
     omega: Callable[[Array], float]
     _known: dict[bytes, Eigen] = field(default_factory=dict, init=False, repr=False)
+    _latest: list[tuple[float, tuple[Array, Array], Eigen]] = field(
+        default_factory=list, init=False, repr=False
+    )
 
     @property
     def states(self) -> tuple[int, ...]:
@@ -116,24 +132,38 @@ class RowsPart:
         if key not in self._known:
             if len(self._known) > 16:
                 self._known.clear()
-            self._known[key] = self._made(parameter)
+            self._known[key] = self._beside(parameter)
         return self._known[key]
 
-    def _made(self, parameter: Array) -> Eigen:
-        try:
-            state, rates = self._explicit(parameter)
-            values, vectors = np.linalg.eig(state)
-            inverse = np.linalg.inv(vectors)
-        except np.linalg.LinAlgError as error:
-            raise ArithmeticError(f"the linear part has no modes: {error}") from None
-        if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < DEFECTIVE:
-            raise ArithmeticError("the modes of the linear part do not span its motion")
-        return Eigen(values + 0j, vectors + 0j, inverse + 0j, rates)
+    def _beside(self, parameter: Array) -> Eigen:
+        """The modes, from those at other parameters where Omega alone differs, and only scales the time."""
+        given, omega = self._explicit(parameter), self.omega(parameter)
+        for before, other, known in self._latest:
+            slower = before / omega
+            if _same(given, self._faster(other, slower)):
+                return known.faster(slower, self._speeds(slower))
+        found = _modes(*given)
+        self._latest[:] = [(omega, given, found)]
+        return found
+
+    def _speeds(self, times: float) -> Array:
+        """How many times as large states are, (n,), where Omega is so many times smaller."""
+        found = np.ones(self.size)
+        found[list(self.moving)] = times
+        return found
+
+    def _faster(self, given: tuple[Array, Array], times: float) -> tuple[Array, Array]:
+        """The same equations where Omega is so many times smaller."""
+        scales = self._speeds(times)[:, None]
+        return times * scales * given[0] / scales[:, 0], times * scales * given[1]
 
     def _explicit(self, parameter: Array) -> tuple[Array, Array]:
         """x' = state x + rates f."""
         inertia, stiffness = self.matrices(parameter)
-        found = -np.linalg.solve(inertia, np.concatenate([stiffness, self.loads], axis=1))
+        try:
+            found = -np.linalg.solve(inertia, np.concatenate([stiffness, self.loads], axis=1))
+        except np.linalg.LinAlgError as error:
+            raise ArithmeticError(f"the linear part has no modes: {error}") from None
         return found[:, : self.size], found[:, self.size :]
 
     def slope(self, parameter: Array, index: int) -> Modes | None:
@@ -202,3 +232,23 @@ class RowsPart:
         direct = np.zeros((2 * len(at), self.loads.shape[1]))
         direct[1::2] = scales * omega * found.rates[at]
         return Modes(exponents, found.inputs, outputs, direct, np.zeros_like(direct))
+
+
+def _modes(state: Array, rates: Array) -> Eigen:
+    """The modes of x' = state x + rates f."""
+    try:
+        values, vectors = np.linalg.eig(state)
+        inverse = np.linalg.inv(vectors)
+    except np.linalg.LinAlgError as error:
+        raise ArithmeticError(f"the linear part has no modes: {error}") from None
+    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < DEFECTIVE:
+        raise ArithmeticError("the modes of the linear part do not span its motion")
+    return Eigen(values + 0j, vectors + 0j, inverse + 0j, rates)
+
+
+def _same(given: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
+    """Whether equations are the same but for rounding."""
+    return all(
+        bool((np.abs(a - b) <= SAME * np.abs(b).max(initial=0.0)).all())
+        for a, b in zip(given, other, strict=True)
+    )

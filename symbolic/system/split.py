@@ -246,6 +246,7 @@ class _Split:
             varying=tuple(varying),
             scales=np.array([state.scale for state in whole.states]),
             rates=tuple(k for k, name in enumerate(names) if name.endswith("'")),
+            moving=tuple(k for k, state in enumerate(whole.states) if state.name.endswith("'")),
             omega=whole.omega,
         )
 

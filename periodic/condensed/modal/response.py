@@ -71,8 +71,8 @@ class Response:
             modes.exponents,
             modes.inputs[:, forces],
             modes.outputs[states],
-            modes.direct[np.ix_(states, forces)],
-            modes.direct_rate[np.ix_(states, forces)],
+            modes.direct[states][:, forces],
+            modes.direct_rate[states][:, forces],
         )
         found = replace(self, modes=chosen)
         vars(found).update({name: getattr(self, name) for name in self._shared})
@@ -159,6 +159,11 @@ class Response:
         found = self.closed(self._kicks(forces), self.closing if closing is None else closing)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
 
+    def motion(self, forces: Array) -> tuple[Complex, Array]:
+        """Return periodic motion: modes as `history` has them, states as `stages`; forces (N, b, k)."""
+        history = self.history(forces)
+        return history, self._states(forces, history[:-1, :, None])
+
     def stages(self, forces: Array, closing: Complex | float | None = None) -> Array:
         """Return the states at the points in periodic motion, (N, a, s, ...); forces (N, b, k, ...).
 
@@ -242,7 +247,12 @@ class Response:
         return 1 / (multiplier - grown), 1 / (multiplier - grown.conj())
 
     def sloped(
-        self, forces: Array, widths: Array, changes: Sequence[ModesLike], closing: Complex
+        self,
+        forces: Array,
+        widths: Array,
+        changes: Sequence[ModesLike],
+        closing: Complex,
+        history: Complex | None = None,
     ) -> tuple[NDArray[Any], Complex]:
         """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
 
@@ -257,7 +267,7 @@ class Response:
             faster[:, first + i] = change.exponents
         # x = lambda h
         shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
-        history = self.history(forces, closing)
+        history = self.history(forces, closing) if history is None else history
         driven = _driving(forces, modes.inputs)
         answer, steeper = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
         inner = stretch[:, None, None, :] * answer[..., None]

@@ -16,6 +16,7 @@ def slopes(
     widths: Array,
     changes: list[ModesLike | None],
     multiplier: complex = 1.0,
+    history: Complex | None = None,
 ) -> tuple[Array, Complex]:
     """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
 
@@ -32,6 +33,8 @@ def slopes(
     multiplier : complex
         What forces and motion are multiplied by over the period; with a complex one the forces may be
         complex, and the modes at the beginning are left out.
+    history : ndarray of complex, shape (N+1, J), optional
+        The modes' motion under real forces, if it is known.
     """
     count, points = len(response.grid.width), response.scheme.ncol
     s, q = response.modes.direct.shape[0], widths.shape[1] + len(changes)
@@ -44,7 +47,7 @@ def slopes(
         return found, begun
     columns = [*range(widths.shape[1]), *(widths.shape[1] + i for i in active)]
     closing, conjugate = response.closings(multiplier)
-    shown, begun[:, columns] = response.sloped(forces, widths, given, closing)
+    shown, begun[:, columns] = response.sloped(forces, widths, given, closing, history)
     if turning:
         other, _ = response.sloped(forces.conj(), widths, given, conjugate.conj())
         found[..., columns] = (shown + other.conj()) / 2

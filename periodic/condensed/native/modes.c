@@ -52,6 +52,34 @@ static inline complex_ plus(complex_ a, complex_ b)
     return found;
 }
 
+/* The real part of the sum of so many products, right ones `step` apart: partial sums, of which none waits for
+   another. */
+static inline double real_sum(whole count, const double *left, const double *right, whole step)
+{
+    double a = 0, b = 0, c = 0, d = 0;
+    whole k = 0;
+    for (; k + 1 < count; k += 2, left += 4, right += 4 * step) {
+        a += left[0] * right[0];
+        b += left[1] * right[1];
+        c += left[2] * right[2 * step];
+        d += left[3] * right[2 * step + 1];
+    }
+    if (k < count) {
+        a += left[0] * right[0];
+        b += left[1] * right[1];
+    }
+    return (a + c) - (b + d);
+}
+
+/* The sum of so many complex numbers times real ones, which lie `step` apart. */
+static inline complex_ weighted(whole count, const double *left, const double *right, whole step)
+{
+    complex_ sum = {0, 0};
+    for (whole k = 0; k < count; k++)
+        sum = plus(sum, scaled(at(left, k), right[k * step]));
+    return sum;
+}
+
 static inline complex_ exponential(complex_ x)
 {
     const double size = exp(x.re);

@@ -1,20 +1,14 @@
 
 /* The modes' way from interval to interval, and its adjoint. */
 
-/* What forces (b k, r) leave in the modes at the end of an interval, added to left (J, r). */
+/* What forces (b k, r) leave in the modes at the end of an interval, left (J, r). */
 static void kicked(const struct response *r, whole u, whole columns, const double *forces, double *restrict left)
 {
     const whole each = r->points * r->forces;
     for (whole j = 0; j < r->modes; j++) {
-        double *restrict to = left + 2 * j * columns;
-        for (whole f = 0; f < each; f++) {
-            const complex_ weight = at(r->impulse, (u * r->modes + j) * each + f);
-            const double *force = forces + f * columns;
-            for (whole c = 0; c < columns; c++) {
-                to[2 * c] += weight.re * force[c];
-                to[2 * c + 1] += weight.im * force[c];
-            }
-        }
+        const double *impulse = r->impulse + 2 * (u * r->modes + j) * each;
+        for (whole c = 0; c < columns; c++)
+            put(left, j * columns + c, weighted(each, impulse, forces + c, columns));
     }
 }
 
@@ -56,7 +50,6 @@ int driven(const struct response *r, whole columns, const double *forces, const 
            const double *begun, double *restrict kicks, double *restrict history, double *restrict states)
 {
     const whole rows = r->points * r->states, each = r->points * r->forces, size = r->modes * columns;
-    memset(kicks, 0, 2 * r->count * size * sizeof(double));
     for (whole i = 0; i < r->count; i++)
         kicked(r, r->which[i], columns, forces + i * each * columns, kicks + 2 * i * size);
     closed(r, columns, kicks, closing, begun, history);
@@ -64,11 +57,10 @@ int driven(const struct response *r, whole columns, const double *forces, const 
         const whole u = r->which[i];
         for (whole p = 0; p < rows; p++) {
             double *restrict state = states + (i * rows + p) * columns;
-            const double *shown = r->shown + 2 * (u * rows + p) * r->modes, *z = history + 2 * i * size;
+            const double *shown = r->shown + 2 * (u * rows + p) * r->modes;
             combine(each, columns, r->local + (u * rows + p) * each, forces + i * each * columns, state);
-            for (whole j = 0; j < r->modes; j++, shown += 2, z += 2 * columns)
-                for (whole c = 0; c < columns; c++)
-                    state[c] += shown[0] * z[2 * c] - shown[1] * z[2 * c + 1];
+            for (whole c = 0; c < columns; c++)
+                state[c] += real_sum(r->modes, shown, history + 2 * (i * size + c), columns);
         }
     }
     return DONE;

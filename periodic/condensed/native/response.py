@@ -138,6 +138,13 @@ class NativeResponse(Response):
         found, _ = self._driven(forces, self.closing if closing is None else closing, None, shown=False)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
 
+    def motion(self, forces: Array) -> tuple[Complex, Array]:
+        """Return modes and states in periodic motion, as `Response.motion`."""
+        if not _few(forces):
+            return super().motion(forces)
+        history, states = self._driven(forces, self.closing, None)
+        return history[..., 0], states[..., 0]
+
     def stages(self, forces: Array, closing: Complex | float | None = None) -> Array:
         """Return the states at the points in periodic motion, as `Response.stages`."""
         if not _few(forces):
@@ -204,14 +211,20 @@ class NativeResponse(Response):
         return found
 
     def sloped(
-        self, forces: Array, widths: Array, changes: Sequence[ModesLike], closing: Complex
+        self,
+        forces: Array,
+        widths: Array,
+        changes: Sequence[ModesLike],
+        closing: Complex,
+        history: Complex | None = None,
     ) -> tuple[NDArray[Any], Complex]:
         """Return how states and modes at the beginning change, as `Response.sloped`."""
         if np.iscomplexobj(forces):
-            return super().sloped(forces, widths, changes, closing)
+            return super().sloped(forces, widths, changes, closing, history)
         call, size = self._laid[0], len(self.modes.exponents)
         (count, points), columns = forces.shape[:2], widths.shape[1] + len(changes)
-        given, ends, history = plain(forces), _complex(closing), self.history(forces, closing)
+        given, ends = plain(forces), _complex(closing)
+        history = self.history(forces, closing) if history is None else _complex(history)
         kept: list[NDArray[Any]] = [plain(widths)]
         for name in _OF_MODES:
             kept.append(np.ascontiguousarray([getattr(change, name) for change in changes]))

@@ -7,11 +7,11 @@ struct change {
     const double *exponents, *inputs, *outputs; /* (q2, J), (q2, J, k), (q2, s, J), complex */
     const double *direct, *direct_rate;         /* (q2, s, k) */
     double *begun, *found;                      /* (J, q) complex, (N, a, s, q) */
-    double *history, *inner, *kicks, *moved;    /* room: (N+1, J); (N, J, a, q); (N, J, q); (N+1, J, q) */
+    double *history, *inner, *kicks, *moved;    /* room: (N+1, J); (N, a, J, q); (N, J, q); (N+1, J, q) */
 };
 
-/* Within an interval: moved modes at its points from those at its beginning, inner (J, a, q), and the modes
-   there, stages (J, a). */
+/* Within an interval: moved modes at its points from those at its beginning, inner (a, J, q), and the modes
+   there, stages (a, J). */
 static void within(const struct response *r, const struct change *q, whole i, const double *forces,
                    double *restrict inner, double *restrict stages)
 {
@@ -22,16 +22,13 @@ static void within(const struct response *r, const struct change *q, whole i, co
         const double *growth = r->growth + 2 * (u * J + j) * points;
         for (whole a = 0; a < points; a++) {
             const whole row = ((u * J + j) * points + a) * points;
-            double *to = inner + 2 * (j * points + a) * all;
+            double *to = inner + 2 * (a * J + j) * all;
             complex_ answer = {0, 0}, steeper = {0, 0};
             memset(to + 2 * q->wider, 0, 2 * q->others * sizeof(double));
             for (whole l = 0; l < k; l++) {
                 const complex_ input = at(r->inputs, j * k + l);
-                complex_ moved = {0, 0}, steep = {0, 0};
-                for (whole b = 0; b < points; b++) {
-                    moved = plus(moved, scaled(at(r->moment, row + b), forces[b * k + l]));
-                    steep = plus(steep, scaled(at(r->slope, row + b), forces[b * k + l]));
-                }
+                const complex_ moved = weighted(points, r->moment + 2 * row, forces + l, k);
+                const complex_ steep = weighted(points, r->slope + 2 * row, forces + l, k);
                 answer = plus(answer, times(moved, input));
                 steeper = plus(steeper, times(steep, input));
                 for (whole c = 0; c < q->others; c++) {
@@ -41,7 +38,7 @@ static void within(const struct response *r, const struct change *q, whole i, co
             }
             const complex_ grown = times(at(growth, a), z);
             const complex_ turned = plus(scaled(steeper, h), scaled(grown, r->place[a]));
-            put(stages, j * points + a, plus(grown, scaled(answer, h)));
+            put(stages, a * J + j, plus(grown, scaled(answer, h)));
             for (whole c = 0; c < q->wider; c++) {
                 const double wider = q->stretch[i * q->wider + c];
                 put(to, c, plus(scaled(answer, wider), times(turned, scaled(lambda, wider))));
@@ -65,8 +62,7 @@ static void at_once(const struct response *r, const struct change *q, whole i, c
         for (whole n = 0; n < s; n++) {
             double *to = q->found + ((i * points + a) * s + n) * all;
             for (whole c = 0; c < q->others; c++)
-                for (whole j = 0; j < J; j++)
-                    to[q->wider + c] += times(at(q->outputs, (c * s + n) * J + j), at(stages, j * points + a)).re;
+                to[q->wider + c] += real_sum(J, q->outputs + 2 * (c * s + n) * J, stages + 2 * a * J, 1);
             for (whole l = 0; l < k; l++) {
                 double rate = 0;
                 for (whole b = 0; b < points; b++)
@@ -90,28 +86,25 @@ int sloped(const struct response *r, const struct change *q, const double *force
     for (whole i = 0; i < r->count; i++) {
         double *inner = q->inner + 2 * i * J * points * all;
         within(r, q, i, forces + i * each, inner, stages + 2 * i * J * points);
-        for (whole j = 0; j < J; j++)
-            memcpy(q->kicks + 2 * (i * J + j) * all, inner + 2 * ((j + 1) * points - 1) * all,
-                   2 * all * sizeof(double));
+        memcpy(q->kicks + 2 * i * J * all, inner + 2 * (points - 1) * J * all, 2 * J * all * sizeof(double));
     }
     closed(r, all, q->kicks, closing, NULL, q->moved);
     memcpy(q->begun, q->moved, 2 * J * all * sizeof(double));
     for (whole i = 0; i < r->count; i++) {
-        const double *inner = q->inner + 2 * i * J * points * all, *moved = q->moved + 2 * i * J * all;
+        const double *moved = q->moved + 2 * i * J * all;
         const double *growth = r->growth + 2 * r->which[i] * J * points;
-        for (whole a = 0; a < points; a++)
-            for (whole n = 0; n < s; n++) {
-                double *to = q->found + ((i * points + a) * s + n) * all;
-                memset(to, 0, all * sizeof(double));
-                for (whole j = 0; j < J; j++) {
-                    const complex_ out = at(r->outputs, n * J + j);
-                    const complex_ shown = times(out, at(growth, j * points + a));
-                    for (whole c = 0; c < all; c++) {
-                        const whole own = (j * points + a) * all + c;
-                        to[c] += times(out, at(inner, own)).re + times(shown, at(moved, j * all + c)).re;
-                    }
+        for (whole a = 0; a < points; a++) {
+            double *inner = q->inner + 2 * (i * points + a) * J * all;
+            for (whole j = 0; j < J; j++)
+                for (whole c = 0; c < all; c++) {
+                    const complex_ grown = times(at(growth, j * points + a), at(moved, j * all + c));
+                    put(inner, j * all + c, plus(at(inner, j * all + c), grown));
                 }
-            }
+            for (whole n = 0; n < s; n++)
+                for (whole c = 0; c < all; c++)
+                    q->found[((i * points + a) * s + n) * all + c] =
+                        real_sum(J, r->outputs + 2 * n * J, inner + 2 * c, all);
+        }
         at_once(r, q, i, forces + i * each, stages + 2 * i * J * points);
     }
     return DONE;

@@ -45,7 +45,7 @@ def test_is_the_same_as_all_equations_at_once(at_tip: Any, monkeypatch: pytest.M
     found = []
     for chained in (True, False):
         for module in (floquet, operator):
-            monkeypatch.setattr(module, "pays", lambda _, chained=chained: chained)
+            monkeypatch.setattr(module, "pays", lambda *_, chained=chained: chained)
         equations = Condensed(Linearised.about(system, orbit, ()), event_rows(system, orbit, ()))
         increment, kernel = equations.solve([], np.array([[1.0, 0.0]]))
         values = np.linalg.eigvals(equations.fundamental[-1])

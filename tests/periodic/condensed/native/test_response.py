@@ -80,6 +80,11 @@ def test_motion_and_its_adjoint(both: tuple[Response, Response], columns: tuple[
         close(fast.history(forces, closing), plain.history(forces, closing))
         close(fast.stages(forces, closing), plain.stages(forces, closing))
     close(fast.stages(forces, 0.0), plain.stages(forces, 0.0))
+    if not columns:
+        for response in both:
+            history, states = response.motion(forces)
+            close(history, plain.history(forces))
+            close(states, plain.stages(forces))
     if columns:
         close(fast.driven(forces), plain.driven(forces))
         begun = random.standard_normal((len(plain.modes.exponents), 2 * columns[0])).view(complex)
