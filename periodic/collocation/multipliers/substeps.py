@@ -31,6 +31,9 @@ GROWING = 1.0
 EACH, FASTEST = 0.7, 2.0
 """... in which it is so much at the most, and |z| of any other motion."""
 
+ROUNDING = float(np.finfo(float).eps)
+"""Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""
+
 MOST = 64
 """Most substeps of an interval."""
 
@@ -74,6 +77,7 @@ def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int
         return one
     exponents = np.linalg.eigvals(jacobian)
     growth = exponents.real.max(axis=1)
+    growth[growth <= ROUNDING * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
     if growth.max() <= GROWING:
         return one
     needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)

@@ -1,0 +1,51 @@
+"""Into how many substeps intervals are divided where perturbations grow."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.numpy_systems import LinearOscillator
+
+from periodic.collocation.multipliers import substeps as module
+from periodic.collocation.multipliers.substeps import GROWING, MOST, substeps
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.scheme import Array, Scheme
+
+INTERVALS = 40
+
+
+def divided(monkeypatch: pytest.MonkeyPatch, exponents: list[float]) -> tuple[list[int], Array]:
+    """Counts of intervals whose Jacobians times width have these eigenvalues, and those that are computed."""
+    random = np.random.default_rng(0).standard_normal((INTERVALS, len(exponents), len(exponents)))
+    basis = np.linalg.qr(random)[0]
+    jacobian = basis * np.array(exponents) @ np.swapaxes(basis, 1, 2)
+    system = LinearOscillator()
+    mesh = Mesh(Scheme(), (np.linspace(0, 1, INTERVALS + 1),))
+    orbit = at_rest(system, mesh, system.nominal)
+    width = orbit.grid.width[:, None, None]
+    monkeypatch.setattr(module, "jacobians", lambda *_: jacobian / width)
+    return sorted({int(count) for count in substeps(system, orbit)}), np.linalg.eigvals(jacobian).real.max(
+        axis=1
+    )
+
+
+def test_rounding_is_no_growth(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that an eigenvalue beyond GROWING is none beside a rate of stick of which it is a rounding.
+
+    It once cost a third of the disc's branch.
+    """
+    counts, growth = divided(monkeypatch, [-3e16, -1e-3, -1e-2])
+    assert growth.max() > GROWING
+    assert counts == [1]
+
+
+@pytest.mark.parametrize(
+    ("exponents", "expected"),
+    [([-0.5, 2.0, -1e-2], [3]), ([-1e6, 2.0, 0.0], [MOST]), ([-1e6, 0.5, 0.0], [1])],
+)
+def test_growth_is_followed(
+    exponents: list[float], expected: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert what growth is divided into by itself, and with fast decay beside it."""
+    assert divided(monkeypatch, exponents)[0] == expected
