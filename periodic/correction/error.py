@@ -109,11 +109,12 @@ BEST = 2e-12
 LAST_DIGITS = 4 * float(np.finfo(float).eps)
 """To how much of itself a parameter is known at the most."""
 
-STEEP = 0.1
-"""Part of a branch's direction that the parameter is, below which it is about a fold,"""
+STRAIGHT = 0.1
+"""Part of the way to a fold for which a branch is straight: with the parameter a part p of its direction, a
+fold is about p away."""
 
 TURNING = 1e-3
-"""... and below which it is at one: no orbit beside it has that parameter to its last digits."""
+"""Part below which it is at one: no orbit beside it has that parameter to its last digits."""
 
 
 def deferred(
@@ -192,7 +193,7 @@ def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) 
 def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     """The way along the branch from where a step across it leads to the orbit of the same parameter.
 
-    None about a fold, where the orbit of the same parameter is far away, or there is none. The parameter is
+    None at a fold, where the orbit of the same parameter is far away, or there is none. The parameter is
     known to rounding alone, which beside a touch moves a contact: it is added to the way but at a fold.
     """
     kernel = found.kernel
@@ -202,7 +203,8 @@ def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     if part < TURNING:
         return kernel.scaled(0.0)
     shift, least = found.increment.parameter, LAST_DIGITS * abs(problem.value(found.orbit))
-    way = (shift if part >= STEEP else 0.0) + float(np.copysign(least, shift))
+    near = abs(shift) < STRAIGHT * part**2 * problem.scale
+    way = (shift if near else 0.0) + float(np.copysign(least, shift))
     return kernel.scaled(-way / kernel.parameter)
 
 

@@ -10,7 +10,7 @@ struct estimate {
     double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
     double *monodromy;                                             /* that of the better orbit, (n, n) */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
-    double fold, turning, steep, rounding, digits, fast;           /* limits: see estimate.py */
+    double straight, turning, steep, rounding, digits, fast;       /* limits: see estimate.py */
     double apart, shift;                                           /* errors of the states and of the parameter */
     whole unresolved;                                              /* whether a vibration is too fast for the mesh */
 };
@@ -147,7 +147,7 @@ static double moved_by(const struct call *c, const struct change *d)
 }
 
 /* How far along the branch the orbit of the same parameter lies, which is known to its last digits, in kernels;
-   those alone about a fold, 0 at one. */
+   0 at a fold: see error.py. */
 static double to_same_parameter(const struct call *c, const struct estimate *e, const double *weights)
 {
     const whole n = c->n, k = c->k, each = (c->ncol + 1) * n;
@@ -163,11 +163,12 @@ static double to_same_parameter(const struct call *c, const struct estimate *e, 
             states += weights[j] * change * change;
         }
     }
-    const double length = sqrt(states / (e->unit * e->unit) + own * own);
+    const double part = fabs(own) / sqrt(states / (e->unit * e->unit) + own * own);
     const double shift = c->increment.outer[k], least = e->digits * fabs(c->parameter[c->free]);
-    if (fabs(own) < e->turning * length)
+    if (part < e->turning)
         return 0;
-    return -((fabs(own) < e->fold * length ? 0 : shift) + copysign(least, shift)) / c->kernel.outer[k];
+    const int near = fabs(shift) < e->straight * part * part * e->scale;
+    return -((near ? shift : 0) + copysign(least, shift)) / c->kernel.outer[k];
 }
 
 /* Go to the orbit that the increment leads to, and so many kernels further. */

@@ -10,11 +10,10 @@ import numpy as np
 from periodic.collocation.multipliers.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.correction.error import LAST_DIGITS, STEEP, TURNING, ErrorEstimate, Halved, relative
+from periodic.correction.error import LAST_DIGITS, STRAIGHT, TURNING, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
-from periodic.linear.unknowns import STEEP as STEEP_RATE
-from periodic.linear.unknowns import Increment, size_of
+from periodic.linear.unknowns import STEEP, Increment, size_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
@@ -25,7 +24,7 @@ _NUMBERS = (
     "along",
     "scale",
     "unit",
-    "fold",
+    "straight",
     "turning",
     "steep",
     "rounding",
@@ -39,9 +38,10 @@ _NUMBERS = (
 class Estimate(ctypes.Structure):
     """`struct estimate` of estimate.c.
 
-    Limits: `fold` is the part of the branch's direction that the parameter is about a fold, `turning` at one,
-    `steep` the rate beside kinks that counts half, `rounding` what of a switch's terms it may be off by,
-    `digits` to how much of itself the parameter is known, `fast` the turn of a vibration in an interval.
+    Limits: `straight` is the part of the way to a fold for which the branch is straight, `turning` the part
+    of its direction that the parameter is at one, `steep` the rate beside kinks that counts half, `rounding`
+    what of a switch's terms it may be off by, `digits` to how much of itself the parameter is known, `fast`
+    the turn of a vibration in an interval.
     """
 
     _fields_ = (
@@ -71,7 +71,7 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     monodromy: Array = np.empty((n, n))
     kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
-    own.fold, own.turning, own.steep, own.fast = STEEP, TURNING, STEEP_RATE, FAST
+    own.straight, own.turning, own.steep, own.fast = STRAIGHT, TURNING, STEEP, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
     code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept

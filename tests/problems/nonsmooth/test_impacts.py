@@ -15,7 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from reference.bouncing import DAMPING, GAP, RESTITUTION, VALUES, bouncing, equations, settled_at, shot
+from reference.closer import closer
+from reference.contact import Contact, Wall, periodic
 from reference.shooting import in_order
 from scipy.linalg import expm
 
@@ -41,6 +44,15 @@ def closed_form() -> tuple[float, float]:
         return float(C * np.hypot(D - v * g[0], v * (1 - g[1])))
 
     return force(D * g[0] / (g[0] ** 2 + (1 - g[1]) ** 2)), force(-0.2)
+
+
+def exact(point: per.Point) -> NDArray[np.complex128]:
+    """The multipliers in closed form, in extended precision."""
+    wall = Wall(np.array([-1.0, 0.0, D, 0.0, 0.0]), np.diag([1.0, -E, 1.0, 1.0, 1.0]))
+    force = np.array([0.0, point.parameter])
+    system = Contact(np.array([[0.0, 1.0], [-1.0, -C]]), np.zeros(2), force, [wall])
+    begin = point.orbit.state(np.zeros(1))[0]
+    return closer(system, 1.0, periodic(system, 1.0, begin)).multipliers
 
 
 def test_orbits_and_multipliers_through_impacts() -> None:
@@ -78,6 +90,19 @@ def test_branch_without_impact_gains_one(tol: float) -> None:
     np.testing.assert_allclose(graze.parameter, C * D, rtol=1e-8)
     assert found[-1].parameter == 1.0 and "bound reached" in str(found.stop)
     np.testing.assert_allclose(in_order(found[-1].multipliers), in_order(branch()[0].multipliers), atol=1e-8)
+
+
+def test_errors_beside_a_fold() -> None:
+    """Assert multipliers of up to 50 to what is claimed, between the touch and the fold just beside it.
+
+    They are those of the orbit of the same A, though the range of A is far wider than the fold is away.
+    """
+    found = per.trace(bouncing(), "A", (0.015, 0.35), tol=1e-6)
+    beside = [p for p in found if p.maximum["x"] > D - 1e-9 and 1e-6 < C * D - p.parameter < 2.8e-5]
+    assert beside
+    for point in beside:
+        own, true = point.multipliers, exact(point)
+        assert abs(own.sum() - true.sum()) / np.abs(true).max() < max(1.5 * point.error.multiplier, 1e-8)
 
 
 def test_start_with_impacts_from_rest() -> None:

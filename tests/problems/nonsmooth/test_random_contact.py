@@ -20,9 +20,12 @@ import periodic as per
 from periodic import Reason
 from periodic.bifurcations.locate import special_points
 from periodic.bifurcations.turning import Found
+from periodic.collocation.event import event_rows
 from periodic.collocation.jumping.turn import LastTurn
+from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
 from periodic.orbit.orbit import Orbit
+from periodic.stability.spectrum import Spectrum
 from periodic.system import System
 from periodic.tracing import continuation
 
@@ -125,28 +128,35 @@ def test_contact_ends_beside_a_fold() -> None:
     assert wrong(case, branch, len(branch)) == []
 
 
-@pytest.mark.parametrize("leaves", [True, False])
-def test_contact_that_is_brief_already(leaves: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that it ends where a step has gone past where contacts do; where it is kept, no false label.
+@pytest.mark.parametrize("ends_below", [None, 0.0])
+def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it ends where a step has gone past where contacts do, and no false label on the way.
 
-    At 1e-7 rad, 1e-15 deep, its multipliers are rounding, and seem to pass 1: nothing is claimed of them.
+    Also where the touch that is foreseen within it, which is its end, is not known to be that.
     """
     case = drawn("chains", 1019)
     monkeypatch.setattr(continuation, "special_points", _never_final)
-    if not leaves:
-        monkeypatch.setattr(per.Collocation, "ends_below", 0.0)
+    if ends_below is not None:
+        monkeypatch.setattr(per.Collocation, "ends_below", ends_below)
     branch = traced(case)
     beside = [p for p in branch.special_points if abs(p.parameter - BESIDE) < 1e-10]
     assert min(briefest(branch)) < 9e-5
-    assert [p.label for p in beside if p.label is not per.Label.FAILED] == [
-        per.Label.FOLD,
-        *([per.Label.GRAZING] if leaves else []),
-    ]
-    assert (branch.stop.reason is Reason.BOUND) == leaves
-    rounding = [p for p, length in zip(branch, briefest(branch), strict=True) if length < 1.5e-7]
-    assert bool(rounding) != leaves
-    assert all(np.isinf(point.error.multiplier) for point in rounding)
+    assert [p.label for p in beside] == [per.Label.FOLD, per.Label.GRAZING]
+    assert branch.stop.reason is Reason.BOUND
     assert verdicts(case, branch, 1019, len(branch)).wrong == []
+
+
+def test_contact_that_is_rounding() -> None:
+    """Assert that nothing is claimed of multipliers where rounding decides how long a contact is."""
+    case = drawn("chains", 1019)
+    point = min(traced(case), key=lambda point: min(briefest([point])))
+    orbit, lengths = point.orbit, point.orbit.mesh.segment_lengths(point.orbit.phases)
+    phases, brief = orbit.phases.copy(), int(lengths.argmin())
+    phases[(brief + 1) % len(phases)] += 1e-12 - lengths[brief]
+    spectrum = Spectrum(np.array([np.eye(orbit.nodes.shape[1])] * len(orbit.nodes)))
+    briefer = replace(orbit, phases=phases)
+    told, untold = (of_events(o, event_rows(case.system, o, ()), spectrum) for o in (orbit, briefer))
+    assert np.isfinite(told) and np.isinf(untold)
 
 
 def _never_final(*given: Any) -> list[Found]:
