@@ -249,12 +249,9 @@ class _Motion:
 
     def speeds(self, state: Array, phase: float) -> tuple[float, float]:
         """|ds/dtau| on either side."""
-        by_state, by_phase, _ = self.system.switch_gradient(
-            state[None], np.array([phase]), self.orbit.parameter
-        )
-        slopes = (by_state[0, self.switch] @ self.rate(state, phase, way) for way in (1.0, -1.0))
-        above, below = (abs(float(slope + by_phase[0, self.switch])) for slope in slopes)
-        return above, below
+        values = self.system.switch(state[None], np.array([phase]), self.orbit.parameter)[0]
+        up, down = slides_of(self.system)[self.switch]
+        return abs(float(values[up])), abs(float(values[down]))
 
 
 def _speeds(system: System, orbit: Orbit, switch: int, node: int) -> tuple[float, float]:

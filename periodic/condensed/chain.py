@@ -9,6 +9,7 @@ so that cost grows with the number of intervals and with the square of the numbe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.modal.moments import Complex
+from periodic.condensed.passing import Passage
 from periodic.orbit.scheme import Array
 
 INTERVAL = 6e4
@@ -42,6 +44,10 @@ def cheaper(size: float, coordinates: int, intervals: float, each: int, way: flo
     return at_once > intervals * (INTERVAL + 4.0 * each * coordinates**2)
 
 
+Added = dict[int, tuple[Complex, Array]]
+"""What events add to modes (J, r) and own states (o, r), by the intervals that they end."""
+
+
 class Chain:
     """The equations of a system where it has forces that depend on the motion, or own states.
 
@@ -49,12 +55,16 @@ class Chain:
     ----------
     system : Coupled
         The equations; what they have of motion that repeats is not read.
+    passages : sequence of Passage
+        Events at which forces jump.
     """
 
-    def __init__(self, system: Coupled) -> None:
+    def __init__(self, system: Coupled, passages: Sequence[Passage] = ()) -> None:
         given, own = system.given, len(system.others)
         self.system, self.response = system, given.response
-        self.intervals = np.arange(system.intervals) if own else system.held
+        self.passages = {each.interval: each for each in passages}
+        ends = np.array(sorted(self.passages), dtype=int)
+        self.intervals = np.arange(system.intervals) if own else np.union1d(system.held, ends)
         self.at = self.intervals[:, None] * system.ncol + np.arange(system.ncol)
         self.forces = system.ncol * len(system.active)
         blocks, begun, left = self._rows(given.local.forces[self.at][:, :, system.active], -1.0)
@@ -77,7 +87,7 @@ class Chain:
         count, points, each, _ = rows.shape
         by_place = sign * rows[..., [1 + system.n + k for k in system.places]]
         local = response.local[self.intervals][..., system.active]
-        blocks = [(by_place @ local.reshape(count, points, len(system.places), -1))]
+        blocks = [(by_place @ local.reshape(count, points, len(system.places), self.forces))]
         shown = response.shown[self.intervals]
         begun = by_place @ np.concatenate([shown.real, -shown.imag], axis=3)
         width = system.given.orbit.grid.width[self.intervals]
@@ -86,19 +96,26 @@ class Chain:
         inside = rates[:, :, :, None, :] * weights[:, :, None, 1:, None]
         same = np.arange(points)
         inside[:, same, :, same] += np.swapaxes(sign * rows[..., 1 + system.n + system.others], 0, 1)
-        blocks.append(inside.reshape(count, points, each, -1))
+        blocks.append(inside.reshape(count, points, each, points * len(system.others)))
         left = rates * weights[:, :, None, :1]
-        flat = (count, points * each, -1)
-        return np.concatenate(blocks, axis=3).reshape(flat), begun.reshape(flat), left.reshape(flat)
+        found = np.concatenate(blocks, axis=3), begun, left
+        by_unknowns, by_modes, by_own = (a.reshape(count, points * each, a.shape[3]) for a in found)
+        return by_unknowns, by_modes, by_own
 
     @cached_property
     def _leaves(self) -> Array:
         """What forces of an interval leave in the modes at its end, (C, 2 J, a k)."""
         left = self.response.impulse[self.intervals][..., self.system.active]
-        left = left.reshape(*left.shape[:2], -1)
+        left = left.reshape(*left.shape[:2], self.forces)
         return np.concatenate([left.real, left.imag], axis=1)
 
-    def run(self, right: Array | None, modes: Complex, own: Array) -> tuple[Array, Complex, Array]:
+    def run(
+        self,
+        right: Array | None,
+        modes: Complex,
+        own: Array,
+        passed: dict[int, tuple[Complex, Array]] | None = None,
+    ) -> tuple[Array, Complex, Array]:
         """Return unknowns (size, r), modes (J, r) and own states (o, r) at the end of the period.
 
         Parameters
@@ -109,6 +126,9 @@ class Chain:
             Modes at the beginning.
         own : ndarray, shape (o, r)
             Own states there.
+        passed : dict, optional
+            Gets what events add to modes and own states of motions at fixed tau, by interval; without it
+            event nodes are where they are, and add nothing.
         """
         response, exponents = self.response, self.response.modes.exponents
         found = np.zeros((len(self.intervals), self.inverse.shape[1], modes.shape[1]))
@@ -124,8 +144,18 @@ class Chain:
             left = leaves[i] @ found[i, : self.forces]
             z = grown[i][:, None] * z + (left[:count] + 1j * left[count:])
             own, now = found[i, found.shape[1] - len(own) :], response.end[interval]
+            if passed is not None and interval in self.passages:
+                passed[interval] = more = self._passed(self.passages[interval], z, own)
+                z, own = z + more[0], own + more[1]
         z = np.exp(exponents * (response.period - now))[:, None] * z
         return self._together(found), z, own
+
+    def _passed(self, passage: Passage, z: Complex, own: Array) -> tuple[Complex, Array]:
+        """What an event adds to modes (J, r) and own states (o, r) that arrive there."""
+        system = self.system
+        early = passage.row[system.places] @ (self.response.modes.outputs @ z).real
+        early = early + passage.row[system.others] @ own
+        return passage.modes[:, None] * early, passage.own[:, None] * early
 
     def _by_interval(self, right: Array) -> Array:
         """Right-hand sides (size, r) as (C, m, r)."""

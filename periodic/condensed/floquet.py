@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.condensed.chain import Chain, pays
+from periodic.condensed.chain import Added, Chain, pays
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.subspace import invariant
@@ -69,8 +69,11 @@ class Floquet:
 
     @cached_property
     def chain(self) -> Chain | None:
-        """The same interval by interval, where that pays."""
-        return Chain(self._system) if pays(self._system, min(len(self.kept), SMALL)) else None
+        """The same interval by interval, where that pays or forces jump."""
+        given = self.given.passages
+        if not given and not pays(self._system, min(len(self.kept), SMALL)):
+            return None
+        return Chain(self._system, given)
 
     @cached_property
     def free(self) -> tuple[Array, Array]:
@@ -80,11 +83,14 @@ class Floquet:
         """
         return self.driven(None, np.eye(len(self.kept)))
 
-    def driven(self, right: Array | None, basis: Array) -> tuple[Array, Array]:
-        """Return the same of motions from a basis (coordinates, r), driven by right-hand sides (., r)."""
+    def driven(self, right: Array | None, basis: Array, passed: Added | None = None) -> tuple[Array, Array]:
+        """Return the same of motions from a basis (coordinates, r), driven by right-hand sides (., r).
+
+        `passed` as in `Chain.run`.
+        """
         assert self.chain is not None
         begun = basis[len(basis) - len(self.given.others) :]
-        found, modes, own = self.chain.run(right, self.modes(basis), begun)
+        found, modes, own = self.chain.run(right, self.modes(basis), begun, passed)
         return found, np.concatenate([modes.real, modes.imag, own])[self.kept]
 
     @cached_property
@@ -163,7 +169,7 @@ class Floquet:
     def answers(self, basis: Array) -> Array:
         """Return forces and own states at the points in free motion from the columns of a basis."""
         if self.chain is not None:
-            return self.driven(None, basis)[0]
+            return self.driven(None, basis, {})[0]
         return np.asarray(scipy.linalg.lu_solve(self._factors, self._excited @ basis, check_finite=False))
 
     def modes(self, basis: Array) -> Complex:
@@ -194,6 +200,8 @@ class Floquet:
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
         if self.chain is not None:
+            if self.given.passages:
+                return self.driven(None, basis, {})[1]
             square = basis.shape[0] == basis.shape[1]
             return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]
         factor, across, partner = self._grown
@@ -219,13 +227,19 @@ class Floquet:
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
         growth, own, modes = self.given.response.growth, len(self.given.others), self.modes(basis)
-        answers = self.answers(basis)
+        passed: Added = {}
+        answers = self.answers(basis) if self.chain is None else self.driven(None, basis, passed)[0]
         moved = growth[:, :, None] * modes + self.given.response.driven(self.forces(answers))
+        for interval, (more, _) in passed.items():
+            moved[interval + 1 :] += self.given.response.grown_since(interval + 1)[:, :, None] * more
         parts = [moved.real, moved.imag]
         if own:
             count, points, _ = self.given.orbit.stages.shape
             ends = answers[-count * points * own :].reshape(count, points, own, -1)[:, -1]
-            parts.append(np.concatenate([basis[None, -own:], ends]))
+            whole = np.concatenate([basis[None, -own:], ends])
+            for interval, (_, jumped) in passed.items():
+                whole[interval + 1] += jumped
+            parts.append(whole)
         return np.concatenate(parts, axis=1)[:, self.kept]
 
 

@@ -15,9 +15,10 @@ from periodic.condensed.modal.reduction import audible, reduced, reduced_slope
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes
 from periodic.condensed.native.response import response_of
+from periodic.condensed.passing import Passage, passages
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import LinearPart, ModesLike, System, linear_of
+from periodic.system import LinearPart, ModesLike, System, jumps_of, linear_of
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,19 @@ class Local:
     unknowns: Array
     residual: float
     rows: NDArray[np.int_]
+
+
+def unheard(system: System) -> tuple[int, ...]:
+    """Return the states of the linear part that need not be right between mesh points.
+
+    All modes are heard in velocities; but where equations jump with a speed it counts where it vanishes.
+    """
+    part, jumps = linear_of(system), list(jumps_of(system))
+    if part is None or not jumps:
+        return () if part is None else part.velocities
+    state, _ = system.rest(system.nominal)
+    slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0, jumps]
+    return tuple(k for k in part.velocities if not slopes[:, k].any())
 
 
 def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...]) -> Local:
@@ -65,7 +79,8 @@ def answer(
         raise ValueError("the system has no linear part; condensation needs one")
     whole = part.modes(parameter)
     heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
-    kept = audible(whole, heard, mesh.period, tolerance)
+    # where forces jump, modes that follow them at once would make the motion jump
+    kept = audible(whole, heard, mesh.period, 0.0 if jumps_of(system) else tolerance)
     changes = [reduced_slope(whole, part.slope(parameter, k), kept) for k in free]
     return response_of(system, reduced(whole, kept), mesh.scheme, orbit.grid, mesh.period), changes
 
@@ -86,6 +101,8 @@ class Linearised:
         Their derivatives in the free parameters.
     local : Local
         The system's own rows.
+    system : System
+        The system.
     """
 
     orbit: Orbit
@@ -93,6 +110,7 @@ class Linearised:
     response: Response
     changes: list[ModesLike | None]
     local: Local
+    system: System
 
     @classmethod
     def about(cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0) -> Linearised:
@@ -103,7 +121,12 @@ class Linearised:
         response, changes = answer(system, orbit, orbit.parameter, free, tolerance)
         part = linear_of(system)
         assert part is not None
-        return cls(orbit, part, response, changes, local_rows(system, part, orbit, free))
+        return cls(orbit, part, response, changes, local_rows(system, part, orbit, free), system)
+
+    @cached_property
+    def passages(self) -> list[Passage]:
+        """The events at which forces jump. Raises numpy.linalg.LinAlgError."""
+        return passages(self.system, self.part, self.orbit, self.response)
 
     @cached_property
     def others(self) -> NDArray[np.int_]:

@@ -6,11 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from periodic.collocation.event import event_rows
 from periodic.collocation.method import Collocation, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.linearised import Linearised, unheard
 from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.correction.discretisation import Discretisation
@@ -27,7 +30,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System, linear_of
+from periodic.system import System, jumps_of
 
 
 @dataclass(frozen=True)
@@ -89,10 +92,9 @@ class CondensedCollocation(Collocation):
         operator = correction.operator
         if isinstance(operator, Condensed) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
-        part = linear_of(problem.system)
-        velocities = () if part is None else part.velocities
+        quiet = self._quiet(problem.system, operator)
         beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, velocities, beside
+        given = self._brief, problem, correction.orbit, tangent, spectrum, quiet, beside
         found = deferred(*given, lengths=True)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
@@ -102,6 +104,17 @@ class CondensedCollocation(Collocation):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
         return ContactError(**named, variation=variation)
+
+    @staticmethod
+    def _quiet(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
+        """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
+        if not isinstance(operator, Condensed):
+            return None
+        found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
+        found[:, list(unheard(system))] = True
+        if jumps_of(system):
+            found[operator.system.held] = False
+        return found
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         given = Linearised.about(system, orbit, free, self.tolerance)

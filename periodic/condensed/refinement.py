@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from periodic.collocation.method import CollocationRefinement
 from periodic.condensed.estimate import ContactError
-from periodic.condensed.linearised import answer, local_rows
+from periodic.condensed.linearised import answer, local_rows, unheard
 from periodic.condensed.memory import Memory
 from periodic.correction.error import SAFETY
 from periodic.correction.meshes import AIM
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.redistribution import SPLIT, density, spread
 from periodic.orbit.scheme import Array
-from periodic.system import linear_of
+from periodic.system import jumps_of, linear_of
 
 FINER, COARSER = 2.5, 2.0
 """How many times shorter and longer intervals may become at a time."""
@@ -66,7 +66,7 @@ class CondensedRefinement(CollocationRefinement):
         if self._memory(part.size, 1.0).peak(min(most, int(FINER * orbit.mesh.ntst))) <= LARGEST:
             return most
         response, _ = answer(self.system, orbit, orbit.parameter, (), self.method.tolerance)
-        active = self._felt[1]
+        active = self._active
         share = max(float(active.mean()), 1 / len(active))
         modes = len(response.modes.exponents)
         return max(self.method.ntst_min, self._memory(modes, share).most(most, LARGEST))
@@ -114,8 +114,11 @@ class CondensedRefinement(CollocationRefinement):
     def _wanted(self) -> Array:
         """Intervals a rad that are wanted in each interval, (N,)."""
         orbit, width, error = self.orbit, self.orbit.grid.width, self.error
-        felt, active = self._felt
-        wanted = density(replace(orbit, nodes=orbit.nodes[:, felt], stages=orbit.stages[:, :, felt]))
+        active = self._active
+        wanted = self._density(self._felt)
+        if jumps_of(self.system):
+            heard = [k for k in self._felt if k not in unheard(self.system)]
+            wanted = np.where(active, wanted, self._density(heard))
         lacking = SAFETY * error.multiplier if error.curable > error.motion else 0.0
         beside = min(lacking, SAFETY * error.variation) if isinstance(error, ContactError) else lacking
         own = max(error.motion, lacking if lacking > 2 * beside else 0.0)
@@ -128,18 +131,32 @@ class CondensedRefinement(CollocationRefinement):
         shorter = SPLIT * self._times(beside, 2 * points - 1) / width[active].max()
         return np.where(active, np.maximum(wanted, shorter), wanted)
 
+    def _density(self, states: list[int]) -> Array:
+        """The density that some of the states want, (N,)."""
+        orbit = self.orbit
+        return density(replace(orbit, nodes=orbit.nodes[:, states], stages=orbit.stages[:, :, states]))
+
     def _times(self, error: float, order: int) -> float:
         """How many times as many intervals bring an error of an order to its aim."""
         ratio = error / (AIM * self.method.tolerance)
         return float(np.clip(ratio, COARSER**-order, FINER**order)) ** (1 / order)
 
     @cached_property
-    def _felt(self) -> tuple[list[int], NDArray[np.bool_]]:
-        """States that are heard or that forces depend on, and the intervals with such forces, (N,)."""
+    def _forces(self) -> Array:
+        """How forces depend on rates and states at the points, (P, k, 2 n), without signs."""
         orbit, part = self.orbit, linear_of(self.system)
-        n = orbit.nodes.shape[1]
         assert part is not None
-        forces = np.abs(local_rows(self.system, part, orbit, ()).forces[:, :, 1 : 1 + 2 * n])
-        by_state = forces[:, :, n:].max(axis=(0, 1), initial=0.0) > 0
-        felt = [k for k in range(n) if by_state[k] or k not in part.velocities]
-        return felt, forces.reshape(len(orbit.grid.width), -1).max(axis=1, initial=0.0) > 0
+        rows = local_rows(self.system, part, orbit, ()).forces
+        return np.abs(rows[:, :, 1 : 1 + 2 * orbit.nodes.shape[1]])
+
+    @property
+    def _felt(self) -> list[int]:
+        """States that are heard or that forces depend on."""
+        n, quiet = self.orbit.nodes.shape[1], unheard(self.system)
+        by_state = self._forces[:, :, n:].max(axis=(0, 1), initial=0.0) > 0
+        return [k for k in range(n) if by_state[k] or k not in quiet]
+
+    @property
+    def _active(self) -> NDArray[np.bool_]:
+        """Intervals where forces depend on states, (N,)."""
+        return self._forces.reshape(len(self.orbit.grid.width), -1).max(axis=1, initial=0.0) > 0

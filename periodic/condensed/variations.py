@@ -40,8 +40,17 @@ class CondensedVariations:
 
     @staticmethod
     def about(system: System, orbit: Orbit, free: tuple[int, ...]) -> CondensedVariations:
-        """Linearise; `free` are the parameters that motions may change."""
-        return CondensedVariations(system, Linearised.about(system, orbit, free), free)
+        """Linearise; `free` are the parameters that motions may change.
+
+        Raises ValueError where forces jump.
+        """
+        given = Linearised.about(system, orbit, free)
+        if given.passages:
+            raise ValueError(
+                "forces at the places jump, as those of friction that sticks; curves in two parameters and "
+                "derivatives of multipliers need a structure that is compiled with condense=False"
+            )
+        return CondensedVariations(system, given, free)
 
     def repeating(self, multiplier: complex) -> CondensedRepeating:
         """Return the equations of the motions that are multiplied by a number."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
@@ -123,7 +124,7 @@ def deferred(
     orbit: Orbit,
     tangent: Increment,
     spectrum: Spectrum,
-    only_at_points: tuple[int, ...] = (),
+    only_at_points: NDArray[np.bool_] | None = None,
     solved: Solved | None = None,
     kinked: bool | None = None,
     lengths: bool = False,
@@ -133,7 +134,7 @@ def deferred(
     `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
     multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit, at
     the same parameter but about a fold; `kinked` says whether they do, by default whether the mesh has event
-    nodes. The states `only_at_points` count at the orbit's mesh points alone,
+    nodes. The states `only_at_points`, (N, n), count at the orbit's mesh points alone,
     not between them. `solved` linearises and solves in one; by default
     `periodic.correction.newton.linearised`, with `linearise`. `lengths` says whether the constraint holds the
     lengths of brief excursions too, as it does in steps: at a fold beside a touch these change far more along
@@ -160,7 +161,9 @@ def deferred(
     stages = found.orbit.stages - fine.stages + change.stages
     at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
-    at_nodes[1::2, list(only_at_points)] = between[:, :, list(only_at_points)] = 0.0
+    if only_at_points is not None:
+        at_nodes[1::2][only_at_points] = 0.0
+        between *= ~np.repeat(only_at_points, 2, axis=0)[:, None]
     apart = float(max(at_nodes.max(), between.max()))
     monodromy = beside.fundamental[-1]
     halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)

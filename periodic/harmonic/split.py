@@ -264,4 +264,4 @@ def _leading(system: System, correction: Correction) -> SeriesLeading:
     changes = [part.slope(orbit.parameter, index) for index in free]
     response = Response(part.modes(orbit.parameter), SCHEME, pieces.grid, mesh.period)
     local = local_rows(system, part, pieces, free)
-    return SeriesLeading(Floquet(Linearised(pieces, part, response, changes, local)))
+    return SeriesLeading(Floquet(Linearised(pieces, part, response, changes, local, system)))

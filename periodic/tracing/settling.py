@@ -6,6 +6,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.condensed import settling as condensed
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -31,7 +32,9 @@ def settled(system: System, start: Orbit) -> Orbit | None:
     None where it does not settle within PERIODS, where its integration fails, and of a system that cannot be
     followed in time.
     """
-    if not hasattr(system, "motion") or linear_of(system):
+    if linear_of(system):
+        return condensed.settled(system, start) if slides_of(system) else None
+    if not hasattr(system, "motion"):
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]

@@ -16,6 +16,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
+from periodic.system import linear_of, slides_of
 from periodic.tracing.drift import drifting
 from periodic.tracing.resting import resting
 from periodic.tracing.settling import held, settled
@@ -85,6 +86,11 @@ class Start:
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
+        others = self._other_guesses(guess)
+        if linear_of(solver.problem.system) and slides_of(solver.problem.system):  # it is cheap, and sticks
+            motion = next(others, None)
+            if motion is not None and (last := self._fixed(motion, sign)).ok:
+                return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
             if (last := self._fixed(rest, sign)).ok:
@@ -100,7 +106,7 @@ class Start:
                 return refined(solver, solver.at_parameter(orbit, sign), fixed=True)
             if self.shortfall:
                 return first
-        for orbit in self._other_guesses(guess):
+        for orbit in others:
             if orbit is not None and (last := self._fixed(orbit, sign)).ok:
                 return last
         return first
@@ -120,15 +126,15 @@ class Start:
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses at the wanted parameters, each found only when those before have not served.
 
-        None where friction holds a motion that has settled.
+        The first is a motion that has settled, None where there is none; none at all where friction holds it.
         """
         motion = self._settled(guess)
         names = [] if motion is None else held(self.solver.problem.system, motion)
         if names:
             self.tried[-1] += f": {' and '.join(names)} holds all along, at a place that is not determined"
             return
-        if motion is not None:
-            yield self.solver.discretisation.guess(self.solver.problem.system, guess.parameter, motion)
+        system, method = self.solver.problem.system, self.solver.discretisation
+        yield None if motion is None else method.guess(system, guess.parameter, motion)
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import fields, replace
 from typing import cast
 
+import numpy as np
+
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.whole.wider import WholeSystem
@@ -14,7 +16,7 @@ from periodic.correction.problem import Problem
 from periodic.harmonic.method import HarmonicBalance
 from periodic.harmonic.split import SplitHarmonicBalance
 from periodic.orbit.scheme import Family
-from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of
+from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of, slides_of
 
 SPLIT: dict[type[Discretisation], type[Discretisation]] = {
     Collocation: CondensedCollocation,
@@ -80,14 +82,26 @@ def _split(method: Discretisation, system: System) -> Discretisation:
             f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
             f"compiled with condense=False for it"
         )
-    if jumps_of(system) or resets_of(system):
-        raise ValueError(
-            "the equations at the places jump or are reset; a structure must be compiled with condense=False "
-            "for that"
-        )
+    _check_events(system)
     scheme = getattr(method, "scheme", None)
     if scheme is not None and scheme.family is not Family.RADAU:
         raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
     chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
     usual = type(method)()
     return SPLIT[type(method)](**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
+
+
+def _check_events(system: System) -> None:
+    """Refuse states that are reset, and jumps of a motion whose sticking is not known. Raises ValueError."""
+    if resets_of(system):
+        raise ValueError(
+            "the states at the places are reset; a structure must be compiled with condense=False for that"
+        )
+    unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
+    state, _ = system.rest(system.nominal)
+    slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]
+    if slopes[unknown].any():
+        raise ValueError(
+            "the equations at the places jump, and whether motion sticks there is known only of one joint "
+            "on a structure with all its modes; it must be compiled with condense=False"
+        )

@@ -24,6 +24,9 @@ KEEP_POSITIVE = (ca.OP_ADD, ca.OP_MUL, ca.OP_DIV, ca.OP_FMIN, ca.OP_TWICE, ca.OP
 POSITIVE = (ca.OP_EXP, ca.OP_COSH)
 """Operations that are positive where all their arguments are, and always."""
 
+JUMPING = (ca.OP_SIGN, ca.OP_LT, ca.OP_LE)
+"""Operations that jump where their switching argument vanishes."""
+
 STEPPED = {ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil", ca.OP_FMOD: "fmod", ca.OP_COPYSIGN: "copysign"}
 """Operations that jump at places which no switch tells of: rounding, remainders, signs of others."""
 
@@ -112,6 +115,11 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
         elif Traits.POSITIVE not in traits[0]:
             found.append(parts[0])
     return [s.dep(0) if s.op() == ca.OP_NEG else s for s in found]
+
+
+def jumps_with(rows: ca.SX, symbols: ca.SX) -> bool:
+    """Return whether expressions have operations that jump with some of their symbols."""
+    return any(node.op() in JUMPING and ca.depends_on(node, symbols) for node in nodes(rows))
 
 
 def nodes(rows: ca.SX) -> Iterator[ca.SX]:

@@ -62,9 +62,12 @@ def expressed(assembly: Assembly) -> Expressions:
     outputs = [expression for _, expression in assembly.described]
     unknowns, excitation = assembly.unknowns, assembly.excitation
     moved = packed.scaled([u.moved for u in unknowns])
-    residual = packed.scaled(rows)
+    moving = _moving_rows(assembly)
+    both = packed.scaled(rows + moving)  # at once: what they share stays the same
+    residual = both[: len(rows)]
     switches = packed.scaled([expression for _, expression in assembly.switches])
-    beside = sided(packed, residual, switches, tuple(assembly.resets))
+    resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
+    beside = sided(packed, residual, switches, resets, telling)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -107,6 +110,26 @@ def _motion_rows(assembly: Assembly) -> list[ca.SX]:
         scale = assembly.nominal(inertia) * motion.position.scale
         rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
         rows.append((inertia * motion.velocity.derivative - motion.force) / scale)
+    return rows
+
+
+def _moving_rows(assembly: Assembly) -> list[ca.SX]:
+    """Rows of all rates, for structures whose acceleration is known where they are condensed; else none."""
+    if not any(place.coasting for place in assembly.places):
+        return []
+    rows = [row for row in _motion_rows(assembly) if not row.is_zero()]
+    rows += [row for row in assembly.differential_rows if not row.is_zero()]
+    omega = assembly.omega
+    for place in assembly.places:
+        motion, scale = place.motion, place.motion.position.scale
+        rows.append((motion.position.derivative - motion.velocity.symbol) / scale)
+        beside = [other.motion.force for other in assembly.places if other.structure is place.structure]
+        rate = motion.velocity.derivative
+        if place.coasting is not None:
+            rows.append(place.coasting.derivative / place.coasting.scale)
+            pushed = sum((m * force for m, force in zip(place.mobility, beside, strict=True)), ca.SX(0))
+            rate = rate - place.coasting.symbol - pushed / omega**2
+        rows.append(rate / scale)
     return rows
 
 

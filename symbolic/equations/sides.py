@@ -14,12 +14,9 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
-from symbolic.equations.branches import nodes
+from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
-
-JUMPING = (ca.OP_SIGN, ca.OP_LT, ca.OP_LE)
-"""Operations that jump where their switching argument vanishes."""
 
 ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
@@ -48,7 +45,9 @@ class Sided:
     slides: tuple[tuple[int, ca.SX, ca.SX], ...] = ()
 
 
-def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...]) -> Sided:
+def sided(
+    packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...], moving: ca.SX | None = None
+) -> Sided:
     """Return a residual with the side of every jump as an argument.
 
     Parameters
@@ -59,6 +58,8 @@ def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int,
         Columns in them.
     excluded : tuple of int
         Switches that are no jumps of the equations: impacts.
+    moving : casadi.SX, optional
+        Rows that tell all rates, where those of the residual do not.
 
     Returns
     -------
@@ -69,39 +70,43 @@ def sided(packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int,
     every = sorted({k for _, k, _ in found.values()})
     side = ca.SX.sym("side", len(every))
     names = {k: side[i] for i, k in enumerate(every)}
-    marked = _rebuilt(residual, {node: _branch(*given, names) for node, given in found.items()})
+    branches = {node: _branch(*given, names) for node, given in found.items()}
+    count = residual.numel()
+    rows = _rebuilt(residual if moving is None else ca.vertcat(residual, moving), branches)
+    telling = slice(0 if moving is None else count, rows.numel())
+    marked = rows[:count]
     jumps = [k for i, k in enumerate(every) if _jumps(packed, marked, side, i, switches[k])]
     kept = ca.SX.sym("side", len(jumps))
     values = [kept[jumps.index(k)] if k in jumps else ca.SX(0) for k in every]
-    both = ca.substitute(marked, side, ca.vertcat(ca.SX(0, 1), *values))
+    rows = ca.substitute(rows, side, ca.vertcat(ca.SX(0, 1), *values))
     slides = []
     for i, k in enumerate(jumps):
-        sliding = _sliding(packed, both, kept, i, switches[k])
+        sliding = _sliding(packed, rows, telling, kept, i, switches[k])
         if sliding is not None:
             slides.append((k, *sliding[1:]))
-            both = ca.if_else(kept[i] == STUCK, sliding[0], both)
-    return Sided(both, kept, tuple(jumps), tuple(slides))
+            rows = ca.if_else(kept[i] == STUCK, sliding[0], rows)
+    return Sided(rows[:count], kept, tuple(jumps), tuple(slides))
 
 
 def _sliding(
-    packed: Packed, residual: ca.SX, side: ca.SX, index: int, switch: ca.SX
+    packed: Packed, rows: ca.SX, telling: slice, side: ca.SX, index: int, switch: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX] | None:
-    """The residual M x' + g0 + sigma g1 of sliding, and s' on either side; None where nothing slides.
+    """The rows M x' + g0 + sigma g1 of sliding, and s' on either side; None where nothing slides.
 
-    On the sides themselves it is M x' + g0 + g1 and M x' + g0 - g1. sigma keeps s_x x' + s_tau at 0; it must
-    not depend on the sides of other jumps.
+    On the sides themselves they are M x' + g0 + g1 and M x' + g0 - g1. sigma keeps s_x x' + s_tau at 0, x'
+    being what the `telling` rows say; it must not depend on the sides of other jumps.
     """
     rate = packed.rate
-    if packed.unknown.numel() or not residual.numel():
+    if not rows.numel() or ca.depends_on(rows[telling], packed.unknown):
         return None
-    mass = ca.jacobian(residual, rate)
+    mass = ca.jacobian(rows, rate)
     if ca.depends_on(mass, ca.vertcat(side, rate)):
         return None
-    still = ca.substitute(residual, rate, ca.SX.zeros(rate.numel()))
+    still = ca.substitute(rows, rate, ca.SX.zeros(rate.numel()))
     above, below = (_with(still, side, index, value) for value in (1, -1))
     mean, half = (above + below) / 2, (above - below) / 2
     by_state, by_phase = ca.jacobian(switch, packed.state), ca.jacobian(switch, packed.phase)
-    pushed, pulled = (by_state @ ca.solve(mass, g) for g in (mean, half))
+    pushed, pulled = (by_state @ ca.solve(mass[telling, :], g[telling]) for g in (mean, half))
     # Both sides lead back to the jump where s' falls by this from one to the other.
     if ca.depends_on(pulled, side) or not all(row.min() > EQUAL for row in Samples(packed).rows(pulled)[0]):
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,13 +50,19 @@ class Motion:
 
 @dataclass
 class Place:
-    """A degree of freedom of a condensed structure: its motion, and the force on it as an unknown."""
+    """A degree of freedom of a condensed structure: its motion, and the force on it as an unknown.
+
+    `coasting` is what its acceleration would be without forces at the places, known where friction may stick
+    there; `mobility` is what forces (N) at the structure's places, in order, add to it in SI.
+    """
 
     motion: Motion
     structure: Any
     freedom: int
     unknown: ca.SX
     unit_force: float
+    coasting: State | None = None
+    mobility: Sequence[float] = ()
 
 
 def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -> dict[State, ca.SX]:

@@ -14,6 +14,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import mapping, positive, refusal, text, whole
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.branches import jumps_with
 from symbolic.equations.model import Part
 from symbolic.equations.terms import Place
 from symbolic.equations.variables import Coordinate
@@ -302,8 +303,11 @@ class Structure(Part):
         self._draw(assembly, tuple(coordinate for _, coordinate in used))
         others = stiffness(assembly, [assembly.motion(coordinate) for _, coordinate in used])
         form = self._holding(assembly.nominal(assembly.omega), [k for k, _ in used], others)
-        flexibility = np.diag(form.static([k for k, _ in used])[[k for k, _ in used]])
-        for (index, coordinate), softness in zip(used, flexibility, strict=True):
+        freedoms = [k for k, _ in used]
+        flexibility = np.diag(form.static(freedoms)[freedoms])
+        sticking = self._sticking(assembly, form, [coordinate for _, coordinate in used])
+        mobility = form.mobility(freedoms)
+        for i, ((index, coordinate), softness) in enumerate(zip(used, flexibility, strict=True)):
             motion = assembly.motion(coordinate)
             if not motion.mass.is_zero():
                 raise ValueError(
@@ -316,7 +320,24 @@ class Structure(Part):
             spring = self._held.get(index, 0.0) * motion.position.symbol
             motion.force += spring
             assembly.output(name, "N", unit * unknown - spring)
-            assembly.places.append(Place(motion, self, index, unknown, unit))
+            place = Place(motion, self, index, unknown, unit)
+            if sticking:
+                name = f"acceleration of {coordinate.name} without force"
+                size = float(mobility[i, i]) * unit / assembly.nominal(assembly.omega) ** 2
+                place.coasting = assembly.state(name, coordinate.unit, size, ca.SX(0))
+                place.mobility = mobility[i]
+                assembly.differential_rows.append(ca.SX(0))
+            assembly.places.append(place)
+
+    def _sticking(self, assembly: Assembly, form: ModalForm, used: list[Coordinate]) -> bool:
+        """Whether a force at the places jumps with a speed there, and all modes are there to answer it.
+
+        A jump makes a coordinate without inertia jump, as those are whose modes are left out.
+        """
+        motions = [assembly.motion(coordinate) for coordinate in used]
+        speeds = ca.vertcat(*[m.velocity.symbol for m in motions])
+        forces = ca.vertcat(*[m.force for m in motions])
+        return form.undamped is None and not callable(self.M) and jumps_with(forces, speeds)
 
     def _draw(self, assembly: Assembly, of: tuple[Coordinate, ...]) -> None:
         """Draw the deflections w0, w1, ... or x0, x1, ... of its nodes, where its places are called so."""

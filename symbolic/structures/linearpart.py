@@ -41,7 +41,11 @@ class Modal(Protocol):
 
 @dataclass(frozen=True)
 class Held:
-    """A place of a structure: its degree of freedom, its two states, its force, and their units in SI."""
+    """A place of a structure: its degree of freedom, its states, its force, and their units in SI.
+
+    coasting: the state that is its acceleration without forces at the places, where there is one, with its
+    scale.
+    """
 
     structure: Modal
     freedom: int
@@ -50,6 +54,8 @@ class Held:
     force: int
     scale: float
     unit_force: float
+    coasting: int | None = None
+    coasting_scale: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -96,13 +102,17 @@ class LinearPart:
 
     @property
     def states(self) -> tuple[int, ...]:
-        """Indices of the states that the structures give: position and velocity of each place."""
-        return tuple(k for place in self.places for k in (place.position, place.velocity))
+        """Indices of the states that the structures give: position and velocity of each place.
+
+        Then the acceleration without forces at the places, where friction asks for it.
+        """
+        both = tuple(k for place in self.places for k in (place.position, place.velocity))
+        return both + tuple(place.coasting for place in self.places if place.coasting is not None)
 
     @property
     def velocities(self) -> tuple[int, ...]:
         """Those of them that are velocities."""
-        return tuple(place.velocity for place in self.places)
+        return tuple(place.velocity for place in self.places) + self.states[2 * len(self.places) :]
 
     @property
     def forces(self) -> tuple[int, ...]:
@@ -136,10 +146,8 @@ class LinearPart:
             if len(known) < len(changes):
                 return self._difference(omega, rate)
             return self._product(omega, rate, known)
-        velocity = np.zeros((len(self.states), 1))
-        velocity[1::2] = scale
         zero = np.zeros_like(at.direct)
-        return Modes(scale * at.exponents, scale * at.inputs, velocity * at.outputs, zero, zero)
+        return Modes(scale * at.exponents, scale * at.inputs, scale * self._orders * at.outputs, zero, zero)
 
     def observed(self, parameter: Array, freedoms: Sequence[int] | None, structure: str | None) -> Modes:
         """Return the modes with displacement and velocity (SI) of degrees of freedom in turn as outputs.
@@ -203,9 +211,24 @@ class LinearPart:
                     inputs[own, i] += change.inputs[:, place.freedom] * place.unit_force / omega
                     outputs[2 * i, own] = change.shapes[place.freedom] / place.scale
         # velocities are exponents times displacements
-        outputs[1::2] = outputs[::2] * at.exponents + at.outputs[::2] * exponents
-        zero = np.zeros((2 * k, k))
+        both, coasting = slice(0, 2 * k, 2), self._coasting
+        faster, steeper = outputs[both], at.outputs[both]
+        outputs[1 : 2 * k : 2] = faster * at.exponents + steeper * exponents
+        turned = faster * at.exponents**2 + 2 * steeper * at.exponents * exponents
+        outputs[2 * k :] = turned[coasting] * self._coasting_scales
+        zero = np.zeros_like(at.direct)
         return Modes(rate * exponents, rate * inputs, rate * outputs, zero, zero)
+
+    @property
+    def _coasting(self) -> list[int]:
+        """The places whose acceleration without forces is a state."""
+        return [i for i, place in enumerate(self.places) if place.coasting is not None]
+
+    @property
+    def _coasting_scales(self) -> Array:
+        """Units of displacements in those of accelerations there, shape (c, 1)."""
+        places = [self.places[i] for i in self._coasting]
+        return np.array([place.scale / place.coasting_scale for place in places]).reshape(-1, 1)
 
     def _difference(self, omega: float, rate: float) -> Modes:
         """The same by differences, the modes of the two sides matched and normalised alike."""
@@ -238,14 +261,20 @@ class LinearPart:
     def _timed(self, omega: float) -> Modes:
         """The modes of matrices that do not depend on Omega: it only scales the time."""
         at = self._unit
-        outputs = at.outputs.copy()
-        outputs[1::2] /= omega
+        outputs = at.outputs / omega**self._orders
         return Modes(at.exponents / omega, at.inputs / omega, outputs, at.direct, at.direct_rate)
+
+    @cached_property
+    def _orders(self) -> Array:
+        """How many derivatives in time the states are away from displacements, (s, 1)."""
+        both = [0.0, 1.0] * len(self.places)
+        return np.array([*both, *[2.0] * len(self._coasting)])[:, None]
 
     def _made(self, omega: float) -> Modes:
         exponents, inputs, outputs = [], [], []
         k = len(self.places)
-        direct, direct_rate = np.zeros((2 * k, k)), np.zeros((2 * k, k))
+        size, coasting = len(self.states), self._coasting
+        direct, direct_rate = np.zeros((size, k)), np.zeros((size, k))
         for structure in self.structures:
             mine = [i for i, place in enumerate(self.places) if place.structure is structure]
             form = structure.modal(omega)
@@ -254,9 +283,12 @@ class LinearPart:
             lengths = np.array([self.places[i].scale for i in mine])
             drive = np.zeros((len(form.exponents), k), dtype=complex)
             drive[:, mine] = form.inputs[:, at] * forces / omega
-            shape = np.zeros((2 * k, len(form.exponents)), dtype=complex)
+            shape = np.zeros((size, len(form.exponents)), dtype=complex)
             shape[[2 * i for i in mine]] = form.shapes[at] / lengths[:, None]
             shape[[2 * i + 1 for i in mine]] = form.shapes[at] * form.exponents / (lengths[:, None] * omega)
+            held = shape[[2 * i for i in coasting if i in mine]] * (form.exponents / omega) ** 2
+            rows = [2 * k + row for row, i in enumerate(coasting) if i in mine]
+            shape[rows] = held * self._coasting_scales[[row - 2 * k for row in rows]]
             residual = form.residual(at)[at] * forces / lengths[:, None]
             direct[np.ix_([2 * i for i in mine], mine)] = residual
             direct_rate[np.ix_([2 * i + 1 for i in mine], mine)] = residual

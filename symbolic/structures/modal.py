@@ -90,6 +90,11 @@ class ModalForm:
             found = np.linalg.solve(stiffness, loads).astype(float)
         return np.asarray(found - phi @ (phi.T @ (mass @ found)))
 
+    def mobility(self, freedoms: Sequence[int]) -> Array:
+        """Return by how much forces accelerate degrees of freedom at once, (k, k) in 1/kg."""
+        at = list(freedoms)
+        return np.asarray(((self.shapes[at] * self.exponents) @ self.inputs[:, at]).real)
+
     def static(self, freedoms: Sequence[int]) -> Array:
         """Return the static flexibility (n, k) in m/N of the modes."""
         return np.asarray(-(self.shapes @ (self.inputs[:, list(freedoms)] / self.exponents[:, None])).real)

@@ -174,6 +174,8 @@ def _held(assembly: Assembly) -> tuple[Held, ...]:
             force=unknowns.index(place.unknown.name()),
             scale=place.motion.position.scale,
             unit_force=place.unit_force,
+            coasting=None if place.coasting is None else states.index(id(place.coasting)),
+            coasting_scale=1.0 if place.coasting is None else place.coasting.scale,
         )
         for place in assembly.places
     )

@@ -332,6 +332,11 @@ class Response:
         """How the modes have grown at the mesh points, (N+1, J)."""
         return np.exp(self.modes.exponents * np.append(self.start, self.period)[:, None])
 
+    def grown_since(self, node: int) -> Complex:
+        """Return how the modes have grown at the mesh points from one of them on, (N+1 - node, J)."""
+        times = np.append(self.start, self.period)[node:]
+        return np.exp(self.modes.exponents * (times - times[0])[:, None])
+
     def ahead(self, intervals: NDArray[np.int_]) -> Complex:
         """Return the states at the points of some intervals by the modes at the beginning, (R, a, s, J)."""
         return np.asarray(self.shown[intervals] * self.growth[intervals, None, None])

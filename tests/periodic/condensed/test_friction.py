@@ -1,0 +1,47 @@
+"""Friction that sticks at places of a structure: where a motion settles, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+import periodic as per
+import symbolic as sym
+from periodic.condensed.settling import settled
+from periodic.condensed.variations import CondensedVariations
+from periodic.orbit.construction import at_rest
+from periodic.orbit.mesh import uniform
+from periodic.orbit.scheme import Scheme
+
+BEAM = sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=2)
+
+
+def compiled(structure: sym.Structure, *places: str) -> sym.CompiledSystem:
+    """A structure with friction at some places, driven at its tip."""
+    frictions = [sym.CoulombFriction(structure[place], 0.002) for place in places]
+    force = sym.HarmonicForce(structure["tip"], 0.02, 2.2)
+    return sym.compile(sym.combine([structure, *frictions, force]))
+
+
+def test_settled() -> None:
+    """Assert the stops of a motion in time, as long as those of the orbit to 0.01 rad."""
+    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
+    orbit = settled(system, at_rest(system, uniform(Scheme(), 8), system.nominal))
+    found = per.trace(system, "Omega", (2.2, 2.21))[0]
+    assert orbit is not None
+    assert [event.switch for event in orbit.mesh.events] == [e.switch for e in found.orbit.mesh.events]
+    lengths = [o.mesh.segment_lengths(o.phases) for o in (orbit, found.orbit)]
+    assert lengths[0] == pytest.approx(lengths[1], abs=0.01)
+    assert found.error.orbit < 1e-7
+
+
+def test_refused() -> None:
+    """Assert what is said of gradients of multipliers, of modes left out, and of two joints."""
+    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
+    orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
+    with pytest.raises(ValueError, match="derivatives of multipliers need a structure"):
+        CondensedVariations.about(system, orbit, ())
+    some = compiled(sym.Structure(BEAM, damping=0.02, modes=2), "tip")
+    two = compiled(sym.Structure(BEAM, damping=0.02, at={"middle": 0}), "tip", "middle")
+    for other in (some, two):
+        with pytest.raises(ValueError, match="known only of one joint on a structure with all its modes"):
+            per.trace(other, "Omega", (2.2, 2.3))
