@@ -29,14 +29,14 @@ SHARED = 1e-9
 
 
 def exact(system: System) -> list[int]:
-    """Return the switches at whose level 0 the equations have a kink: those without further levels.
+    """Return the switches at whose level 0 the equations have a kink or a jump: those without further levels.
 
-    Not those at which the state or the equations jump: see `periodic.collocation.jumping` and `stick`.
+    Not those at which the state jumps or motions slide: see `periodic.collocation.jumping` and `stick`.
     """
     slides = slides_of(system)
     releases = (k for pair in slides.values() for k in pair)
-    jumping = {*resets_of(system), *jumps_of(system), *slides, *releases}
-    each = ((k, s) for k, s in enumerate(system.switches) if k not in jumping)
+    elsewhere = {*resets_of(system), *slides, *releases}
+    each = ((k, s) for k, s in enumerate(system.switches) if k not in elsewhere)
     return [k for k, switch in each if tuple(switch.levels) == (0.0,) and switch.direction == 0]
 
 

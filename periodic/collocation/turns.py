@@ -1,7 +1,8 @@
-"""Excursions about an event node of dry friction: a mass that meets a stop turns back where its speed is 0.
+"""Excursions about an event node of the speed: a mass that meets a stop turns back where its speed is 0.
 
-Between the event nodes of such an excursion lie that of the zero of the speed and, where the mass sticks
-there, that of its release.
+There friction turns or holds it, or a law changes that is another in loading than in unloading. Between the
+event nodes of such an excursion lie that of the zero of the speed and, where the mass sticks there, that of
+its release; all of them meet where the excursion ends.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ A collocation point lies there, and rounding would decide of what side it takes 
 
 @dataclass(frozen=True)
 class Turn:
-    """The event nodes at which an excursion begins and ends, and those of friction between them."""
+    """The event nodes at which an excursion begins and ends, and those of the speed between them."""
 
     begin: int
     inside: tuple[int, ...]
@@ -38,14 +39,14 @@ class Turn:
 
 
 def turns(system: System, orbit: Orbit) -> list[Turn]:
-    """Return the excursions of an orbit in which friction turns the motion back."""
-    slides, own = slides_of(system), exact(system)
-    if not slides or not own:
+    """Return the excursions of an orbit that turn back at an event node of another switch."""
+    events, own, found = orbit.mesh.events, exact(system), list[Turn]()
+    if len(events) < 3:
         return []
-    events, found = orbit.mesh.events, list[Turn]()
     for i, first in enumerate(events):
         ahead = [(i + m) % len(events) for m in range(1, 4)]
-        if first.switch not in own or len(events) < 3 or sliding(system, events[ahead[0]].switch) is None:
+        inner = events[ahead[0]].switch
+        if first.switch not in own or not (inner in own or sliding(system, inner) is not None):
             continue
         inside = ahead[:1] if stuck_until(system, orbit, ahead[0]) is None else ahead[:2]
         last = ahead[len(inside)]

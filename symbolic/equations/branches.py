@@ -2,6 +2,8 @@
 
     fmax(a, b), fmin(a, b), a < b, a <= b:  s = a - b;    fabs(a), sign(a):  s = a
 
+Of max(0, a b), min(0, a b) and |a b| they are a and b, but for those that are not negative by their form: a
+force max(0, k d (1 + c v)), d = max(0, x - g), which is 0 in flight, switches at x = g and at 1 + c v = 0.
 A comparison for equality holds at single points, where it mends a value; it is no branch.
 """
 
@@ -20,12 +22,21 @@ COMPARED = (ca.OP_FMAX, ca.OP_FMIN, ca.OP_LT, ca.OP_LE)
 SIGNED = (ca.OP_FABS, ca.OP_SIGN)
 """Operations of one argument that switch where it vanishes."""
 
+BENT = (ca.OP_FMAX, ca.OP_FMIN, ca.OP_FABS)
+"""Those of them that do not jump where they switch."""
+
 KEEP_POSITIVE = (ca.OP_ADD, ca.OP_MUL, ca.OP_DIV, ca.OP_FMIN, ca.OP_TWICE, ca.OP_INV, ca.OP_SQRT, ca.OP_SQ)
 POSITIVE = (ca.OP_EXP, ca.OP_COSH)
 """Operations that are positive where all their arguments are, and always."""
 
 JUMPING = (ca.OP_SIGN, ca.OP_LT, ca.OP_LE)
 """Operations that jump where their switching argument vanishes."""
+
+NOT_NEGATIVE = (ca.OP_FABS, ca.OP_SQ, ca.OP_SQRT, ca.OP_LT, ca.OP_LE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+"""Operations that are never negative."""
+
+PRODUCTS = (ca.OP_MUL, ca.OP_DIV, ca.OP_IF_ELSE_ZERO)
+"""Operations whose sign is that of both arguments; the last is a b with a condition a, 0 or 1."""
 
 STEPPED = {ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil", ca.OP_FMOD: "fmod", ca.OP_COPYSIGN: "copysign"}
 """Operations that jump at places which no switch tells of: rounding, remainders, signs of others."""
@@ -43,13 +54,20 @@ class Traits(Flag):
     """What an expression is made of, and its sign.
 
     MOVING: states or the phase; OTHER: rates or unknowns, which a switch is no function of; POSITIVE: greater
-    than 0 by its form.
+    than 0 by its form; NOT_NEGATIVE: 0 or greater.
     """
 
     NONE = 0
     MOVING = auto()
     OTHER = auto()
     POSITIVE = auto()
+    NOT_NEGATIVE = auto()
+
+
+def _sign(positive: bool, not_negative: bool) -> Traits:
+    return (Traits.POSITIVE if positive else Traits.NONE) | (
+        Traits.NOT_NEGATIVE if not_negative else Traits.NONE
+    )
 
 
 @dataclass(frozen=True)
@@ -63,7 +81,7 @@ class _Known:
         if node.is_constant():
             if math.isnan(float(node)):
                 raise ValueError(f"the equations have NaN in them; {FUNCTIONS}, not those of math")
-            return Traits.POSITIVE if float(node) > 0 else Traits.NONE
+            return _sign(float(node) > 0, float(node) >= 0)
         return self.given(node) if node.is_symbolic() else self.found[node.element_hash()]
 
     def add(self, node: ca.SX) -> None:
@@ -71,10 +89,37 @@ class _Known:
         signs = [Traits.POSITIVE in part for part in parts]
         kept = node.op() in KEEP_POSITIVE and all(signs)
         positive = kept or node.op() in POSITIVE or (node.op() == ca.OP_FMAX and any(signs))
-        traits = Traits.POSITIVE if positive else Traits.NONE
+        traits = _sign(positive, node.op() in NOT_NEGATIVE or self._kept(node))
         for part in parts:
             traits |= part & (Traits.MOVING | Traits.OTHER)
         self.found[node.element_hash()] = traits
+
+    def _kept(self, node: ca.SX) -> bool:
+        """Whether a node is not negative by what it is made of."""
+        parts = [self.not_negative(node.dep(i)) for i in range(node.n_dep())]
+        if node.op() in (ca.OP_CONSTPOW, ca.OP_POW):
+            return parts[0]
+        return node.op() in KEEP_POSITIVE and all(parts) or node.op() == ca.OP_FMAX and any(parts)
+
+    def not_negative(self, node: ca.SX) -> bool:
+        """Whether an expression is 0 or greater by its form."""
+        return bool(self.of(node) & (Traits.POSITIVE | Traits.NOT_NEGATIVE))
+
+    def moves(self, parts: list[ca.SX]) -> bool:
+        """Whether a switch of these is a function of state and phase, and not a constant."""
+        traits = [self.of(part) for part in parts]
+        return not any(Traits.OTHER in t for t in traits) and any(Traits.MOVING in t for t in traits)
+
+    def factors(self, node: ca.SX) -> list[ca.SX]:
+        """The factors of a product at whose zeros it changes its sign, with numbers that multiply one alone."""
+        if self.not_negative(node):
+            return []
+        if node.op() not in (*PRODUCTS, ca.OP_NEG, ca.OP_TWICE):
+            return [node]
+        parts = [part for part in map(node.dep, range(node.n_dep())) if self.moves([part])]
+        found = [factor for part in parts for factor in self.factors(part)]
+        alone = len(parts) == len(found) == 1 and found[0].element_hash() == parts[0].element_hash()
+        return [node] if alone else found
 
 
 def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
@@ -107,12 +152,11 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
             continue
         parts = [node.dep(i) for i in range(node.n_dep())]
         parts = [p for p in parts if not (p.is_constant() and abs(float(p)) < NOTHING)]
-        traits = [known.of(part) for part in parts]
-        if any(Traits.OTHER in t for t in traits) or not any(Traits.MOVING in t for t in traits):
-            continue
-        if len(parts) == 2:
-            found.append(parts[0] - parts[1] if Traits.MOVING in traits[0] else parts[1] - parts[0])
-        elif Traits.POSITIVE not in traits[0]:
+        if len(parts) == 1 and node.op() in BENT:
+            found += [factor for factor in known.factors(parts[0]) if known.moves([factor])]
+        elif known.moves(parts) and len(parts) == 2:
+            found.append(parts[0] - parts[1] if known.moves(parts[:1]) else parts[1] - parts[0])
+        elif known.moves(parts) and Traits.POSITIVE not in known.of(parts[0]):
             found.append(parts[0])
     return [s.dep(0) if s.op() == ca.OP_NEG else s for s in found]
 

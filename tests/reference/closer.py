@@ -19,6 +19,9 @@ Long = NDArray[np.longdouble]
 
 TWO_PI = np.longdouble("6.28318530717958647692528676655900577")
 EPSILON = float(np.finfo(np.longdouble).eps)
+ROUNDING = 1e-15
+"""Of a state in doubles."""
+
 STEPS = 8
 """Newton's steps to an orbit, and to an event, at the most; derivatives are those of doubles."""
 
@@ -32,7 +35,7 @@ SQUARED = 1 / 2
 def closer(system: Contact, Omega: float, near: Period, phase: float = 0.0) -> Period:
     """Return the periodic orbit near one found in doubles that has the same events, in that order."""
     state, found = near.start.astype(np.longdouble), near
-    left = 2 * max(float(np.abs(near.end - near.start).max()), SEEN)
+    left = 2 * max(float(np.abs(near.end - near.start).max()), SEEN, ROUNDING * near.growth)
     for _ in range(STEPS):
         following = _period(system, Omega, replace(found, start=state), phase)
         gap = following.end - following.start

@@ -3,7 +3,7 @@
 With z = (y, 1, cos, sin) each mode of the contacts is linear, z' = G z, and a mode lasts while its rows W z
 stay positive; no integrator takes part, and what is followed is exact to rounding.
 
-    Stop       G has column row', the mode with row z > 0
+    Stop       G has column row', the mode with row z > 0; column force' where it jumps there
     Friction   G has side column at 1 while it slips, side = sign(row z); while it sticks the column carries
                the part L z of it, |L z| < 1, that keeps row z = 0
     Wall       z becomes reset z where row z falls to 0
@@ -42,10 +42,11 @@ Mode = tuple[int, ...]
 
 @dataclass(frozen=True)
 class Stop:
-    """A force column max(row z, 0); both have the length of z. Modes 1 (in contact) and 0."""
+    """A force column max(row z, 0), or column force z where row z > 0. Modes 1 (in contact) and 0."""
 
     row: Array
     column: Array
+    force: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class Contact:
         G, n = self.free(Omega), len(self.matrix)
         for element, side in zip(self.elements, mode, strict=True):
             if isinstance(element, Stop) and side:
-                G += np.outer(element.column, element.row)
+                G += np.outer(element.column, element.row if element.force is None else element.force)
             if isinstance(element, Friction):
                 G[:, n] += side * element.column
         stuck = [i for i, e in enumerate(self.elements) if isinstance(e, Friction) and mode[i] == 0]

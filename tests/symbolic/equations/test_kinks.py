@@ -33,6 +33,16 @@ FORCES: dict[str, tuple[Force, list[str]]] = {
     "parameters alone": (lambda x, p, w: -F.fmax(p.g, 2) * x.x, []),
     "constants": (lambda x, p, w: -float(F.fmax(1.0, 2.0)) * x.x, []),
     "never": (lambda x, p, w: -F.fmax(F.exp(x.x), 1e-300), []),
+    "no adhesion": (
+        lambda x, p, w: -F.fmax(0, p.g * F.fmax(x.x - 1, 0) ** 1.5 * (1 + x.v)),
+        ["x - 1", "1 + v"],
+    ),
+    "no adhesion in contact": (
+        lambda x, p, w: F.fmin(0, -F.if_else(x.x > 1, x.x - 1 + p.g * x.v, 0)),
+        ["x - 1", "(x - 1) + (g*v)"],
+    ),
+    "product": (lambda x, p, w: -F.fabs(2 * x.x * x.v / (1 + x.x**2)), ["2*x", "v"]),
+    "never less": (lambda x, p, w: -F.fmax(F.fabs(x.x) * x.v**2, 0), ["x"]),
     "equality": (lambda x, p, w: -F.if_else(x.x == 0, 1, F.sin(x.x) / x.x), []),
 }
 """A force each, and the switches that it has; g and h are parameters of one value."""
