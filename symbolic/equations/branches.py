@@ -111,7 +111,7 @@ class _Known:
         return not any(Traits.OTHER in t for t in traits) and any(Traits.MOVING in t for t in traits)
 
     def factors(self, node: ca.SX) -> list[ca.SX]:
-        """The factors of a product at whose zeros it changes its sign, with numbers that multiply one alone."""
+        """The factors of a product at whose zeros it changes its sign; what multiplies one alone stays."""
         if self.not_negative(node):
             return []
         if node.op() not in (*PRODUCTS, ca.OP_NEG, ca.OP_TWICE):
