@@ -224,6 +224,12 @@ class Floquet:
         """M, (coordinates, coordinates)."""
         return self.once(np.eye(len(self.kept)))
 
+    @cached_property
+    def eigen(self) -> tuple[Complex, Complex]:
+        """Eigenvalues and eigenvectors of M."""
+        values, vectors = np.linalg.eig(self.monodromy)
+        return values.astype(np.complex128), vectors.astype(np.complex128)
+
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
         growth, own, modes = self.given.response.growth, len(self.given.others), self.modes(basis)

@@ -227,11 +227,16 @@ class _Split:
     def _part(self, forces: tuple[int, ...]) -> RowsPart:
         e, whole = self.e, self.whole
         inertia, stiffness = self._linear
-        evaluate = ca.Function("linear", [e.parameter], [ca.densify(inertia), ca.densify(stiffness)])
+        given = inertia, stiffness
+        evaluate = ca.Function("linear", [e.parameter], [ca.vertcat(*(matrix.nz[:] for matrix in given))])
+        places = [tuple(np.array(matrix.sparsity().get_triplet(), dtype=int)) for matrix in given]
 
         def matrices(parameter: Array) -> tuple[Array, Array]:
-            found = evaluate(parameter)
-            return np.array(found[0].full()), np.array(found[1].full())
+            """The nonzeros come as a list; of whole matrices CasADi makes lists too."""
+            values = np.array(ca.DM(evaluate(parameter)).nonzeros())
+            found = np.zeros((2, self.n, self.n))
+            found[0][places[0]], found[1][places[1]] = np.split(values, [inertia.nnz()])
+            return found[0], found[1]
 
         both = ca.vertcat(ca.vec(inertia), ca.vec(stiffness))
         varying = sorted(set(ca.jacobian(both, e.parameter).sparsity().get_col()))
