@@ -71,7 +71,7 @@ class Coupled:
         """States that are felt by the active forces, where equations are: (R, s, C a ka)."""
         if self.count == 0:
             return np.zeros((self.points, len(self.felt), 0))
-        found = self.flexibility.between(self.felt, self.active).block(self.held, everywhere=self._own)
+        found = self.flexibility.part(self.felt, self.active, self.held, everywhere=self._own)
         return np.asarray(found.reshape(-1, len(self.felt), self.count))
 
     @cached_property

@@ -114,7 +114,11 @@ class Condensed:
         """The equations with the rows of event nodes and side conditions, and these rows' constants."""
         system = self.system
         inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
-        return np.block([[system.matrix, -system.right[:, 1:]], [inner, outer[:, 1:]]]), outer[:, 0]
+        size = system.size
+        matrix = np.empty((size + len(inner), size + outer.shape[1] - 1))
+        matrix[:size, :size], matrix[:size, size:] = system.matrix, -system.right[:, 1:]
+        matrix[size:, :size], matrix[size:, size:] = inner, outer[:, 1:]
+        return matrix, outer[:, 0]
 
     def answered(self, rows: Sequence[Row], states: Array) -> Increment:
         """Return the increment by which an orbit answers what is missing of the places' states, (N, a, s).

@@ -63,20 +63,46 @@ class Flexibility:
     @cached_property
     def whole(self) -> Matrix:
         """All columns, (N, a, s, N, b, k)."""
-        closing = self.response.closing if self.closing is None else self.closing[0]
-        if self.response.uniform and self.past and closing is self.response.closing:
-            return self.response.circulant(None if self.closing is None else self.closing[0])
+        if self._alike:
+            return self._alike_between(*map(np.arange, self.response.modes.direct.shape))
         return self._block(self.intervals, self.intervals)
+
+    @property
+    def _alike(self) -> bool:
+        """Whether of the way between two intervals only how many lie in between counts."""
+        response = self.response
+        begun = self.closing is None or self.closing[0] is response.closing
+        return response.uniform and self.past and begun
+
+    def _alike_between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Matrix:
+        """All columns of some forces for some states then, (N, a, s, N, b, k)."""
+        return self.response.circulant(None if self.closing is None else self.closing[0], states, forces)
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Flexibility:
         """Return that of some of the states by some of the forces."""
         return replace(self, response=self.response.between(states, forces))
 
-    def block(self, intervals: NDArray[np.int_], *, everywhere: bool) -> Matrix:
-        """Return what forces of some intervals, in order, do there, (C, a, s, C, b, k).
+    def part(
+        self,
+        states: NDArray[np.int_],
+        forces: NDArray[np.int_],
+        intervals: NDArray[np.int_],
+        *,
+        everywhere: bool,
+    ) -> Matrix:
+        """Return what some forces in some intervals, in order, do there to some states, (C, a, s, C, b, k).
 
         Or what they do everywhere, (N, a, s, C, b, k).
         """
+        if not self._alike:
+            return self.between(states, forces).block(intervals, everywhere=everywhere)
+        found = self._alike_between(states, forces)
+        if len(intervals) == len(self.intervals):
+            return found
+        return found[self.intervals if everywhere else intervals][:, :, :, intervals]
+
+    def block(self, intervals: NDArray[np.int_], *, everywhere: bool) -> Matrix:
+        """Return the same of all forces and states."""
         rows = self.intervals if everywhere else intervals
         if len(intervals) == len(self.intervals):
             return self.whole

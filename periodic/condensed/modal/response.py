@@ -291,18 +291,19 @@ class Response:
         found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
         return np.asarray(found), moved[0]
 
-    def circulant(self, closing: Complex | None) -> Array:
-        """Return what forces do everywhere on a uniform mesh, (N, a, s, N, b, k).
+    def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
+        """Return what some forces do to some states everywhere on a uniform mesh, (N, a, s, N, b, k).
 
         Without `closing` from rest. Only how many intervals later counts.
         """
         modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
-        s, k = modes.direct.shape
-        impulse = self.impulse[0] if closing is None else self.impulse[0] * closing[:, None, None]
+        s, k = len(states), len(forces)
+        impulse = self.impulse[0][:, :, forces]
+        impulse = impulse if closing is None else impulse * closing[:, None, None]
         # by falling number of intervals, as the columns of a row have it
         ahead = np.exp(modes.exponents[:, None] * (self.grid.width[0] * np.arange(count - 1.0, -1.0, -1.0)))
         moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
-        shown = self.shown[0].reshape(points * s, -1)
+        shown = self.shown[0][:, states].reshape(points * s, -1)
         found = real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
         twice = np.concatenate([found, np.zeros_like(found) if closing is None else found], axis=1)
         row, column, each = twice.strides
@@ -311,7 +312,7 @@ class Response:
         )
         whole = np.array(laid).reshape(count, points, s, count, points, k)
         own = np.arange(count)
-        whole[own, :, :, own] += self.local
+        whole[own, :, :, own] += self.local[:, :, states][..., forces]
         return whole
 
     def closed(self, left: Complex, closing: Complex) -> Complex:

@@ -111,24 +111,25 @@ int pulled(const struct response *r, whole columns, const double *weights, const
     return DONE;
 }
 
-/* On a uniform mesh, what forces do everywhere, (N, a, s, N, b, k); closing is null for motion from rest.
-   passed (J, b, k), later (N, a, s, b, k): room. */
-int circulant(const struct response *r, const double *closing, double *restrict passed, double *restrict later,
-              double *restrict found)
+/* On a uniform mesh, what some forces (k, of all F) do to some states (s) everywhere, (N, a, s, N, b, k): at
+   indices `acting` and `felt`. closing is null for motion from rest. passed (J, b, k), later (N, a, s, b, k): room. */
+int circulant(const struct response *r, const double *closing, whole s, const whole *felt, whole k,
+              const whole *acting, double *restrict passed, double *restrict later, double *restrict found)
 {
-    const whole rows = r->points * r->states, each = r->points * r->forces, count = r->count, J = r->modes;
+    const whole count = r->count, J = r->modes, points = r->points, all = points * r->forces;
+    const whole rows = points * s, each = points * k;
+    memset(later, 0, count * rows * each * sizeof(double));
     for (whole j = 0; j < J; j++)
         for (whole f = 0; f < each; f++) {
-            const complex_ impulse = at(r->impulse, j * each + f);
+            const complex_ impulse = at(r->impulse, j * all + f / k * r->forces + acting[f % k]);
             put(passed, j * each + f, closing ? times(at(closing, j), impulse) : impulse);
         }
-    memset(later, 0, count * rows * each * sizeof(double));
     for (whole d = 0; d < count; d++)
         for (whole j = 0; j < J; j++) {
-            const complex_ growth = at(r->growth, (j + 1) * r->points - 1);
+            const complex_ growth = at(r->growth, (j + 1) * points - 1);
             double *way = passed + 2 * j * each;
             for (whole p = 0; p < rows; p++) {
-                const complex_ shown = at(r->shown, p * J + j);
+                const complex_ shown = at(r->shown, (p / s * r->states + felt[p % s]) * J + j);
                 double *restrict to = later + (d * rows + p) * each;
                 for (whole f = 0; f < each; f++)
                     to[f] += shown.re * way[2 * f] - shown.im * way[2 * f + 1];
@@ -137,7 +138,8 @@ int circulant(const struct response *r, const double *closing, double *restrict 
                 put(way, f, times(growth, at(way, f)));
         }
     for (whole i = 0; i < count; i++)
-        for (whole p = 0; p < rows; p++)
+        for (whole p = 0; p < rows; p++) {
+            const double *local = r->local + (p / s * r->states + felt[p % s]) * all;
             for (whole l = 0; l < count; l++) {
                 double *to = found + ((i * rows + p) * count + l) * each;
                 if (closing || l < i)
@@ -145,7 +147,8 @@ int circulant(const struct response *r, const double *closing, double *restrict 
                 else
                     memset(to, 0, each * sizeof(double));
                 for (whole f = 0; i == l && f < each; f++)
-                    to[f] += r->local[p * each + f];
+                    to[f] += local[f / k * r->forces + acting[f % k]];
             }
+        }
     return DONE;
 }

@@ -197,15 +197,17 @@ class NativeResponse(Response):
         _routine(self.library, "pulled", 7)(ctypes.addressof(call), columns, *map(address, arrays))
         return found
 
-    def circulant(self, closing: Complex | None) -> Array:
-        """Return what forces do everywhere on a uniform mesh, as `Response.circulant`."""
-        call, shape = self._laid[0], (self.scheme.ncol, self.modes.direct.shape[1])
-        count, points, states = call.count, call.points, call.states
+    def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
+        """Return what some forces do everywhere on a uniform mesh, as `Response.circulant`."""
+        call, shape = self._laid[0], (self.scheme.ncol, len(forces))
+        count, points, felt = call.count, call.points, np.ascontiguousarray(states, dtype=np.intp)
+        acting = np.ascontiguousarray(forces, dtype=np.intp)
         ends = None if closing is None else _complex(closing)
-        passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, states, *shape))
-        found = np.empty((count, points, states, count, *shape))
-        _routine(self.library, "circulant", 5)(
+        passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, len(felt), *shape))
+        found = np.empty((count, points, len(felt), count, *shape))
+        _routine(self.library, "circulant", 9)(
             *(ctypes.addressof(call), None if ends is None else address(ends)),
+            *(len(felt), address(felt), len(acting), address(acting)),
             *(address(passed), address(later), address(found)),
         )
         return found

@@ -105,6 +105,12 @@ def test_matrix(both: tuple[Response, Response]) -> None:
         part, same = found.between(states, forces), expected.between(states, forces)
         close(part.whole, same.whole)
         close(part.block(held, everywhere=False), same.block(held, everywhere=False))
+        for everywhere in (True, False):
+            several = np.array([0, 2])
+            asked = states, several, held
+            other = expected.between(states, several).block(held, everywhere=everywhere)
+            for flexibility in (found, expected):
+                close(flexibility.part(*asked, everywhere=everywhere), other)
 
 
 @pytest.mark.parametrize("multiplier", [1.0, 0.4, 0.3 + 0.6j])
