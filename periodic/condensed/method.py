@@ -19,7 +19,7 @@ from periodic.condensed.refinement import CondensedRefinement
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement
-from periodic.correction.newton import Correction, in_order
+from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.linear.operator import Operator
@@ -31,6 +31,12 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.spectrum import Spectrum
 from periodic.system import System, jumps_of
+
+SHORT = 0.05
+"""Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
+
+FELT = 0.1
+"""The part of it by which the parameter is off, about: fast modes have a small share of a motion."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +101,9 @@ class CondensedCollocation(Collocation):
         quiet = self._quiet(problem.system, operator)
         beside = OneSided(self._brief)
         given = self._brief, problem, correction.orbit, tangent, spectrum, quiet, beside
-        found = deferred(*given, lengths=True)
+        brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < SHORT
+        digits = FELT * operator.rounding if brief and isinstance(operator, Condensed) else 0.0
+        found = deferred(*given, lengths=True, digits=digits)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])

@@ -34,8 +34,8 @@ LARGEST = 1e9
 class CondensedRefinement(CollocationRefinement):
     """Equal intervals where no kink asks for others: there all is known of one interval.
 
-    Else the motion is exact for its forces, so that intervals without any need but show it, and those with
-    forces that depend on it are as short as the multipliers ask for too.
+    Else the motion is exact for its forces, so that intervals with none that depend on it need but show it
+    and what drives it, evenly, and the others are as short as the multipliers ask for too.
     """
 
     @property
@@ -124,8 +124,9 @@ class CondensedRefinement(CollocationRefinement):
         own = max(error.motion, lacking if lacking > 2 * beside else 0.0)
         points, share = orbit.mesh.scheme.ncol, wanted * width
         typical = max(float(share[part].mean()) for part in (active, ~active) if part.any())
-        wanted *= self._times(own, points + 1) / typical
-        wanted = np.maximum(wanted, FEWEST / orbit.mesh.period)
+        times, shown = (self._times(each, points + 1) for each in (own, error.motion))
+        wanted *= (np.where(active, times, shown) if active.any() else times) / typical
+        wanted = np.maximum(wanted, FEWEST * max(times, 1.0) / orbit.mesh.period)
         if not active.any():
             return wanted
         shorter = SPLIT * self._times(beside, 2 * points - 1) / width[active].max()

@@ -47,7 +47,8 @@ class ErrorEstimate:
         Largest error of the states over their largest peak to peak.
     multiplier : float
         Error of the sums of the Floquet multipliers and of their squares, relative to the largest one where
-        that exceeds 1; it is the multipliers' own error unless two of them all but coincide.
+        that exceeds 1. Those of a multiplier that is d < 1 from the next one may be 2/d times as large, as
+        they are where two of them meet.
     parameter : float
         Error of the continuation parameter across the branch, so that of an LP its place, relative.
     rounding : float
@@ -128,6 +129,7 @@ def deferred(
     solved: Solved | None = None,
     kinked: bool | None = None,
     lengths: bool = False,
+    digits: float = 0.0,
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
@@ -138,22 +140,27 @@ def deferred(
     not between them. `solved` linearises and solves in one; by default
     `periodic.correction.newton.linearised`, with `linearise`. `lengths` says whether the constraint holds the
     lengths of brief excursions too, as it does in steps: at a fold beside a touch these change far more along
-    the branch than the states do.
+    the branch than the states do. `digits` is to how much of itself the parameter is known of which the
+    effect on the multipliers is asked for: it is rounding.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
     onto = replace(onto, phases=tangent.phases) if lengths else onto
     across = ArclengthConstraint(fine, onto, 0.0, problem.units(fine), problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
-    solve = solved or partial(linearised, linearise)
+    solve, shared = solved or partial(linearised, linearise), (problem.free, closing, USUAL)
     try:
-        found = solve(problem.system, fine, problem.free, closing, USUAL)
+        found = solve(problem.system, fine, *shared)
         beside = found
         if len(orbit.mesh.exact_ends) if kinked is None else kinked:
             onto_branch = found.increment + _along(found, problem, size_of(orbit))
             better = moved(problem.system, problem.free, found.orbit, onto_branch)
-            beside = solve(problem.system, better, problem.free, closing, USUAL)
-        multiplier = spectrum.apart(beside.fundamental[-1], beside.operator)
+            beside = solve(problem.system, better, *shared)
+        multiplier, unknown = spectrum.apart(beside.fundamental[-1], beside.operator), 0.0
+        if digits:
+            far = _last_digits(beside, problem, size_of(orbit), digits)
+            other = solve(problem.system, moved(problem.system, problem.free, beside.orbit, far), *shared)
+            unknown = _powers(spectrum, other.fundamental[-1], beside.fundamental[-1])
     except FAILURES:
         return UNKNOWN
     change = found.increment
@@ -167,7 +174,11 @@ def deferred(
     apart = float(max(at_nodes.max(), between.max()))
     monodromy = beside.fundamental[-1]
     halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)
-    return relative(problem, orbit, spectrum, halved)
+    error = relative(problem, orbit, spectrum, halved)
+    if not unknown:
+        return error
+    rounding, by_orbit = error.rounding + unknown, error.by_orbit + unknown
+    return replace(error, multiplier=error.multiplier + unknown, rounding=rounding, by_orbit=by_orbit)
 
 
 @dataclass(frozen=True)
@@ -186,7 +197,7 @@ def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) 
     """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
-    by_orbit = powers_apart(found.monodromy / spectrum.radius, found.fundamental[-1] / spectrum.radius)
+    by_orbit = _powers(spectrum, found.monodromy, found.fundamental[-1])
     rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))
     sized = bool(problem.system.switches) and orbit.span() > LEAST_SPAN
     each = shares(spectrum.fundamental, found.fundamental) if sized else None
@@ -200,15 +211,34 @@ def _along(found: Linearised, problem: Problem, size: float) -> Increment:
     known to rounding alone, which beside a touch moves a contact: it is added to the way but at a fold.
     """
     kernel = found.kernel
-    still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
-    length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
-    part = abs(kernel.parameter) / (length * problem.scale)
+    part = _part(found, problem, size)
     if part < TURNING:
         return kernel.scaled(0.0)
     shift, least = found.increment.parameter, LAST_DIGITS * abs(problem.value(found.orbit))
     near = abs(shift) < STRAIGHT * part**2 * problem.scale
     way = (shift if near else 0.0) + float(np.copysign(least, shift))
     return kernel.scaled(-way / kernel.parameter)
+
+
+def _last_digits(found: Linearised, problem: Problem, size: float, digits: float) -> Increment:
+    """The way along the branch by which a parameter that is known to so much of itself may be off, but at a
+    fold."""
+    kernel = found.kernel
+    at_fold = _part(found, problem, size) < TURNING
+    return kernel.scaled(0.0 if at_fold else digits * abs(problem.value(found.orbit)) / kernel.parameter)
+
+
+def _part(found: Linearised, problem: Problem, size: float) -> float:
+    """The part of the branch's direction that the parameter is."""
+    kernel = found.kernel
+    still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
+    length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
+    return abs(kernel.parameter) / (length * problem.scale)
+
+
+def _powers(spectrum: Spectrum, one: Array, two: Array) -> float:
+    """How far two monodromy matrices are apart in their multipliers, over the largest one."""
+    return powers_apart(one / spectrum.radius, two / spectrum.radius)
 
 
 def _stage_shift(orbit: Orbit, later: Array) -> Array:
