@@ -1,1 +1,1 @@
-"""Six hundred models with contact drawn at random, traced and judged: `python -m survey`."""
+"""Seven hundred models with contact drawn at random, traced and judged: `python -m survey`."""

@@ -11,13 +11,14 @@ FATES = ("to the end", "limit of work", "friction holds", "other")
 INTRODUCTION = """# Models with contact drawn at random
 
 {count} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears with backlash
-under load, masses that strike a rigid stop, dry friction beside clearances, and chains of 2 to 10 masses,
-each before a stop (`tests/support/drawn/contact.py`; a seed is a model). Each is traced through a resonance
-at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of CPU. {judged} points
-of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in closed form, in
-extended precision, that shares nothing with the packages (`tests/reference/contact.py`, `closer.py`). A point
-is wrong where an error is more than ten times what the point claims and more than 1e-5, or where its
-stability is not so. `make survey` runs them, in some 25 minutes on two cores.
+under load, masses that strike a rigid stop, dry friction beside clearances, chains of 2 to 10 masses, each
+before a stop, and contacts whose force jumps, damped or preloaded (`tests/support/drawn/contact.py`; a seed
+is a model). Each is traced through a resonance at tol {tol:g}, at most {points} points, {newton} Newton
+iterations and {seconds:g} s of CPU. {judged} points of each, drawn at random, are judged: orbit and
+multipliers by an event-exact solution in closed form, in extended precision, that shares nothing with the
+packages (`tests/reference/contact.py`, `closer.py`). A point is wrong where an error is more than ten times
+what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs them, in some
+25 minutes on two cores.
 
 Engine at commit `{commit}`.
 """

@@ -25,7 +25,7 @@ CONTROL = per.ArclengthControl(max_points=POINTS, max_newton=NEWTON)
 JUDGED = 8
 """Points of a branch that are judged, drawn at random."""
 
-SEEDS = {"clearances": 200, "gears": 100, "impacts": 100, "friction": 100, "chains": 100}
+SEEDS = {"clearances": 200, "gears": 100, "impacts": 100, "friction": 100, "chains": 100, "jumps": 100}
 """How many models of a kind, from seed 100 on."""
 
 HELD = "holds all along"

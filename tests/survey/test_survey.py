@@ -11,7 +11,7 @@ from survey.rows import Row, models, read, row, write
 def test_all_models_are_drawn_once() -> None:
     """Assert that there are 500 and 100 chains."""
     drawn = list(models())
-    assert len(set(drawn)) == len(drawn) == 600
+    assert len(set(drawn)) == len(drawn) == 700
     assert sum(kind == "chains" for kind, _ in drawn) == 100
 
 

@@ -46,6 +46,8 @@ SAMPLE = [
     ("chains", 4),
     ("friction", 119),
     ("friction", 100),
+    ("jumps", 105),
+    ("jumps", 111),
 ]
 
 
@@ -188,12 +190,16 @@ def test_rounding_beside_a_touch() -> None:
     ("kind", "seeds"),
     [
         *[("clearances", range(k, k + 10)) for k in range(100, 300, 10)],
-        *[(kind, range(k, k + 10)) for kind in ("gears", "impacts", "friction") for k in range(100, 200, 10)],
+        *[
+            (kind, range(k, k + 10))
+            for kind in ("gears", "impacts", "friction", "jumps")
+            for k in range(100, 200, 10)
+        ],
         *[("chains", range(k, k + 10)) for k in range(100, 200, 10)],
     ],
 )
-def test_six_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFixture[str]) -> None:
-    """Assert that of 500 models and 100 chains none is wrong, and print how far they are traced and why."""
+def test_seven_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFixture[str]) -> None:
+    """Assert that of 600 models and 100 chains none is wrong, and print how far they are traced and why."""
     rows = [row(kind, seed) for seed in seeds]
     with capsys.disabled():
         print(f"\n{kind} {seeds}, {sum(each.seconds for each in rows):.0f} s")

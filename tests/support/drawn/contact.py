@@ -1,9 +1,9 @@
 """Models with contact drawn at random, each as parts and in closed form; a seed is a case.
 
 One to three masses between springs, with 1 to 5 clearances of stiffness 1 to 1e5, gears with backlash under
-load, masses that strike a rigid stop, dry friction beside a clearance, and chains of 2 to 10 masses, each
-before a stop. Masses are near 1, the springs between 0.3 and 1.5, forces and gaps such that contact is made
-somewhere near a resonance.
+load, masses that strike a rigid stop, dry friction beside a clearance, chains of 2 to 10 masses, each before
+a stop, and contacts whose force jumps. Masses are near 1, the springs between 0.3 and 1.5, forces and gaps
+such that contact is made somewhere near a resonance.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,25 @@ class Drawn:
         )
         self.elements.append(self._stop(self.between(i, to) * (-1 if below else 1), k, gap))
         self.told.append(f"stop {i} {to} k {k:.4g} gap {gap:.4g} {'below' if below else ''}")
+
+    def step(self, i: int, to: int | None, law: tuple[float, float, float], gap: float, below: bool) -> None:
+        """A force k d + c d' + P where the depth d is positive: it jumps there."""
+        q, u = self.coordinates, self.between(i, to) * (-1 if below else 1)
+        taken = {"k": law[0], "c": law[1], "P": law[2], "gap": gap}
+        values = {name: self.value(name, number) for name, number in taken.items()}
+        ends = [q[k] for k in np.flatnonzero(u)]
+
+        def forces(x: Any, p: Any) -> dict[str, Any]:
+            depth = sum(u[j] * x[q[j].name] for j in np.flatnonzero(u)) - p.gap
+            rate = sum(u[j] * x[f"{q[j].name}_dot"] for j in np.flatnonzero(u))
+            force = sym.functions.if_else(depth > 0, p.k * depth + p.c * rate + p.P, 0)
+            return {q[j].name: -u[j] * force for j in np.flatnonzero(u)}
+
+        self.parts.append(sym.Equations(forces, {}, values, coordinates=ends))
+        n = self.count
+        row, column = self._row(u, n * [0.0], -gap), self._row(n * [0.0], -u / self.mass)
+        self.elements.append(Stop(row, column, self._row(law[0] * u, law[1] * u, law[2] - law[0] * gap)))
+        self.told.append(f"step {i} {to} k, c, P {law} gap {gap:.4g} {'below' if below else ''}")
 
     def backlash(self, i: int, to: int | None, k: float, b: float) -> None:
         """A spring with backlash."""
@@ -248,11 +268,27 @@ def chains(random: Random) -> Drawn:
     return model
 
 
+def jumps(random: Random) -> Drawn:
+    """One to three masses with one to three contacts whose force jumps: damped, preloaded or both."""
+    model = _frame(random, int(random.integers(1, 4)))
+    for _ in range(int(random.integers(1, 4))):
+        i = int(random.integers(model.count))
+        to = int(random.integers(model.count)) if random.random() < 0.3 else None
+        to = None if to == i else to
+        gap = _reach(random, model, model.between(i, to))
+        k = _log(random, 1, 1e4)
+        c, preload = 2 * _log(random, 0.01, 0.5) * math.sqrt(k), _log(random, 0.01, 1)
+        law = [(k, c, 0.0), (k, 0.0, preload), (k, c, preload)][int(random.integers(3))]
+        model.step(i, to, law, gap, bool(random.random() < 0.5))
+    return model
+
+
 KINDS: dict[str, Callable[[Random], Drawn]] = {
     "clearances": clearances,
     "gears": gears,
     "impacts": impacts,
     "friction": friction,
     "chains": chains,
+    "jumps": jumps,
 }
 """Models drawn at random."""
