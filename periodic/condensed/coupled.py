@@ -89,6 +89,8 @@ class Coupled:
     @cached_property
     def affine(self) -> Array:
         """States of the linear part by (1, dy), forces that do not depend on them included: (P, s, 1+q)."""
+        if not self.passive.any():
+            return self.given.affine
         driven = np.where(self.passive[:, :, None], self.given.local.forces[:, :, self.columns], 0.0)
         if not driven.any():
             return self.given.affine

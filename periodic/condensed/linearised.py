@@ -54,7 +54,7 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
     n = orbit.nodes.shape[1]
     rows = rows_of(orbit, evaluated(system, orbit, free))
     reduced, unknowns = eliminate(rows, n)
-    filled = np.abs(reduced).max(axis=(0, 2)) > 0
+    filled = np.abs(reduced).max(axis=0).max(axis=1) > 0
     own = reduced[:, filled]
     states = list(part.states)
     if own.shape[1] != n - len(states):
@@ -62,9 +62,10 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
             f"the system has {own.shape[1]} rows for its {n - len(states)} own states; each needs one"
         )
     rates = [1 + k for k in states]
-    if unknowns[:, list(part.forces)][:, :, rates].any() or own[:, :, rates].any():
+    forces = unknowns[:, list(part.forces)]
+    if forces[:, :, rates].any() or own[:, :, rates].any():
         raise ValueError("forces at the places depend on accelerations there; a condensed system has none")
-    return Local(-unknowns[:, list(part.forces)], own, -unknowns, rows.residual, np.flatnonzero(filled))
+    return Local(-forces, own, -unknowns, rows.residual, np.flatnonzero(filled))
 
 
 def answer(

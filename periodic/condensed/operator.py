@@ -78,8 +78,7 @@ class Condensed:
         solved = self._by_interval if pays(system, right.shape[1]) else self._at_once
         inner, outer = solved(rows, right)
         stages = system.stages(inner, np.concatenate([right[:1], outer]))
-        each = zip(right[0], np.moveaxis(stages, 2, 0), outer.T, strict=True)
-        return tuple(self._recovered(float(constant), at, more, k) for constant, at, more in each)
+        return self._recovered(right[0], np.moveaxis(stages, 2, 0), outer.T, k)
 
     def _at_once(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
         """Forces and own states, (size, columns), and dy."""
@@ -140,23 +139,26 @@ class Condensed:
         nodes = np.concatenate([stages[-1:, -1], stages[:, -1]])
         return Increment.of(orbit, nodes, stages, np.zeros_like(orbit.algebraic), outer[:k], outer[k:])
 
-    def _recovered(self, constant: float, stages: Array, outer: Array, k: int) -> Increment:
-        """The increment of states at the points, (P, n), and dy."""
-        orbit, scheme = self.orbit, self.orbit.mesh.scheme
-        stages = stages.reshape(orbit.stages.shape)
-        gap = constant * (orbit.stages[:, -1] - orbit.nodes[1:])
-        nodes = np.empty_like(orbit.nodes)
-        nodes[1:] = stages[:, -1] + gap
-        nodes[0] = stages[-1, -1] + constant * (orbit.stages[-1, -1] - orbit.nodes[0])
-        knots = np.concatenate([nodes[:-1, None], stages], axis=1)
+    def _recovered(self, constant: Array, stages: Array, outer: Array, k: int) -> tuple[Increment, ...]:
+        """The increments of states at the points, (r, P, n), and dy, (r, 1+q)."""
+        orbit, scheme, n = self.orbit, self.orbit.mesh.scheme, self.orbit.nodes.shape[1]
+        stages = stages.reshape(-1, *orbit.stages.shape)
+        ends = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:, -1]])
+        nodes = constant[:, None, None] * (ends - orbit.nodes)
+        nodes[:, 1:] += stages[:, :, -1]
+        nodes[:, 0] += stages[:, -1, -1]
+        knots = np.concatenate([nodes[:, :-1, None], stages], axis=2)
         rates = scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-        by_unknown, n = self.given.local.unknowns, orbit.nodes.shape[1]
-        columns = np.empty((len(by_unknown), by_unknown.shape[2], 1))
-        columns[:, 0], columns[:, 1 + 2 * n :, 0] = constant, outer
-        columns[:, 1 : 1 + n, 0] = rates.reshape(-1, n)
-        columns[:, 1 + n : 1 + 2 * n, 0] = stages.reshape(-1, n)
-        unknowns = (by_unknown @ columns).reshape(orbit.algebraic.shape)
-        return Increment.of(orbit, nodes, stages, unknowns, outer[:k], outer[k:])
+        by_unknown = self.given.local.unknowns
+        columns = np.empty((len(stages), len(by_unknown), by_unknown.shape[2], 1))
+        columns[:, :, 0, 0], columns[:, :, 1 + 2 * n :, 0] = constant[:, None], outer[:, None]
+        columns[:, :, 1 : 1 + n, 0] = rates.reshape(len(stages), -1, n)
+        columns[:, :, 1 + n : 1 + 2 * n, 0] = stages.reshape(len(stages), -1, n)
+        unknowns = (by_unknown @ columns).reshape(-1, *orbit.algebraic.shape)
+        return tuple(
+            Increment.of(orbit, *moved[:3], moved[3][:k], moved[3][k:])
+            for moved in zip(nodes, stages, unknowns, outer, strict=True)
+        )
 
     @cached_property
     def leading(self) -> Leading:
