@@ -249,7 +249,13 @@ class Dense:
     def nearest(self, switch: int, side: int, phase: float) -> Extremum:
         """Return the minimum of side * s that is nearest to a phase, the lowest where the orbit's polynomials
         have several of one: they join with a small kink. Raises FloatingPointError where there is none.
+
+        Those beyond an event node of the switch are others.
         """
+        own = sorted(self._tied(switch))
+
+        def stretch(e: Extremum) -> int:
+            return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
             return abs(_wrapped(e.phase - place, self.orbit.mesh.period))
@@ -259,8 +265,11 @@ class Dense:
             name = self.system.switches[switch].name
             raise FloatingPointError(f"{name} comes nearest to its level nowhere but at its impacts")
         first = min(every, key=lambda e: far(e, phase))
-        width = self.orbit.grid.width[first.interval]
-        return min((e for e in every if far(e, first.phase) <= width), key=lambda e: side * e.value)
+        width, same = (
+            self.orbit.grid.width[first.interval],
+            [e for e in every if stretch(e) == stretch(first)],
+        )
+        return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
         """Return all minima of side * s, its impacts left out, of a sliding jump where it is on that side."""

@@ -1,4 +1,4 @@
-"""Rates of a motion at a single point, and their slopes, from the equations."""
+"""Rates of a motion at a point and their slopes, from the equations; before an event, from the orbit."""
 
 from __future__ import annotations
 
@@ -45,3 +45,15 @@ def slope_at(
     line = linearise(system, rate[None], x, algebraic[None], phase, orbit.parameter, side[None])
     matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
     return np.asarray(-np.linalg.solve(matrix, line.d_state[0])[:n])
+
+
+def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
+    """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
+    interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst
+    return interval, orbit.mesh.scheme.end[None] @ orbit.knots[interval], orbit.phases[index : index + 1]
+
+
+def rate_before(orbit: Orbit, index: int) -> Array:
+    """x' at the end of the interval before an event node, shape (n,)."""
+    interval = before(orbit, index)[0]
+    return orbit.mesh.scheme.end @ orbit.knot_rates[interval]

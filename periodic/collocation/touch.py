@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 
 from periodic.collocation.conditions import Clearance, Length
 from periodic.collocation.dense import Dense, Extremum, exact, sliding
+from periodic.collocation.rates import before as state_before
+from periodic.collocation.rates import rate_before
 from periodic.collocation.turns import held, short_of, turns
 from periodic.correction.change import Beyond, Change
 from periodic.orbit.mesh import EventNode
@@ -150,8 +152,10 @@ class Meeting:
             yield self._without(orbit, around, Clearance(last.switch, last.direction, (begin + end) / 2))
             return
         others = [(orbit.mesh.events[m], orbit.phases[m]) for m in range(k) if m not in (i, j)]
-        middle = (begin + end) / 2
-        pair = [(second, middle - self.length / 2), (first, middle + self.length / 2)]
+        early, impacts = (begin + end - self.length) / 2, resets_of(self.system)
+        if first.switch in impacts or second.switch in impacts:  # whose state before it is that of its phase
+            early = begin - self.length if first.switch in impacts else end
+        pair = [(second, early), (first, early + self.length)]
         events, phases = ordered([*others, *pair], orbit)
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         yield Beyond(mesh, phases, Length(index_of(events, phases, pair[0], orbit), self.length), False)
@@ -294,7 +298,7 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
         same = first.switch == second.switch
         if first.switch not in own or second.switch not in own or _slide(system, first, second):
             continue
-        struck = first.switch in impacts or second.switch in impacts
+        struck = _reversed(system, before, i)
         if i in about or struck and (_around(system, before, i) is None or now[i] <= SHORT[-1]):
             continue
         half = VANISHING * float(now[i])
@@ -307,12 +311,30 @@ def _meeting(system: System, before: Orbit, after: Orbit, shortest: float) -> Me
     return min(found, key=lambda meeting: meeting.part, default=None)
 
 
+def _reversed(system: System, orbit: Orbit, segment: int) -> bool:
+    """Whether an impact at an end of a segment reverses the switch at the other end: they do not swap."""
+    ends = segment, (segment + 1) % len(orbit.phases)
+    for node, other in (ends, ends[::-1]):
+        if orbit.mesh.events[node].switch in resets_of(system):
+            switch, start = orbit.mesh.events[other].switch, orbit.mesh.starts[node]
+            _, x, phase = state_before(orbit, node)
+            states = np.concatenate([x, orbit.nodes[start : start + 1]])
+            rates = np.array([rate_before(orbit, node), orbit.node_rates[start]])
+            by_state, by_phase, _ = system.switch_gradient(states, phase.repeat(2), orbit.parameter)
+            slopes = by_phase[:, switch] + np.einsum("in,in->i", by_state[:, switch], rates)
+            if slopes[0] * slopes[1] <= 0:
+                return True
+    return False
+
+
 def _around(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | None:
     """The ends of an excursion in the midst of which there is an impact, at an end of a segment, if it is so.
 
     The impact reverses the switch; the excursion ends in a corner, and all three events meet.
     """
     events, k = orbit.mesh.events, len(orbit.phases)
+    if not _reversed(system, orbit, segment):
+        return None
     for m in (segment, (segment + 1) % k):
         before, after = (m - 1) % k, (m + 1) % k
         turns = events[before].direction != events[after].direction

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.jumping.saltation import before
+from periodic.collocation.rates import before
 from periodic.collocation.sides import linearise, sides
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.response import Response

@@ -24,13 +24,15 @@ from periodic.system import System
 class Beyond:
     """How an orbit goes on beyond a change: its mesh, the event nodes' phases, and the condition held there.
 
-    touches: whether that orbit is the one at which a switch just touches its level.
+    touches: whether that orbit is the one at which a switch just touches its level. spare: whether it is
+    tried only where those before are none, or lie behind the change, beyond more folds than one.
     """
 
     mesh: Mesh
     phases: Array
     condition: SideCondition
     touches: bool
+    spare: bool = False
 
 
 class Change(Protocol):

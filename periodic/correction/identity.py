@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -13,6 +14,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import metric_weights
 from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.scheme import Array
 from periodic.system import resets_of
 
 SHIFTS = 64
@@ -24,6 +26,9 @@ KEPT = 30.0
 DISTINCT = 0.05
 """Orbits as far apart, in peaks to peak, are two."""
 
+ALONG = 0.05
+"""Impacts farther apart (rad) are two."""
+
 
 def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
@@ -33,28 +38,59 @@ def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
 
 
 def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
-    """Distance of a and b in the metric of continuation, b taken `later` (rad); on any meshes."""
-    profile = b.state(a.mesh.nodes(a.phases) + later) - a.nodes
-    for i, j in _impacts(problem, a, b, later):
-        profile[i] = b.nodes[j] - a.nodes[i]
+    """Distance of a and b in the metric of continuation, b taken `later` (rad); on any meshes.
+
+    Between impacts that both have b is taken as much later as it has these, which counts too: there a small
+    difference of phase compares states before and after.
+    """
+    tau, shared = a.mesh.nodes(a.phases), list(_impacts(problem, a, b, later))
+    shift = _interpolated(tau, a, shared)
+    profile = b.state(tau + later + shift) - a.nodes
+    for impact in shared:
+        profile[impact.starts] = b.nodes[impact.other] - a.nodes[impact.starts]
     units, free = problem.units(a), list(problem.free)
     jump = b.parameter[free] - a.parameter[free]
     apart = float(np.sum(((jump if isinstance(units, np.ndarray) else jump[:1]) / units) ** 2))
+    apart += sum(impact.shift**2 for impact in shared)
     return float(np.sqrt(np.einsum("j,jn,jn->", metric_weights(a), profile, profile) + apart))
 
 
-def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[tuple[int, int]]:
-    """Yield the mesh points of a where the state jumps, each with that of the same impact of b.
+@dataclass(frozen=True)
+class Shared:
+    """An impact of two orbits: its mesh points in one, that in the other, its phase and how much later."""
 
-    The least difference of their phases would compare states before and after the impact.
-    """
-    starts = {i: [i] if i else [0, len(a.nodes) - 1] for i in map(int, a.mesh.starts)}
-    for start, event, phase in zip(starts, a.mesh.events, a.phases, strict=True):
-        near = a.grid.width[[start - 1, start]].min()
-        for other, place, node in zip(b.mesh.events, b.phases, b.mesh.starts, strict=True):
-            apart = np.remainder(phase + later - place + b.mesh.period / 2, b.mesh.period) - b.mesh.period / 2
-            if event == other and event.switch in resets_of(problem.system) and abs(apart) < near:
-                yield from ((i, int(node)) for i in starts[start])
+    starts: list[int]
+    other: int
+    phase: float
+    shift: float
+
+
+def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[Shared]:
+    """Yield the impacts of a that b has within half the way to another impact at the same switch."""
+    period, resets = a.mesh.period, resets_of(problem.system)
+    for start, event, phase in zip(a.mesh.starts, a.mesh.events, a.phases, strict=True):
+        if event.switch not in resets:
+            continue
+        alike = [p for e, p in zip(a.mesh.events, a.phases, strict=True) if e == event and p != phase]
+        near = min([ALONG, *(abs(_wrapped(p - phase, period)) / 2 for p in alike)])
+        each = zip(b.mesh.events, b.phases, b.mesh.starts, strict=True)
+        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for e, p, j in each if e == event]
+        shift, other = min(others, key=lambda found: abs(found[0]), default=(np.inf, 0))
+        if abs(shift) < near:
+            starts = [int(start)] if start else [0, len(a.nodes) - 1]
+            yield Shared(starts, other, float(phase), shift)
+
+
+def _interpolated(tau: Array, a: Orbit, shared: list[Shared]) -> Array:
+    """How much later b has what a has at phases, from the impacts of both."""
+    if not shared:
+        return np.zeros_like(tau)
+    phases, shifts = np.array([(impact.phase, impact.shift) for impact in shared]).T
+    return np.asarray(np.interp(tau, phases, shifts, period=a.mesh.period))
+
+
+def _wrapped(phase: float, period: float) -> float:
+    return float(np.remainder(phase + period / 2, period) - period / 2)
 
 
 def closes(solver: Solver, start: Solution, new: Solution) -> bool:

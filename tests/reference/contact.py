@@ -37,6 +37,12 @@ EVENTS = 400
 ROUNDING = 1e-14
 """Rows that dip less below 0 do not."""
 
+SMALL = 1e-9
+"""Walls so near have just been struck, and may be again however soon."""
+
+SOON = 2.0 ** (-np.arange(120, -1, -1) / 4)
+"""Parts of a piece in which they are looked for."""
+
 Mode = tuple[int, ...]
 
 
@@ -70,11 +76,12 @@ Element = Stop | Friction | Wall
 
 @dataclass(frozen=True)
 class Piece:
-    """One mode: G, the rows that stay positive with the element of each, and exp(G step)."""
+    """One mode: G, the rows that stay positive with the element of each, which are walls, and exp(G step)."""
 
     generator: Array
     rows: Array
     owners: list[int]
+    walls: Array
     step: float
     flow: Array
 
@@ -131,7 +138,8 @@ class Contact:
                     owners.append(i)
             fastest = float(np.abs(np.linalg.eigvals(G)).max())
             step = min(TWO_PI / Omega / SAMPLES, 0.5 / fastest)
-            self._pieces[Omega, mode] = Piece(G, np.array(rows), owners, step, expm(G * step))
+            walls = np.array([isinstance(self.elements[i], Wall) for i in owners])
+            self._pieces[Omega, mode] = Piece(G, np.array(rows), owners, walls, step, expm(G * step))
         return self._pieces[Omega, mode]
 
     def begin(self, z: Array) -> Mode:
@@ -226,7 +234,8 @@ def _left(piece: Piece, z: Array, later: Array, length: float) -> tuple[int, flo
     slopes = piece.rows @ piece.generator
     values, first, last, end = piece.rows @ z, slopes @ z, slopes @ later, piece.rows @ later
     found: tuple[int, float] | None = None
-    for k in np.flatnonzero((end < 0) | ((first < 0) & (last > 0) & (values < -first * length))):
+    begun = piece.walls & (np.abs(values) < SMALL)
+    for k in np.flatnonzero((end < 0) | ((first < 0) & (last > 0) & (values < -first * length)) | begun):
         at = _zero(piece, z, int(k), length)
         if at is not None and (found is None or at < found[1]):
             found = int(k), at
@@ -242,7 +251,8 @@ def _zero(piece: Piece, z: Array, k: int, length: float) -> float | None:
     def rate(t: float) -> float:
         return float(slope @ piece.after(z, t))
 
-    places = np.linspace(0.0, length, PARTS + 1)
+    struck = piece.walls[k] and abs(value(0.0)) < SMALL
+    places = np.append(0.0, length * SOON) if struck else np.linspace(0.0, length, PARTS + 1)
     turns = [
         float(brentq(rate, a, b, xtol=1e-15))
         for a, b in zip(places[:-1], places[1:], strict=True)

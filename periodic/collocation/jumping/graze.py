@@ -16,7 +16,7 @@ import numpy as np
 from periodic.collocation.conditions import Clearance
 from periodic.collocation.dense import Dense, Extremum
 from periodic.collocation.jumping.impacts import slope_before, tied
-from periodic.collocation.jumping.saltation import before, rate_before
+from periodic.collocation.rates import before, rate_before
 from periodic.collocation.touch import index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.orbit.gradients import Points, Slopes, gathered
@@ -28,6 +28,9 @@ from periodic.system import System, resets_of
 
 SLOW = (1e-2, 1e-3, 1e-4)
 """Speeds at which patterns are exchanged, tried in turn, as a part of how far the switch ranges."""
+
+SLOWER = (1e-5, 1e-6)
+"""Speeds tried where those lead to none, among impacts as slow, or lie beyond more folds than one."""
 
 VANISHING = 0.5
 """An impact of which a step would leave this part of its speed, by its tangent, may end within the step."""
@@ -93,9 +96,9 @@ class FirstImpact:
         old = zip(orbit.mesh.events, map(float, orbit.phases), strict=True)
         events, phases = ordered([*old, pair], orbit)
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-        for slow in SLOW:
-            speed = slow * _range(system, orbit, k)
-            yield Beyond(mesh, phases, Speed(index_of(events, phases, pair, orbit), speed), False)
+        for slow in (*SLOW, *SLOWER):
+            held = Speed(index_of(events, phases, pair, orbit), slow * _range(system, orbit, k))
+            yield Beyond(mesh, phases, held, touches=False, spare=slow in SLOWER)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.jumping.saltation import before, mapped, rate_before, saltation
+from periodic.collocation.jumping.saltation import mapped, saltation
+from periodic.collocation.rates import before, rate_before
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit

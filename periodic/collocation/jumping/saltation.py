@@ -16,7 +16,7 @@ from typing import cast
 
 import numpy as np
 
-from periodic.collocation.rates import rate_at
+from periodic.collocation.rates import before, rate_at, rate_before
 from periodic.collocation.sides import sides
 from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
@@ -136,15 +136,3 @@ def mapped(
     resetting = cast(Resetting, system)
     after = resetting.reset(switch, x, phase, parameter)
     return after, *resetting.reset_gradient(switch, x, phase, parameter)
-
-
-def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
-    """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
-    interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst
-    return interval, orbit.mesh.scheme.end[None] @ orbit.knots[interval], orbit.phases[index : index + 1]
-
-
-def rate_before(orbit: Orbit, index: int) -> Array:
-    """x' at the end of the interval before an event node, shape (n,)."""
-    interval = before(orbit, index)[0]
-    return orbit.mesh.scheme.end @ orbit.knot_rates[interval]

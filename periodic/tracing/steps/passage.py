@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.correction.change import Change, Held
+from periodic.correction.change import Beyond, Change, Held
 from periodic.correction.condition import SideCondition
 from periodic.correction.identity import distance
 from periodic.correction.predictor import tangent
@@ -127,12 +126,22 @@ def crossed(solver: Solver, at: Reached) -> Crossed | None:
     and in the end the nearest.
     """
     nearest: Crossed | None = None
-    for found in _beyond(solver, at):
+    for way in at.change.beyond(solver.problem.system, at.end.orbit):
+        if way.spare and nearest is not None and not _folded_twice(at.end, nearest.solution):
+            break
+        found = _along(solver, at, way)
+        if found is None:
+            continue
         if _onward(at.end, found.solution):
             return found
         if nearest is None or found.distance < nearest.distance:
             nearest = found
     return nearest if at.change.final else None
+
+
+def _folded_twice(before: Solution, after: Solution) -> bool:
+    """Whether the branch turns back and on again between two orbits."""
+    return bool(before.tangent.parameter * after.tangent.parameter > 0)
 
 
 def _onward(before: Solution, after: Solution) -> bool:
@@ -142,17 +151,17 @@ def _onward(before: Solution, after: Solution) -> bool:
     return bool(after.tangent.parameter * way > 0 and ahead >= -blur)
 
 
-def _beyond(solver: Solver, at: Reached) -> Iterator[Crossed]:
+def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
+    """The orbit beyond a change on one way, if there is one near."""
     problem, old = solver.problem, at.end.orbit
-    for way in at.change.beyond(problem.system, old):
-        for guess in solver.transfers(old, way.mesh, way.phases):
-            new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
-            if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
-                continue
-            apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
-            if apart <= NEAR and low <= new.value <= high:
-                yield Crossed(new, apart, way.touches)
-                break
+    for guess in solver.transfers(old, way.mesh, way.phases):
+        new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
+        if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+            continue
+        apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
+        if apart <= NEAR and low <= new.value <= high:
+            return Crossed(new, apart, way.touches)
+    return None
 
 
 def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solution:

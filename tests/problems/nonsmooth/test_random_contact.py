@@ -100,6 +100,35 @@ def test_folds_beside_a_touch() -> None:
     assert wrong(case, branch, 132) == []
 
 
+def test_impact_and_end_of_a_contact_swap() -> None:
+    """Assert that a branch goes on where an impact comes to lie before the end of a contact, not after it.
+
+    Before that another contact is touched a short way after one that is deeper (impacts 104, Omega 0.536).
+    """
+    case = drawn("impacts", 104)
+    control = per.ArclengthControl(max_points=90)
+    branch = per.trace(case.system, "Omega", (0.5, case.start), start=case.start, tol=TOL, control=control)
+    struck = [point for point in branch if len(point.orbit.phases) > 4]
+    beside = [point for point in struck if abs(point.parameter - 0.5463) < 3e-4]
+    orders = [[event.switch for event in point.orbit.mesh.events] for point in beside]
+    assert orders[0] == [0, 1, 0, 1, 0] and orders[-1] == [0, 1, 0, 0, 1]
+    for point in beside:
+        assert judged(case.exact, point, case.names).wrong(point, TOL) == ""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("seed", "reason"), [(104, None), (132, None), (139, Reason.BOUND)])
+def test_impacts_that_follow_each_other(seed: int, reason: Reason | None) -> None:
+    """Assert all points of branches with up to 18 impacts in a row, and the ledger; two end where these
+    are without number."""
+    case = drawn("impacts", seed)
+    branch = traced(case)
+    assert reason in (None, branch.stop.reason)
+    assert max(len(point.orbit.phases) for point in branch) >= 9
+    found = verdicts(case, branch, seed, len(branch))
+    assert (found.wrong, found.unjudged, list(branch.unaccounted)) == ([], [], [])
+
+
 def test_last_digits_of_the_parameter() -> None:
     """Assert that errors tell what the parameter's last digits are to multipliers beside a touch, 2e-7."""
     case = drawn("clearances", 130)
