@@ -190,10 +190,15 @@ def repeated(orbit: Orbit, times: int) -> Orbit:
 
 
 def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Increment:
-    """The perturbation that is multiplied by 1 or -1 over the period; of any length."""
+    """The perturbation that is multiplied by 1 or -1 over the period; of any length.
+
+    Raises numpy.linalg.LinAlgError where no force depends on the motion.
+    """
     orbit = orbit.collocated()
     closed = variations(system, orbit, ()).repeating(multiplier)
     matrix = closed.matrix
+    if not matrix.size:
+        raise np.linalg.LinAlgError("no force depends on the motion")
     if autonomous and multiplier == 1:  # across the flow
         flow = np.zeros_like(orbit.nodes)
         flow[0] = orbit.node_rates[0]

@@ -58,7 +58,7 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
     own = reduced[:, filled]
     states = list(part.states)
     if own.shape[1] != n - len(states):
-        raise ValueError(
+        raise np.linalg.LinAlgError(
             f"the system has {own.shape[1]} rows for its {n - len(states)} own states; each needs one"
         )
     rates = [1 + k for k in states]

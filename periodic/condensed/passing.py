@@ -91,7 +91,8 @@ def _given(
     for _ in range(ITERATIONS):
         line = linearise(system, rate, x, unknown, phase, orbit.parameter, side[None])
         rows = np.concatenate([line.d_rate[0][:, own], line.d_algebraic[0]], axis=1)
-        kept = np.append(np.abs(rows[:n]).max(axis=1, initial=0.0) > 0, np.ones(len(rows) - n, dtype=bool))
+        driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[:n]
+        kept = np.append(driven.any(axis=1), np.ones(len(rows) - n, dtype=bool))
         change = np.linalg.solve(rows[kept], line.residual[0][kept])
         rate[0, own] -= change[: len(own)]
         unknown -= change[len(own) :]

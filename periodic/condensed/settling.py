@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from periodic.collocation.kinks import exact_crossings
 from periodic.collocation.sides import STUCK, linearise
 from periodic.collocation.touch import ordered
 from periodic.correction.outcome import FAILURES
@@ -170,8 +171,8 @@ class Motion:
             left.append(linearise(system, *given, lower[None]).residual[0])
         halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
         residual = line.residual[0] + halves @ (parts[stuck] - 1)
-        told = np.abs(line.d_rate[0]).max(axis=1) > 0
-        told[len(x) :] = True
+        driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
+        told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
         switches = [jumps_of(system)[i] for i in stuck]
         held = system.switch(x[None], at, self.parameter)[0, switches]
         gradient = system.switch_gradient(x[None], at, self.parameter)[0][0, switches]
@@ -198,18 +199,33 @@ class Motion:
 
     @property
     def _lasting(self) -> list[tuple[EventNode, float]]:
-        """The events, without slips between two stretches of sticking that are as brief as steps' errors."""
-        releases = {k for pair in slides_of(self.system).values() for k in pair}
-        kept, events = list(self.events), self.events
-        for (first, begun), (second, ended) in zip(events, events[1:] + events[:1], strict=True):
-            own = first.switch in slides_of(self.system).get(second.switch, ())
-            if own and first.switch in releases and (ended - begun) % FORCED < BRIEF:
-                kept = [pair for pair in kept if pair not in ((first, begun), (second, ended))]
-        return kept
+        """The events without what is an error of the steps.
+
+        Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
+        """
+        gone, slides = set[int](), slides_of(self.system)
+        for switch, pair in slides.items():
+            own = [k for k, (event, _) in enumerate(self.events) if event.switch in (switch, *pair)]
+            for i, j in zip(own, own[1:] + own[:1], strict=True):
+                (first, begun), (second, ended) = self.events[i], self.events[j]
+                length = (ended - begun) % FORCED
+                if first.switch in pair and second.switch == switch and length < BRIEF:
+                    gone |= {i, j}
+                elif second.switch in pair and length < 1.5 * self.width and self._leads_on(switch, begun):
+                    gone |= {j} if first.direction == second.direction else {i, j}
+        return [each for k, each in enumerate(self.events) if k not in gone]
+
+    def _leads_on(self, switch: int, tau: float) -> bool:
+        """Whether rates on both sides of a jump have one sign at a phase of the last period."""
+        x, at = self.states[round(tau / self.width + 0.5)], np.array([tau])
+        values = self.system.switch(x[None], at, self.parameter)[0]
+        up, down = slides_of(self.system)[switch]
+        return not values[up] < 0 < values[down]
 
     def orbit(self) -> Orbit:
         """Return the last period as an orbit with its event nodes."""
         phase = np.linspace(0.0, FORCED, self.steps + 1)
         guess = sampled(phase, np.array(self.states), np.array(self.unknowns), self.parameter)
-        events, phases = ordered(self._lasting, guess)
+        kinked = [(crossing.event, crossing.phase) for crossing in exact_crossings(self.system, guess)]
+        events, phases = ordered([*self._lasting, *kinked], guess)
         return transfer(guess, redistribute(guess, INTERVALS, events, phases, SHORTEST), phases)

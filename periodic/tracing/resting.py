@@ -77,7 +77,10 @@ class _Balance:
         residual = line.residual.mean(axis=0)
         jacobian = np.concatenate([line.d_state, line.d_algebraic], axis=2).mean(axis=0)
         if len(self.states):
-            empty = np.flatnonzero(~np.abs(line.d_rate[:, :n]).any(axis=(0, 2)))
+            given = np.concatenate([line.d_rate, line.d_state], axis=2)[:, :n]
+            empty = np.flatnonzero(~given.any(axis=(0, 2)))
+            if len(empty) > len(self.states):
+                raise np.linalg.LinAlgError("a row of an own state is empty, as where its parameter is 0")
             residual[empty] = point[self.states] - self.flexibility @ point[n + self.forces]
             jacobian[empty] = 0.0
             jacobian[empty, self.states] = 1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import periodic as per
@@ -32,6 +33,27 @@ def test_settled() -> None:
     lengths = [o.mesh.segment_lengths(o.phases) for o in (orbit, found.orbit)]
     assert lengths[0] == pytest.approx(lengths[1], abs=0.01)
     assert found.error.orbit < 1e-7
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("joint", ["slider", "absorber"])
+def test_beside_own_states(joint: str) -> None:
+    """Assert the two leading multipliers (1e-7) and the stops (1e-6) as with all states of the structure."""
+    structure, found = sym.Structure(BEAM, damping=0.02, at={"middle": 0}), []
+    tip, y = structure["tip"], sym.coordinate("y")
+    absorber = [sym.CoulombFriction(tip, 0.006, to=y), sym.Mass(y, 0.2), sym.Damper(y, 0.02, to=tip)]
+    parts = {
+        "slider": [sym.CoulombFriction(tip, 0.001), sym.Jenkins(structure["middle"], 3.0, 0.002)],
+        "absorber": [*absorber, sym.Spring(y, 2.0, to=tip)],
+    }[joint]
+    for condense in (True, False):
+        model = sym.combine([structure, *parts, sym.HarmonicForce(tip, 0.02, 2.3)])
+        point = per.trace(sym.compile(model, condense=condense), "Omega", (2.3, 2.301))[0]
+        found.append(point)
+    lengths = [point.orbit.mesh.segment_lengths(point.orbit.phases) for point in found]
+    assert lengths[0] == pytest.approx(lengths[1], abs=1e-6) and len(lengths[0]) > 2
+    moduli = [np.sort(np.abs(point.multipliers))[-2:] for point in found]
+    assert moduli[0] == pytest.approx(moduli[1], abs=1e-7)
 
 
 def test_refused() -> None:
