@@ -40,8 +40,8 @@ def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
 def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     """Distance of a and b in the metric of continuation, b taken `later` (rad); on any meshes.
 
-    Between impacts that both have b is taken as much later as it has these, which counts too: there a small
-    difference of phase compares states before and after.
+    Between impacts that both have b is taken as much later as it has these, which counts too, a radian as
+    much as a's amplitude: there a small difference of phase compares states before and after.
     """
     tau, shared = a.mesh.nodes(a.phases), list(_impacts(problem, a, b, later))
     shift = _interpolated(tau, a, shared)
@@ -51,7 +51,7 @@ def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     units, free = problem.units(a), list(problem.free)
     jump = b.parameter[free] - a.parameter[free]
     apart = float(np.sum(((jump if isinstance(units, np.ndarray) else jump[:1]) / units) ** 2))
-    apart += sum(impact.shift**2 for impact in shared)
+    apart += sum((impact.shift * max(a.span(), LEAST_SPAN) / 2) ** 2 for impact in shared)
     return float(np.sqrt(np.einsum("j,jn,jn->", metric_weights(a), profile, profile) + apart))
 
 
