@@ -22,8 +22,11 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, System, jumps_of
 
-ITERATIONS = 4
+ITERATIONS = 8
 """Newton steps to the forces at an event; one is enough where equations are linear in them."""
+
+CLOSE = 1e-8
+"""Part of rates and unknowns by which the last one may still move them."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ class Passage:
 def passages(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[Passage]:
     """Return the events of an orbit at which forces jump, in order.
 
-    Raises numpy.linalg.LinAlgError where a switch is at rest at its event.
+    Raises numpy.linalg.LinAlgError where a switch is at rest at its event, or forces there are not found.
     """
     jumps, found = jumps_of(system), list[Passage]()
     chosen = [i for i, event in enumerate(orbit.mesh.events) if event.switch in jumps]
@@ -86,7 +89,10 @@ def _passage(
 def _given(
     system: System, orbit: Orbit, x: Array, phase: Array, own: Array, side: Array, guess: Array
 ) -> tuple[Array, Array]:
-    """Rates of own states (o,) and unknowns (m,) at a state (1, n) on given sides of the jumps."""
+    """Rates of own states (o,) and unknowns (m,) at a state (1, n) on given sides of the jumps.
+
+    Raises numpy.linalg.LinAlgError where they are not found.
+    """
     n, rate, unknown = x.shape[1], np.zeros_like(x), guess[None].copy()
     for _ in range(ITERATIONS):
         line = linearise(system, rate, x, unknown, phase, orbit.parameter, side[None])
@@ -95,5 +101,8 @@ def _given(
         kept = np.append(driven.any(axis=1), np.ones(len(rows) - n, dtype=bool))
         change = np.linalg.solve(rows[kept], line.residual[0][kept])
         rate[0, own] -= change[: len(own)]
-        unknown -= change[len(own) :]
-    return rate[0, own], unknown[0]
+        unknown = system.move(unknown, -change[None, len(own) :])
+        found = np.append(rate[0, own], unknown)
+        if np.abs(change).max(initial=0.0) <= CLOSE * (1 + np.abs(found).max(initial=0.0)):
+            return rate[0, own], unknown[0]
+    raise np.linalg.LinAlgError("the forces at an event are not found")

@@ -7,6 +7,8 @@ import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.condensed import passing
+from periodic.condensed.linearised import Linearised
 from periodic.condensed.settling import settled
 from periodic.condensed.variations import CondensedVariations
 from periodic.orbit.construction import at_rest
@@ -54,6 +56,16 @@ def test_beside_own_states(joint: str) -> None:
     assert lengths[0] == pytest.approx(lengths[1], abs=1e-6) and len(lengths[0]) > 2
     moduli = [np.sort(np.abs(point.multipliers))[-2:] for point in found]
     assert moduli[0] == pytest.approx(moduli[1], abs=1e-7)
+
+
+def test_forces_at_an_event_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that saltation is not made of forces that a last Newton step still moved."""
+    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
+    orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
+    assert len(Linearised.about(system, orbit, ()).passages) == 2
+    monkeypatch.setattr(passing, "ITERATIONS", 1)
+    with pytest.raises(np.linalg.LinAlgError, match="forces at an event"):
+        _ = Linearised.about(system, orbit, ()).passages
 
 
 def test_refused() -> None:
