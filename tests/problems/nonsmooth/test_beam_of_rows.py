@@ -84,8 +84,8 @@ def test_free_flight_only_shows_the_motion() -> None:
     """Assert multipliers beside a fold that lies beside a touch, where rounding moves the contact.
 
     Out of contact the motion is exact, and no finer mesh betters them. What is claimed is the error of sums
-    of their powers: two of them, .04 from each other, are each off by more. Rounding decides how far below the
-    tolerance it is: 1e-8 to 5e-7.
+    of their powers: two of them, .04 from each other, are each off by more. Rounding decides how far
+    below the tolerance it is: 1e-8 to 5e-7.
     """
     begun = per.trace(system(), "W", (3.645, 3.66), start=3.66)
     branch = per.trace(system(), "W", (3.645, 3.66), start=3.66, guess=begun[-1].orbit)
