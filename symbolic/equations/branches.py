@@ -111,7 +111,7 @@ class _Known:
         return not any(Traits.OTHER in t for t in traits) and any(Traits.MOVING in t for t in traits)
 
     def factors(self, node: ca.SX) -> list[ca.SX]:
-        """The factors of a product at whose zeros it changes its sign; what multiplies one alone stays."""
+        """The factors of a product at whose zeros it changes its sign; parameters with one alone stay."""
         if self.not_negative(node):
             return []
         if node.op() not in (*PRODUCTS, ca.OP_NEG, ca.OP_TWICE):
@@ -119,7 +119,7 @@ class _Known:
         parts = [part for part in map(node.dep, range(node.n_dep())) if self.moves([part])]
         found = [factor for part in parts for factor in self.factors(part)]
         alone = len(parts) == len(found) == 1 and found[0].element_hash() == parts[0].element_hash()
-        return [node] if alone else found
+        return [node] if alone and self.moves([node]) else found
 
 
 def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:

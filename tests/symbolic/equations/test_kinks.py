@@ -113,7 +113,10 @@ def test_scenes_have_declared_switches_alone(scene: str, monkeypatch: pytest.Mon
 
 
 def test_switches_of_unknowns_are_refused() -> None:
-    """Assert the sentence for a switch that is no function of state and phase; a kink in one is no switch."""
+    """Assert the sentence for a switch that is no function of state and phase; a kink in one is no switch.
+
+    Of a product the factors of the states are.
+    """
     with pytest.raises(ValueError, match="switch 'closed' depends on the unknown z; it must be a"):
         sym.compile(
             sym.Equations(
@@ -127,5 +130,9 @@ def test_switches_of_unknowns_are_refused() -> None:
         lambda x, p: {"x": -F.fmax(x.z, 0), "z": x.z - x.x}, {"x": 0.0}, unknowns={"z": 0.0}
     )
     assert names(sym.compile(kinked)) == []
+    product = sym.Equations(
+        lambda x, p: {"x": -F.fmax(x.x * x.z, 0), "z": x.z - x.x}, {"x": 0.0}, unknowns={"z": 0.0}
+    )
+    assert names(sym.compile(product)) == ["x"]
     with pytest.raises(ValueError, match="switches is 3; it must be a function of x and p"):
         sym.Equations(lambda x, p: {"x": -x.x}, {"x": 0.0}, switches=3)
