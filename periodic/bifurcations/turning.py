@@ -6,7 +6,6 @@ orbits where it leaves a symmetric branch: from there these are branch points (B
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -86,17 +85,22 @@ def at_once(before: Solution, after: Solution) -> list[Label]:
     """Return the special points that sit on a touch, by the orbits just before and beyond it.
 
     There multipliers jump, or change within a distance that tells them no more apart, and only their numbers
-    say what has passed: one through 1 where the branch turns, one through -1 where those beyond it change
-    from even to odd (Feigin; di Bernardo et al., Piecewise-smooth Dynamical Systems, 3.1), pairs otherwise.
+    say what has passed: one through 1 where the branch turns, one through 1 or -1 where those beyond it
+    change from even to odd (Feigin; di Bernardo et al., Piecewise-smooth Dynamical Systems, 3.1), pairs
+    otherwise.
     """
     if codim2.picked(before.problem) is not None:
         return []
     turned = before.tangent.parameter * after.tangent.parameter < 0
-    tests = [t for t in codim2.PASSAGES[before.discretisation.stability] if t.label is not Label.TORUS]
+    decides = before.discretisation.stability
+    every = codim2.PASSAGES[decides] + (() if turned else codim2.BESIDE_TURNS[decides])
+    tests = [test for test in every if test.label is not Label.TORUS]
     changed = [test for test in tests if test.value(before) * test.value(after) < 0]
-    single = [test.label for test in changed if test.genuine(before) or test.genuine(after)]
-    rest = abs(_unstable(after) - _unstable(before)) - turned - len(single)
-    return [Label.FOLD] * turned + single + [Label.TORUS] * max(math.ceil(rest / 2), 0)
+    sure = [test for test in changed if test.genuine(before) or test.genuine(after)]
+    rest = abs(_unstable(after) - _unstable(before)) - turned - len(sure)
+    alone = [test for test in changed if test not in sure][: max(rest, 0) % 2]
+    labels = [test.label for test in (*sure, *alone)]
+    return [Label.FOLD] * turned + labels + [Label.TORUS] * (max(rest, 0) // 2)
 
 
 def _unstable(solution: Solution) -> int:

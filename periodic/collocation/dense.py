@@ -185,7 +185,7 @@ class Dense:
 
     def _sliding(self, switch: int, jump: int, otherwise: int) -> NDArray[np.int_]:
         mesh = self.orbit.mesh
-        mode = sides(self.system, mesh)[:, jumps_of(self.system).index(jump)].astype(int)
+        mode = sides(self.system, self.orbit)[:, jumps_of(self.system).index(jump)].astype(int)
         if switch == jump:
             own = np.where(mode == STUCK, 0, mode)
             return own if group(self.system, mesh, jump) else np.full(mesh.ntst, otherwise)

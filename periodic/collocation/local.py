@@ -49,7 +49,7 @@ def relax(system: System, orbit: Orbit) -> Orbit:
         orbit.stage_phases,
         orbit.stages,
         orbit.algebraic,
-        sides(system, orbit.mesh),
+        sides(system, orbit),
     )
     stages, algebraic = orbit.stages.copy(), orbit.algebraic.copy()
     index = np.arange(orbit.mesh.ntst)

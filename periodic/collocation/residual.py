@@ -61,7 +61,7 @@ class Evaluated:
             orbit.algebraic[begin:end].reshape(len(rate), orbit.algebraic.shape[2]),
             tau[begin:end].ravel(),
             orbit.parameter,
-            np.repeat(sides(system, orbit.mesh)[begin:end], ncol, axis=0),
+            np.repeat(sides(system, orbit)[begin:end], ncol, axis=0),
             self.free,
         )
         exact = orbit.mesh.exact_ends

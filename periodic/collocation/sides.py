@@ -1,7 +1,8 @@
 """Jumps of the equations: on either side of an event node they take the branch of their own side.
 
 The side of a switch in an interval is known from the last event node of that switch, whatever the last digits
-of the state say; without any the state decides. See `periodic.system.Jumping`.
+of the state say. Without any it is that on which the orbit is, but for what is shallow: so an orbit is smooth
+past the touch up to which it is followed. Else the state decides. See `periodic.system.Jumping`.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import cast
 import numpy as np
 
 from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import Jumping, LinearisationLike, System, jumps_of, slides_of
 
@@ -18,21 +20,34 @@ STUCK = 2
 """Side of a jump on which the motion slides along it."""
 
 
-def sides(system: System, mesh: Mesh) -> Array:
+SHALLOW = 0.05
+"""How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
+
+
+def sides(system: System, orbit: Orbit) -> Array:
     """Return the side of each jump in each interval, 0 where the state decides, shape (N, jumps).
 
     1 and -1 are the signs of its switch, STUCK says that the motion slides on the jump.
     """
-    jumps = jumps_of(system)
+    jumps, mesh = jumps_of(system), orbit.mesh
     found = np.zeros((mesh.ntst, len(jumps)))
     for i, k in enumerate(jumps):
         own = group(system, mesh, k)
         modes = [STUCK if sticks(system, mesh, k, j) is not None else mesh.events[j].direction for j in own]
-        if own:
-            found[:, i] = modes[-1]
+        found[:, i] = modes[-1] if own else _whole(system, orbit, k)
         for j, mode in zip(own, modes, strict=True):
             found[mesh.starts[j] :, i] = mode
     return found
+
+
+def _whole(system: System, orbit: Orbit, switch: int) -> int:
+    """The side of a jump all along an orbit without event nodes of it, 0 if it has none."""
+    if switch in slides_of(system):
+        return 0
+    states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
+    values = system.switch(states, tau, orbit.parameter)[:, switch]
+    side = 1 if values.max() > -values.min() else -1
+    return side if (side * values).min() > -SHALLOW * np.abs(values).max() else 0
 
 
 def group(system: System, mesh: Mesh, switch: int) -> list[int]:

@@ -134,7 +134,7 @@ def _values(system: System, orbit: Orbit, switch: int) -> tuple[Array, Array]:
     """A switch at the collocation points, and the side that the equations are on there."""
     flat = (-1, orbit.stages.shape[2])
     values = system.switch(orbit.stages.reshape(flat), orbit.stage_phases.ravel(), orbit.parameter)
-    mode = sides(system, orbit.mesh)[:, jumps_of(system).index(switch)]
+    mode = sides(system, orbit)[:, jumps_of(system).index(switch)]
     return values[:, switch], np.repeat(mode, orbit.mesh.scheme.ncol)
 
 

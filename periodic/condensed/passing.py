@@ -65,7 +65,7 @@ def _passage(
     system: System, part: LinearPart, orbit: Orbit, response: Response, modes: Complex, index: int
 ) -> Passage | None:
     """One event with the modes there; None where it does not depend on the states."""
-    switch, start, side = orbit.mesh.events[index].switch, orbit.mesh.starts[index], sides(system, orbit.mesh)
+    switch, start, side = orbit.mesh.events[index].switch, orbit.mesh.starts[index], sides(system, orbit)
     interval, x, phase = before(orbit, index)
     slope, by_phase, _ = (g[0, switch] for g in system.switch_gradient(x, phase, orbit.parameter))
     if not slope.any():

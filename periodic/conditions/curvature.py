@@ -22,7 +22,7 @@ STEP = 1e-5
 
 def beside(system: System, orbit: Orbit, points: Points, free: tuple[int, ...]) -> LinearisationLike:
     """Linearise the equations at points of an orbit, on the sides of jumps that their intervals have."""
-    return linearise(system, *points.arguments(orbit), sides(system, orbit.mesh)[points.index], free)
+    return linearise(system, *points.arguments(orbit), sides(system, orbit)[points.index], free)
 
 
 def curvature(

@@ -40,7 +40,7 @@ def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
     It raises numpy.linalg.LinAlgError where there are no rates, and where the switch is at rest.
     """
     switch, start = orbit.mesh.events[index].switch, orbit.mesh.starts[index]
-    interval, side, unknown = before(orbit, index)[0], sides(system, orbit.mesh), orbit.algebraic
+    interval, side, unknown = before(orbit, index)[0], sides(system, orbit), orbit.algebraic
     arriving = rate_before(orbit, index), unknown[interval, -1]
     leaving = orbit.node_rates[start], unknown[start, 0]
     n, chosen = orbit.nodes.shape[1], list(free)

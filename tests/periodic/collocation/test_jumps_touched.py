@@ -156,3 +156,32 @@ def test_force_that_vanishes_in_flight() -> None:
     assert per.Label.GRAZING in labels[0]
     places = [[p.parameter for p in branch.special_points] for branch in (nested, plain)]
     assert places[0] == pytest.approx(places[1], abs=1e-9)
+
+
+@pytest.mark.parametrize("tol", [1e-4, 1e-8])
+@BOUNDS
+def test_both_sides_are_touched_at_once(bounds: tuple[float, float], tol: float) -> None:
+    """Assert touches of a spring that jumps on both sides: a fold above the resonance, a branch point below.
+
+    Beyond the latter an odd number of multipliers is outside the circle while the branch goes on: orbits that
+    touch one side alone leave there.
+    """
+    f = sym.functions
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        jumping = f.if_else(f.fabs(x.x) > 0.5, 2 * x.x, 0)
+        return {"x": x.v, "v": 0.3 * wave.cos - 0.1 * x.v - x.x - jumping}
+
+    system = sym.compile(sym.Equations(rates, {"x": 0.0, "v": 0.0}, {"Omega": 1.0}, frequency="Omega"))
+    begin = 0.55 if bounds[0] > bounds[1] else 2.0
+    branch = per.trace(system, "Omega", (0.55, 2.0), start=begin, tol=tol)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert branch.unaccounted == ()
+    square = np.sqrt(np.roots([1.0, 0.1**2 - 2, 1 - (0.3 / 0.5) ** 2]).real)
+    labels = {p.label: [q.parameter for q in branch.labelled(p.label)] for p in branch.special_points}
+    below, above = sorted(square)
+    assert sorted(labels[per.Label.GRAZING]) == pytest.approx([below, above], abs=1e-6)
+    assert min(labels[per.Label.BRANCH]) == pytest.approx(below, abs=1e-6)
+    assert len(labels[per.Label.FOLD]) == 2
+    assert min(labels[per.Label.FOLD]) == pytest.approx(above, abs=1e-6)
+    assert per.Label.TORUS not in labels
