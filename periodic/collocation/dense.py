@@ -161,7 +161,7 @@ class Dense:
         for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
             before, after = values[j - 1, -2], values[j, 1]
             shared = abs(values[j, 0]) <= near and before * after < 0
-            other = int(np.sign(after)) if shared and event.switch != switch else 0
+            other = int(np.sign(after)) if shared else 0
             found.append(event.direction if event.switch == switch else other)
         return found
 

@@ -1,5 +1,7 @@
 """Tables of notebooks, and names in a line."""
 
+from symbolic.equations.variables import SwitchInfo
+from symbolic.system.overview import overview
 from symbolic.tables import MANY, table, told
 
 
@@ -18,3 +20,10 @@ def test_names_in_a_line() -> None:
     assert told(["a", "b"]) == "a, b"
     assert told([]) == "none"
     assert told(str(k) for k in range(MANY + 1)).endswith(f", ... ({MANY + 1})")
+
+
+def test_switches_say_how_they_are_passed() -> None:
+    """Assert a word for each way."""
+    words = {-1: "falling", 0: "both ways", 1: "rising"}
+    for way, word in words.items():
+        assert f">{word}</td>" in overview("", {}, [SwitchInfo("s", way)])

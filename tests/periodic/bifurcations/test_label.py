@@ -1,11 +1,16 @@
 """Labels: strings of which there is one instance each, open to new kinds of points."""
 
 import copy
+import math
 import pickle
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 import periodic as per
+from periodic.bifurcations import stationary
 
 
 def test_a_label_is_its_text_and_there_is_one_of_each() -> None:
@@ -44,3 +49,10 @@ def test_an_unknown_label_names_those_there_are() -> None:
     """Assert that the refusal of an unknown label names the known ones."""
     with pytest.raises(ValueError, match=r"label is 'XX'; it must be one of EP, LP, PD, NS, BP"):
         per.Label("XX")
+
+
+def test_growth_is_that_of_the_pair_nearest_the_axis() -> None:
+    """Assert that a real eigenvalue nearer to the axis does not count; the sign is that of the test."""
+    eigenvalues = np.array([-0.1, -2 + 1j, -2 - 1j, -0.5 + 3j, -0.5 - 3j])
+    solution: Any = SimpleNamespace(spectrum=SimpleNamespace(multipliers=eigenvalues))
+    assert stationary._growth(solution) == math.copysign(0.5, stationary.balance(eigenvalues))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,10 @@ from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, Meissn
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation import kinks
+from periodic.collocation.dense import Dense
+from periodic.collocation.kinks import Crossing, KinkSettings, match
+from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.outcome import Outcome
 from periodic.orbit.construction import transfer
@@ -87,6 +93,35 @@ def test_mesh_is_tied_to_every_kink(Omega: float, kinks: int) -> None:
     found = np.sort(np.mod(standard(Omega).orbit.phases, 2 * np.pi))
     assert len(found) == kinks
     assert found == pytest.approx(reference(Omega).kinks, abs=1e-7)
+
+
+@each_case
+def test_event_nodes_are_found_by_their_crossings(Omega: float, kinks: int) -> None:
+    """Assert the node of each crossing, none for one that goes the other way or is elsewhere."""
+    orbit = standard(Omega).orbit
+    for j, (event, phase) in enumerate(zip(orbit.mesh.events, orbit.phases, strict=True)):
+        assert match(Crossing(event, phase, 1.0), orbit) == j
+        assert match(Crossing(replace(event, direction=-event.direction), phase, 1.0), orbit) is None
+        assert match(Crossing(event, phase + 0.03, 1.0), orbit) is None
+
+
+@each_case
+def test_equal_switches_share_their_event_nodes(Omega: float, kinks: int) -> None:
+    """Assert the sides of a switch whose nodes are those of another that is equal to it."""
+    system, orbit = BilinearOscillator(zeta=DAMPING), standard(Omega).orbit
+    both: Any = SimpleNamespace(switch=lambda *given: np.repeat(system.switch(*given), 2, axis=1))
+    own, other = (Dense(both, orbit)._directions(switch) for switch in (0, 1))
+    assert own == other == [event.direction for event in orbit.mesh.events]
+
+
+def test_levels_are_as_deep_as_the_orbit_is_accurate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the shallowest level worth an event node: a tenth of the orbit's error, or what is set."""
+    system, orbit, seen = BilinearOscillator(zeta=DAMPING), standard(1.3).orbit, list[float | None]()
+    monkeypatch.setattr(kinks, "wanted", lambda *given: seen.append(given[2].deepest) or [])
+    for deepest in (None, 1e-2, 1e-9):
+        method = per.Collocation(kinks=KinkSettings(deepest=deepest))
+        assert method.refine(system, orbit, ErrorEstimate(1e-5, 0.0)).fits is False
+    assert seen == pytest.approx([1e-6, 1e-2, 1e-6])
 
 
 @each_case

@@ -12,6 +12,7 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 import symbolic as sym
 from periodic.condensed.floquet import LASTING
+from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import Condensed
 from periodic.tracing.suited import suited
 
@@ -128,3 +129,9 @@ def test_increments_are_periodic() -> None:
         assert np.abs(found.nodes).max() > 0
         assert found.nodes[0] == pytest.approx(found.nodes[-1], rel=1e-9, abs=1e-13)
         assert found.nodes[1:] == pytest.approx(found.stages[:, -1], rel=1e-9, abs=1e-13)
+
+
+def test_meshes_begin_with_intervals_of_their_own() -> None:
+    """Assert the least and first numbers of intervals, which are those of few unknowns."""
+    method = CondensedCollocation()
+    assert (method.ntst_min, method.ntst) == (6, 12)

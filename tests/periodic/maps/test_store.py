@@ -242,3 +242,23 @@ def test_file_is_written_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     per.map(task(), GRID, 1, store=store, chunk=4, progress=look)
     assert seen == [4, 8, 12]
+
+
+def test_file_is_written_again_when_that_costs_little(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that a file whose writing took a second is written again after RARELY seconds, not before."""
+    clock = [1000.0]
+    monkeypatch.setattr(stores, "perf_counter", lambda: clock[0])
+
+    def slowly(data: xr.Dataset) -> bytes:
+        clock[0] += 1.0
+        return b""
+
+    monkeypatch.setattr(stores, "packed", slowly)
+    with stores.Store(tmp_path / "map.nc", {}, False) as store:
+        store.write(xr.Dataset(), False)
+        rest = max(stores.LEAST, stores.RARELY)
+        for later, due in ((0.9 * rest, False), (0.2 * rest, True)):
+            clock[0] += later
+            assert store.due() is due

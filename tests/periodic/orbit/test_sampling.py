@@ -103,3 +103,27 @@ def test_refused_samples_by_name(name: str) -> None:
     change, told = REFUSED[name]
     with pytest.raises(ValueError, match=f"^{re.escape(told)}"):
         per.sampled(**{**SAMPLES, **change})
+
+
+def test_samples_with_two_impacts() -> None:
+    """Assert a motion that bounces twice in the samples, which begin between the impacts."""
+    q, impacts = sym.coordinate("q", start=-1.0), (0.5, 0.5 + math.pi)
+    system = sym.compile(
+        sym.Model(
+            [
+                sym.Mass(q, 1.0),
+                sym.Spring(q, 1.0),
+                sym.RigidStop(q, 0.0, 1.0),
+                sym.HarmonicForce(q, 0.1, sym.parameter("Omega", 1.0, "rad/s")),
+            ]
+        )
+    )
+    t = np.concatenate(
+        [np.linspace(a, b, 40) for a, b in zip((0.0, *impacts), (*impacts, 2 * math.pi), strict=True)]
+    )
+    way = np.repeat([1.0, -1.0, 1.0], 40)
+    state = np.stack([way * np.sin(t - 0.5), way * np.cos(t - 0.5)], axis=1)
+    orbit = per.sampled(t, state, system=system, parameter=system.nominal)
+    assert orbit.phases == pytest.approx(impacts)
+    seen = np.linspace(0.1, 6.2, 30)
+    assert orbit["q"](seen) == pytest.approx(-np.abs(np.sin(seen - 0.5)), abs=1e-3)

@@ -9,6 +9,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.traces import DUFFING_A, duffing_system
 
@@ -117,3 +118,11 @@ def test_what_was_there_stays_until_the_first_step(make: Callable[[Path], None],
     assert path.read_bytes() == before
     branch = traced(path)
     assert per.recovered(path).values.tolist() == branch.values.tolist()
+
+
+def test_a_journal_has_both_directions(tmp_path: Path) -> None:
+    """Assert the branch in its order where it was traced to both sides of its beginning."""
+    system, path = duffing_system(*DUFFING_A), tmp_path / "journal"
+    branch = per.trace(system, "Omega", (0.3, 0.4), start=0.35, watch=per.Watch(journal=path))
+    values = per.recovered(path).values
+    assert values.tolist() == branch.values.tolist() and (np.diff(values) > 0).all()

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
+from support.numpy_systems import Array
 
+from periodic.stability.graded import spectrum_of
 from periodic.stability.spectrum import Pair, Spectrum, nearest
 from periodic.stability.winding import meetings
 
@@ -58,3 +62,22 @@ def test_each_of_many_pairs_leads_where_it_does_alone() -> None:
     for ours, theirs in zip(found, alone, strict=True):
         assert (ours.place, ours.argument, ours.turned) == (theirs.place, theirs.argument, theirs.turned)
         assert np.array_equal(ours.left, theirs.left)
+
+
+@dataclass(frozen=True)
+class Joints:
+    """Steps from joint to joint, and the flow there."""
+
+    steps: Array
+    flow: Array
+    growth: float = 1e9
+
+
+def test_flow_that_does_not_come_back_as_itself_is_told() -> None:
+    """Assert that multipliers of a graded orbit are known where its steps carry the flow along, not else."""
+    steps, flow = np.array([np.diag([1.0, 1e-4])] * 2), np.array([[1.0, 0.0]] * 3)
+    fundamental = np.array([np.eye(2), steps[0], steps[1] @ steps[0]])
+    for turned in (0.0, 0.5):
+        flow[1] = np.cos(turned), np.sin(turned)
+        spectrum = spectrum_of(fundamental, Joints(steps, flow), 1)
+        assert spectrum.known is (turned == 0.0)

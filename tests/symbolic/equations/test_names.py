@@ -71,3 +71,8 @@ def test_frequency_is_shared() -> None:
     assert found == {"m": 1.0, "F_x": 0.1, "F_y": 0.2, "Omega": 2.0}
     with pytest.raises(ValueError, match=r"two frequencies, Omega = 2 rad/s and Omega = 3 rad/s \(y\)"):
         values(*masses, sym.HarmonicForce(X, 0.1, 2.0), sym.HarmonicForce(Y, 0.2, 3.0))
+
+
+def test_coordinates_are_numbered_and_begin_at_zero() -> None:
+    """Assert names and values of a start of a vector of coordinates."""
+    assert [(q.name, q.start) for q in sym.coordinates("x", 2)] == [("x1", 0.0), ("x2", 0.0)]

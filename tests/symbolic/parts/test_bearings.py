@@ -55,6 +55,8 @@ def test_passage_or_turn() -> None:
     [
         ({"elements": 0}, "elements is 0"),
         ({"outer": 30e-3}, "outer is 0.03"),
+        ({"waves": 3}, "waves is 3; it must be a sequence of RaceWave"),
+        ({"waves": ("inner",)}, "it must be a sequence of RaceWave"),
         ({"passages": 4}, "passages is 4; it must be about 3.08"),
         ({"passages": 3.0846153846}, "denominator"),
         ({"waves": WAVES["inner"]["waves"]}, "no common period"),

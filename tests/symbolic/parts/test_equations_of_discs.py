@@ -160,3 +160,14 @@ def test_two_equations_share_nothing_by_accident() -> None:
     """Assert that a state of the same name in two parts is refused."""
     with pytest.raises(ValueError, match="state 'x' is defined twice"):
         sym.compile(lorenz() + lorenz())
+
+
+@pytest.mark.parametrize("number", [np.float64(2.0), np.array(2.0), 2])
+def test_numbers_of_numpy_are_taken(number: Any) -> None:
+    """Assert that a function may return a number as NumPy has it, also as an array without axes."""
+    system = sym.compile(
+        sym.Equations(
+            lambda x, p, wave: {"x": number}, states={"x": 0.0}, parameters={"W": 1.0}, frequency="W"
+        )
+    )
+    assert residual(system, [0.0], [0.0]) == pytest.approx([-2.0])
