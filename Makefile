@@ -13,7 +13,7 @@ BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.pro
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
-SEED ?= 2027
+SEED ?= 2028
 SINCE ?=
 
 .DEFAULT_GOAL := help

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from support.traces import DUFFING_A, duffing_system
 
 import periodic as per
 import symbolic as sym
+from periodic.bifurcations.codim2 import alignment
 
 CRITICAL = 0.3
 """F at which the linear part's multipliers pass the unit circle."""
@@ -109,3 +111,22 @@ def test_cut_of_an_angle_is_no_event() -> None:
     assert np.abs(np.diff(lags)).max() > 6  # there is such a jump
     for point in branch.labelled(per.Label.USER):
         assert point.columns["lag"] == pytest.approx(0.5, abs=1e-6)
+
+
+def test_critical_motions_of_folds_are_those_that_come_back() -> None:
+    """Assert the cosine between motions with the multiplier 1, whatever the others are."""
+    t = np.linspace(0, 2 * np.pi, 101)
+    orbit = per.sampled(t, np.stack([np.cos(t), -np.sin(t)], axis=1))
+
+    def solution(angle: float) -> Any:
+        vectors = np.array([[np.cos(angle), 0.0], [np.sin(angle), 1.0]])
+        monodromy = vectors @ np.diag([1.0, 0.5]) @ np.linalg.inv(vectors)
+        spectrum = SimpleNamespace(
+            monodromy=monodromy, fundamental=np.array([np.eye(2)] * (orbit.mesh.ntst + 1))
+        )
+        problem = SimpleNamespace(conditions=(per.FoldCondition(),))
+        return SimpleNamespace(
+            orbit=orbit, spectrum=spectrum, problem=problem, discretisation=per.Collocation()
+        )
+
+    assert alignment(solution(0.2), solution(1.1)) == pytest.approx(np.cos(0.9), rel=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,9 +12,12 @@ from support.cantilevers import cantilever, cubic
 
 import periodic as per
 import symbolic as sym
-from periodic.condensed.floquet import LASTING
+from periodic.condensed.floquet import LASTING, Leading
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import Condensed
+from periodic.harmonic.split import SeriesLeading
+from periodic.linear.unknowns import Increment
+from periodic.orbit.scheme import Array
 from periodic.tracing.suited import suited
 
 
@@ -135,3 +139,21 @@ def test_meshes_begin_with_intervals_of_their_own() -> None:
     """Assert the least and first numbers of intervals, which are those of few unknowns."""
     method = CondensedCollocation()
     assert (method.ntst_min, method.ntst) == (6, 12)
+
+
+def test_changes_of_series_at_the_beginning_are_those_of_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert what a change of the forces, given at even phases, changes, by its values at stages."""
+    seen, own = list[tuple[SeriesLeading, Increment]](), SeriesLeading.start
+    monkeypatch.setattr(SeriesLeading, "start", lambda *given: seen.append(given) or own(*given))
+    per.trace(cantilever(1, cubic, condense=True), "Omega", (3.0, 3.02), method=per.HarmonicBalance())
+    leading, change = seen[0]
+
+    def wave(angle: Array, like: Array) -> Increment:
+        values = (np.cos(angle) + 0.3 * np.sin(2 * angle)).ravel()[:, None] * np.ones(like.shape[2])
+        return replace(change, algebraic=values.reshape(like.shape))
+
+    count, pieces = change.algebraic[..., 0].size, leading.floquet.given.orbit
+    even = wave(2 * np.pi * np.arange(1, count + 1) / count, change.algebraic)
+    angle = 2 * np.pi / pieces.mesh.period * pieces.stage_phases
+    exact = Leading.start(leading, wave(angle, pieces.algebraic))
+    assert own(leading, even) == pytest.approx(exact, rel=1e-9, abs=1e-12)

@@ -121,3 +121,16 @@ def test_law_that_cannot_carry_the_preload() -> None:
     parts = [sym.Mass(x, 2.0), sym.Preload(pair, 810.0), sym.ElasticContact(pair, Hardening(0.0, 0.0))]
     with pytest.raises(ValueError, match="^contact 'contact' has no static deflection"):
         sym.compile(sym.combine(parts))
+
+
+def test_damping_is_that_of_the_stiffness_under_the_preload() -> None:
+    """Assert a damping ratio where the law's slope in logarithms changes with the deflection."""
+    x = sym.coordinate("x")
+    pair = sym.ContactPair(x)
+    parts = [
+        sym.Mass(x, 2.0),
+        sym.Preload(pair, 2e5),
+        sym.ElasticContact(pair, Hardening(1e8)),
+        sym.ContactDamping(pair, 0.05),
+    ]
+    assert sym.modes(sym.compile(sym.combine(parts))).damping_ratios[0] == pytest.approx(0.05, rel=1e-9)
