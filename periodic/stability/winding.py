@@ -133,14 +133,18 @@ def _nearest(argument: Array, turn: Array) -> Array:
 
 
 def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
-    """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli."""
+    """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli.
+
+    Of a pair that seems to turn by more than half a turn it is not sure which way it goes: both are taken.
+    """
     offset, found = 0.0 if sign > 0 else math.pi, []
     for a, b in _matched(before, after):
-        turn = a.turn(b)
-        low, high = sorted((a.argument, a.argument + turn))
-        first, last = (math.floor((end - offset) / math.tau) for end in (low, high))
-        places = ((offset + math.tau * past - a.argument) / turn for past in range(first + 1, last + 1))
-        found += [(p, a.modulus ** (1 - p) * b.modulus**p) for p in places]
+        seen = a.turn(b)
+        for turn in (seen, seen - math.copysign(math.tau, seen))[: 1 + (abs(seen) > math.pi)]:
+            low, high = sorted((a.argument, a.argument + turn))
+            first, last = (math.floor((end - offset) / math.tau) for end in (low, high))
+            places = ((offset + math.tau * past - a.argument) / turn for past in range(first + 1, last + 1))
+            found += [(p, a.modulus ** (1 - p) * b.modulus**p) for p in places]
     return found
 
 

@@ -78,6 +78,22 @@ def test_two_tori_one_way_within_a_step() -> None:
     assert branch.unaccounted == ()
 
 
+def test_two_doublings_within_a_step() -> None:
+    """Assert both doublings of a damped pair that meets at -1, at tol 1e-3, in a step of .19."""
+    f = sym.functions
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        contact = 20 * f.fmax(x.x - 0.5, 0) ** 1.5 * (1 + x.v)
+        return {"x": x.v, "v": 0.3 * wave.cos - 0.1 * x.v - x.x - contact}
+
+    system = sym.compile(sym.Equations(rates, {"x": 0.0, "v": 0.0}, {"Omega": 1.0}, frequency="Omega"))
+    fine = per.trace(system, "Omega", (0.7, 0.9), start=0.9, tol=1e-8)
+    known = [p.parameter for p in fine.labelled(per.Label.DOUBLING)]
+    assert len(known) == 2
+    draft = per.trace(system, "Omega", (0.3, 2.5), start=2.5, tol=1e-3)
+    assert [p.parameter for p in draft.labelled(per.Label.DOUBLING)] == pytest.approx(known, abs=1e-4)
+
+
 @pytest.mark.parametrize("part", [0.4, 0.5, 0.6, 0.8])
 @pytest.mark.parametrize("label", ["BP", "HB"])
 def test_two_changes_of_equilibria_within_a_step(label: str, part: float) -> None:
