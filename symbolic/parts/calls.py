@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -16,8 +17,12 @@ Function = Callable[..., Mapping[str, Any]]
 """(x, p), or (x, p, wave) of a forced system, to expressions by name."""
 
 
+ARGUMENTS = ("x", "p", "wave")
+
+
 def called(name: str, function: Function, arguments: Sequence[object]) -> dict[str, ca.SX]:
     """Return what a function called `name` makes of symbols. Raises ValueError for no expressions."""
+    check_taken(name, function, len(arguments))
     with explained(name):
         found: object = function(*arguments)
     if not isinstance(found, Mapping):
@@ -25,6 +30,23 @@ def called(name: str, function: Function, arguments: Sequence[object]) -> dict[s
             f"{name} returned a {type(found).__name__}; it must return a mapping of names to expressions"
         )
     return {str(key): _expression(name, key, value) for key, value in found.items()}
+
+
+def check_taken(name: str, function: Callable[..., Any] | None, count: int) -> None:
+    """Refuse a function that cannot be called with so many arguments."""
+    if function is None:
+        return
+    try:
+        taken = inspect.signature(function)
+    except ValueError:  # of some functions that are not written in Python
+        return
+    try:
+        taken.bind(*range(count))
+    except TypeError:
+        raise ValueError(
+            f"{name} takes {taken}; it must take ({', '.join(ARGUMENTS[:count])})"
+            f"{', as the system is forced' if count == len(ARGUMENTS) else ''}"
+        ) from None
 
 
 def _expression(name: str, key: object, value: object) -> ca.SX:

@@ -13,7 +13,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.model import Part
 from symbolic.equations.terms import State
 from symbolic.equations.variables import Coordinate, Parameter, Value
-from symbolic.parts.calls import Function, called
+from symbolic.parts.calls import Function, called, check_taken
 
 
 class Names:
@@ -178,6 +178,7 @@ class Equations(Part):
         for q in self.coordinates:
             motion = assembly.motion(q)
             known |= {q.name: motion.position, f"{q.name}_dot": motion.velocity}
+        check_taken("resets", self.resets, len(arguments))
         flat = called("resets", lambda *given: _flat(self.resets, given), arguments)
         events = [name for name in flat if " of " not in name]
         for event in events:

@@ -132,6 +132,15 @@ def one(**changes: Any) -> Callable[[], object]:
             one(function=lambda x, p: {"x": "x"}),
             "function returned 'x' for 'x'; it must be one number or one expression",
         ),
+        (one(function=lambda x: {"x": -x.x}), "function takes (x); it must take (x, p)"),
+        (
+            one(frequency="a"),
+            "function takes (x, p); it must take (x, p, wave), as the system is forced",
+        ),
+        (
+            one(resets=lambda x, p, wave: {}),
+            "resets takes (x, p, wave); it must take (x, p)",
+        ),
         (one(states={"x": np.nan}), "rest value of x is nan; it must be a finite number"),
         (one(scales={"x": 0.0}), "scale of x is 0.0; it must be a positive number"),
         (one(scales={"y": 1.0}), "scales has 'y'; it must be one of x"),
