@@ -18,7 +18,7 @@ iterations and {seconds:g} s of CPU. {judged} points of each, drawn at random, a
 multipliers by an event-exact solution in closed form, in extended precision, that shares nothing with the
 packages (`tests/reference/contact.py`, `closer.py`). A point is wrong where an error is more than ten times
 what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs them, in some
-25 minutes on two cores.
+20 minutes on two cores.
 
 Engine at commit `{commit}`.
 """
