@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.jumping.impacts import applied
-from periodic.collocation.jumping.impacts import jumps as jumps_of
+from periodic.events.impacts import applied
+from periodic.events.impacts import jumps as jumps_of
 from periodic.collocation.native.elimination import Routines, routines
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.linear.bordering import Chain

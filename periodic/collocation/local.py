@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from periodic.collocation.condensation import solve_stages
 from periodic.collocation.residual import Rows, eliminate, finite
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System

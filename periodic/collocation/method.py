@@ -12,9 +12,9 @@ import numpy as np
 from periodic.checks import whole
 from periodic.collocation import kinks, touch
 from periodic.collocation.condensation import condensation
-from periodic.collocation.event import event_rows
+from periodic.events.noderows import event_rows
 from periodic.collocation.jumping import graze, impacts, slide, turn
-from periodic.collocation.kinks import Crossing, KinkSettings
+from periodic.events.tying import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
 from periodic.collocation.multipliers.unresolved import lost
@@ -22,7 +22,7 @@ from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
-from periodic.collocation.sides import group
+from periodic.events.modes import group
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System

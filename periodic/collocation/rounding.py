@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.collocation.rates import rate_before
+from periodic.events.rates import rate_before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array

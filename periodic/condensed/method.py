@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.event import event_rows
+from periodic.events.noderows import event_rows
 from periodic.collocation.method import Collocation, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum

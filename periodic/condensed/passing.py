@@ -5,7 +5,7 @@ In modes, with x = Re outputs z and dz/dtau = lambda z + B f, saltation is of ra
     dz+ = dz- + B (f+ - f-) (s_x dx-)/(ds/dtau),    ds+ likewise of own states by the jump of their rates,
 
 since an event that is late by -(s_x dx-)/(ds/dtau) leaves the old forces at work for as long. Compare
-`periodic.collocation.jumping.saltation`.
+`periodic.events.saltation`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.rates import before
-from periodic.collocation.sides import linearise, sides
+from periodic.events.rates import before
+from periodic.events.modes import linearise, sides
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.response import Response
 from periodic.orbit.orbit import Orbit

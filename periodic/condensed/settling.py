@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.collocation.kinks import exact_crossings
-from periodic.collocation.sides import STUCK, linearise
-from periodic.collocation.touch import ordered
+from periodic.events.tying import exact_crossings
+from periodic.events.modes import STUCK, linearise
+from periodic.events.rewrites.touch import ordered
 from periodic.correction.outcome import FAILURES
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode

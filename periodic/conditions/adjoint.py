@@ -19,8 +19,8 @@ from functools import cached_property
 import numpy as np
 
 from periodic.collocation.condensation import Condensed, condense
-from periodic.collocation.jumping.impacts import jumps
-from periodic.collocation.jumping.saltation import at_fixed_phase, saltation_gradient
+from periodic.events.impacts import jumps
+from periodic.events.saltation import at_fixed_phase, saltation_gradient
 from periodic.collocation.residual import evaluated
 from periodic.conditions.curvature import beside, curvature
 from periodic.linear.bordering import Chain, chain, onto_start

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.gradients import Points, Slopes
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array

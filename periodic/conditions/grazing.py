@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.collocation.conditions import Clearance
-from periodic.collocation.dense import Dense
+from periodic.events.sideconditions import Clearance
+from periodic.events.switchpolynomials import Dense
 from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.orbit.orbit import Orbit

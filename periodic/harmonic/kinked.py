@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.collocation.dense import exact
-from periodic.collocation.kinks import exact_crossings, placed
+from periodic.events.switchpolynomials import exact
+from periodic.events.tying import exact_crossings, placed
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.problem import Problem

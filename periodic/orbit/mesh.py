@@ -30,11 +30,15 @@ class EventNode:
         -1 for falling, +1 for rising.
     level : float
         0 for the kink itself; other levels mark one that lies close by.
+    modes : tuple of (int, int)
+        Surfaces, by the index of their guard, with the modes that they have from there on, where the passage
+        itself does not say so: sticking that begins, and what an impact or another's event brings about.
     """
 
     switch: int
     direction: int
     level: float = 0.0
+    modes: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -68,6 +68,9 @@ def orbit_tables(orbits: Sequence[Orbit], layout: Layout) -> Tables:
         "event_switch": (("event",), counts([a.switch for a in events])),
         "event_direction": (("event",), counts([a.direction for a in events])),
         "event_level": (("event",), np.array([a.level for a in events], dtype=float)),
+        "event_modes": (("event",), counts([len(a.modes) for a in events])),
+        "mode_surface": (("mode",), counts([k for a in events for k, _ in a.modes])),
+        "mode_value": (("mode",), counts([mode for a in events for _, mode in a.modes])),
         "event_phase": (("event",), _rows([o.phases for o in orbits])),
         "node_state": (("node", "state"), _rows([o.nodes for o in orbits], (n,))),
         "stage_state": (("stage", "state"), _rows([o.stages for o in orbits], (n,))),
@@ -131,13 +134,25 @@ def orbits_of(arrays: Arrays, said: Mapping[str, Any], layout: Layout) -> list[O
 def _meshes(arrays: Arrays, scheme: Scheme) -> list[Mesh]:
     breaks = _cut(arrays["sigma"], arrays["break_count"])
     columns = zip(*(arrays[f"event_{name}"] for name in ("switch", "direction", "level")), strict=True)
-    events = [EventNode(int(switch), int(way), float(level)) for switch, way, level in columns]
+    modes = _modes(arrays)
+    events = [
+        EventNode(int(switch), int(way), float(level), own)
+        for (switch, way, level), own in zip(columns, modes, strict=True)
+    ]
     segments = _spans(arrays["segment_count"], len(breaks))
     tied = _spans(arrays["event_count"], len(events))
     return [
         Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period))
         for own, ties, period in zip(segments, tied, arrays["period"], strict=True)
     ]
+
+
+def _modes(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:
+    """The modes of event nodes; none in files that were written before there were any."""
+    if "event_modes" not in arrays:
+        return [()] * len(arrays["event_switch"])
+    pairs = [(int(k), int(mode)) for k, mode in zip(arrays["mode_surface"], arrays["mode_value"], strict=True)]
+    return [tuple(pairs[span]) for span in _spans(arrays["event_modes"], len(pairs))]
 
 
 def _cut(array: np.ndarray, counts: Sequence[int] | np.ndarray) -> list[np.ndarray]:

@@ -16,8 +16,8 @@ from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, Meissn
 import periodic as per
 import symbolic as sym
 from periodic.collocation import kinks
-from periodic.collocation.dense import Dense
-from periodic.collocation.kinks import Crossing, KinkSettings, match
+from periodic.events.switchpolynomials import Dense
+from periodic.events.tying import Crossing, KinkSettings, match
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.outcome import Outcome

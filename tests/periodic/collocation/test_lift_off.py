@@ -12,7 +12,7 @@ from support.stops import errors, exactly, stopped
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.dense import Dense
+from periodic.events.switchpolynomials import Dense
 
 each_way = pytest.mark.parametrize("start", [0.2, 2.0], ids=["closes", "opens"])
 

@@ -10,9 +10,9 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.conditions import Limit
+from periodic.events.sideconditions import Limit
 from periodic.collocation.jumping import slide
-from periodic.collocation.jumping.slide import Place
+from periodic.events.rewrites.slide import Place
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate
 

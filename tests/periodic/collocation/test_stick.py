@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import symbolic as sym
-from periodic.collocation.conditions import Limit
+from periodic.events.sideconditions import Limit
 from periodic.collocation.jumping import slide
-from periodic.collocation.jumping.slide import Place
-from periodic.collocation.stick import _stretch
+from periodic.events.rewrites.slide import Place
+from periodic.events.sticking import _stretch
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme

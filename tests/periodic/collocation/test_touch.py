@@ -14,7 +14,7 @@ from support.stops import judged as exactly_judged
 import periodic as per
 import symbolic as sym
 from periodic.collocation import touch
-from periodic.collocation.dense import Dense
+from periodic.events.switchpolynomials import Dense
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit

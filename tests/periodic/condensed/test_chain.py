@@ -12,7 +12,7 @@ from support.cantilevers import cantilever
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.event import event_rows
+from periodic.events.noderows import event_rows
 from periodic.condensed import floquet, operator
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed

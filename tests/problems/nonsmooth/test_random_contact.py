@@ -20,8 +20,8 @@ import periodic as per
 from periodic import Reason
 from periodic.bifurcations.locate import special_points
 from periodic.bifurcations.turning import Found
-from periodic.collocation.event import event_rows
-from periodic.collocation.jumping.turn import LastTurn
+from periodic.events.noderows import event_rows
+from periodic.events.rewrites.turn import LastTurn
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
 from periodic.orbit.orbit import Orbit

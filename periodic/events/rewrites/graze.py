@@ -3,7 +3,7 @@
 On one side the orbit passes the level by, on the other it has an impact, whose speed v = |ds/dtau| grows from
 0. With the impact the branch is smooth in v, not in the parameter, which often turns there: the multipliers
 are without bound as v falls to 0 (Nordmark, J. Sound Vib. 145 (1991) 279). So a branch is followed without
-the impact up to the touch, and with it from a small speed on. Compare `periodic.collocation.touch`.
+the impact up to the touch, and with it from a small speed on. Compare `periodic.events.rewrites.touch`.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.conditions import Clearance
-from periodic.collocation.dense import Dense, Extremum
-from periodic.collocation.jumping.impacts import slope_before, tied
-from periodic.collocation.rates import before, rate_before
-from periodic.collocation.touch import index_of, ordered
+from periodic.events.sideconditions import Clearance
+from periodic.events.switchpolynomials import Dense, Extremum
+from periodic.events.impacts import slope_before, tied
+from periodic.events.rates import before, rate_before
+from periodic.events.rewrites.touch import index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.mesh import EventNode

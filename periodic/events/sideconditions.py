@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.dense import Dense, Extremum
+from periodic.events.switchpolynomials import Dense, Extremum
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row

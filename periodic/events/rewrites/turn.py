@@ -1,13 +1,13 @@
-"""An excursion ends about an event node of dry friction: see `periodic.collocation.turns`."""
+"""An excursion ends about an event node of dry friction: see `periodic.events.rewrites.turns`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from periodic.collocation.conditions import Length, Limit
-from periodic.collocation.touch import ALIKE, SHORT, VANISHING, index_of, ordered
-from periodic.collocation.turns import Turn, short_of, turns
+from periodic.events.sideconditions import Length, Limit
+from periodic.events.rewrites.touch import ALIKE, SHORT, VANISHING, index_of, ordered
+from periodic.events.rewrites.turns import Turn, short_of, turns
 from periodic.correction.change import Beyond
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import redistribute

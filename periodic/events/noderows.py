@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.collocation.jumping.impacts import event_row, tied
+from periodic.events.impacts import event_row, tied
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System

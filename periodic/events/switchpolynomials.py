@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.collocation.sides import STUCK, group, sides
+from periodic.events.modes import STUCK, group, sides
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme

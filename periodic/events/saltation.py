@@ -16,8 +16,8 @@ from typing import cast
 
 import numpy as np
 
-from periodic.collocation.rates import before, rate_at, rate_before
-from periodic.collocation.sides import sides
+from periodic.events.rates import before, rate_at, rate_before
+from periodic.events.modes import sides
 from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row

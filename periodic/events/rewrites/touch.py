@@ -19,11 +19,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.conditions import Clearance, Length
-from periodic.collocation.dense import Dense, Extremum, exact, sliding
-from periodic.collocation.rates import before as state_before
-from periodic.collocation.rates import rate_before
-from periodic.collocation.turns import held, short_of, turns
+from periodic.events.sideconditions import Clearance, Length
+from periodic.events.switchpolynomials import Dense, Extremum, exact, sliding
+from periodic.events.rates import before as state_before
+from periodic.events.rates import rate_before
+from periodic.events.rewrites.turns import held, short_of, turns
 from periodic.correction.change import Beyond, Change
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -345,7 +345,7 @@ def _around(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | Non
 
 
 def _slide(system: System, first: EventNode, second: EventNode) -> bool:
-    """Whether two event nodes are those of one jump: see `periodic.collocation.jumping.slide`."""
+    """Whether two event nodes are those of one jump: see `periodic.events.rewrites.slide`."""
     jump = sliding(system, first.switch)
     return jump is not None and sliding(system, second.switch) == jump
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.collocation.dense import Dense, exact, sliding
-from periodic.collocation.sides import group, sticks
+from periodic.events.switchpolynomials import Dense, exact, sliding
+from periodic.events.modes import group, sticks
 from periodic.orbit.orbit import Orbit
 from periodic.system import System, slides_of
 

@@ -1,7 +1,7 @@
 """Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
 
 The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
-it is told by `periodic.collocation.jumping.saltation`.
+it is told by `periodic.events.saltation`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.jumping.saltation import mapped, saltation
-from periodic.collocation.rates import before, rate_before
+from periodic.events.saltation import mapped, saltation
+from periodic.events.rates import before, rate_before
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit

@@ -15,7 +15,7 @@ import scipy
 
 from periodic.checks import at_least_0, number
 from periodic.collocation import stick
-from periodic.collocation.dense import Dense, exact
+from periodic.events.switchpolynomials import Dense, exact
 from periodic.collocation.jumping import impacts
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit

@@ -13,9 +13,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from periodic.collocation.jumping.slide import wrong
-from periodic.collocation.rates import rate_at, slope_at
-from periodic.collocation.sides import STUCK, group, sides, sticks
+from periodic.events.rewrites.slide import wrong
+from periodic.events.rates import rate_at, slope_at
+from periodic.events.modes import STUCK, group, sides, sticks
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array

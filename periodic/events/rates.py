@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.collocation.sides import linearise
+from periodic.events.modes import linearise
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System

@@ -22,10 +22,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.collocation.conditions import Clearance, Length, Limit
-from periodic.collocation.dense import Dense, Extremum, sliding
-from periodic.collocation.sides import group, sticks
-from periodic.collocation.touch import index_of, ordered
+from periodic.events.sideconditions import Clearance, Length, Limit
+from periodic.events.switchpolynomials import Dense, Extremum, sliding
+from periodic.events.modes import group, sticks
+from periodic.events.rewrites.touch import index_of, ordered
 from periodic.correction.change import Beyond
 from periodic.correction.condition import SideCondition
 from periodic.orbit.mesh import EventNode

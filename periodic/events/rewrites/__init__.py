@@ -1,0 +1,1 @@
+"""Changes of the pattern of events: rows of one table, read both ways."""
