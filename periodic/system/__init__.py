@@ -22,12 +22,29 @@ from periodic.system.equations import (
     check_value,
     index_of,
 )
-from periodic.system.events import Jumping, Resetting, check_continuous, jumps_of, resets_of, slides_of
+from periodic.system.events import (
+    MINUS,
+    PLUS,
+    STUCK,
+    Jumping,
+    Kind,
+    Resetting,
+    Surface,
+    SurfaceLike,
+    check_continuous,
+    jumps_of,
+    resets_of,
+    slides_of,
+    surfaces_of,
+)
 from periodic.system.motion import Flowing, FlowLike, Moving, TrajectoryLike
 from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
 
 __all__ = [
+    "MINUS",
+    "PLUS",
+    "STUCK",
     "Array",
     "Checked",
     "Compiling",
@@ -38,12 +55,15 @@ __all__ = [
     "Flowing",
     "GradientLike",
     "Jumping",
+    "Kind",
     "LinearPart",
     "LinearisationLike",
     "ModesLike",
     "Moving",
     "Resetting",
     "Split",
+    "Surface",
+    "SurfaceLike",
     "SwitchLike",
     "System",
     "Timed",
@@ -64,4 +84,5 @@ __all__ = [
     "linear_of",
     "resets_of",
     "slides_of",
+    "surfaces_of",
 ]

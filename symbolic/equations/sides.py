@@ -17,12 +17,10 @@ from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
+from symbolic.equations.surfaces import STUCK
 
 ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
-
-STUCK = 2
-"""Value of the side of a jump along which the motion slides."""
 
 CLOSE = 1e-10
 """Value of a switch that is as good as 0."""

@@ -14,6 +14,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
+from symbolic.equations.surfaces import Kind, Surface, surfaces
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
@@ -258,12 +259,15 @@ class CompiledSystem:
         first = len(self.switches) - 2 * len(switches)
         return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
 
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """What happens where the switches vanish; each of them belongs to one surface."""
+        return surfaces(self.switches, self.resets, self.jumps, self.slides)
+
     @property
     def kinks(self) -> tuple[int, ...]:
         """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
-        jumping = {*self.resets, *self.jumps, *(k for pair in self.slides.values() for k in pair)}
-        each = ((k, s) for k, s in enumerate(self.switches) if k not in jumping)
-        return tuple(k for k, s in each if s.levels == (0.0,) and s.direction == 0)
+        return tuple(surface.switch for surface in self.surfaces if surface.kind == Kind.KINK)
 
     def linearise_beside(
         self,
