@@ -4,7 +4,6 @@ from .bifurcations.hopf import eigenvalues, hopf, mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
 from .bifurcations.testfunction import TestFunction
-from .collocation.kinks import KinkSettings
 from .collocation.method import Collocation
 from .condensed.whole.motion import motion
 from .condensed.whole.recovery import recovery
@@ -24,6 +23,7 @@ from .correction.solution import Solution
 from .correction.tolerance import Accuracy, Tolerance
 from .equilibrium.method import Equilibrium
 from .equilibrium.normalform import first_lyapunov
+from .events.tying import KinkSettings
 from .harmonic.method import HarmonicBalance
 from .linear.operator import Operator
 from .linear.unknowns import Increment, Unknowns

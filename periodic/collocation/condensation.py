@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.events.impacts import applied
-from periodic.events.impacts import jumps as jumps_of
 from periodic.collocation.native.elimination import Routines, routines
 from periodic.collocation.residual import eliminate, evaluated, rows_of
+from periodic.events.impacts import applied
+from periodic.events.impacts import jumps as jumps_of
 from periodic.linear.bordering import Chain
 from periodic.linear.kinematic import kinematic, solve
 from periodic.orbit.jump import Jump

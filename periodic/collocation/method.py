@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, partial
-from typing import ClassVar
 
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation import kinks, touch
 from periodic.collocation.condensation import condensation
-from periodic.events.noderows import event_rows
-from periodic.collocation.jumping import graze, impacts, slide, turn
-from periodic.events.tying import Crossing, KinkSettings
 from periodic.collocation.local import relax
 from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
 from periodic.collocation.multipliers.unresolved import lost
@@ -22,7 +17,6 @@ from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
-from periodic.events.modes import group
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
@@ -31,6 +25,12 @@ from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
+from periodic.events import impacts, tying
+from periodic.events.modes import completed, group, of_held
+from periodic.events.noderows import event_rows
+from periodic.events.rewrites.first import first_change
+from periodic.events.tying import Crossing, KinkSettings
+from periodic.events.violations import Breach, Violation, between_nodes, violations, word
 from periodic.linear.operator import LinearSolver, Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import at_rest, transfer
@@ -40,13 +40,21 @@ from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System, slides_of
+from periodic.system import System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
 
 ASIDE = (1.0, 0.0, 10.0)
 """How far before its kink an event node begins on a new mesh (rad), in tolerances; tried in turn."""
+
+WRONG = {
+    Breach.GRAZED: Outcome.GRAZING,
+    Breach.THROUGH: Outcome.THROUGH_STOP,
+    Breach.HELD: Outcome.SLIDES,
+    Breach.REVERSED: Outcome.EVENTS_CROSSED,
+}
+"""What an orbit that violates its word so is refused as, the first of them."""
 
 SHALLOWER = (10.0, 100.0)
 """How much shallower event nodes are tried where a new mesh fails."""
@@ -88,9 +96,6 @@ class Collocation(Discretisation):
     condense: bool | None = None
     tolerance: float = 1e-7
 
-    ends_below: ClassVar[float] = touch.SHORT[-1]
-    """Length (rad) of an excursion below which a touch within it that is foreseen may be its end."""
-
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
             raise ValueError(f"condense is {self.condense!r}; it must be True, False or None")
@@ -129,17 +134,17 @@ class Collocation(Discretisation):
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
         old = near.mesh
-        mesh = Mesh(scheme, old.breaks, old.events, old.period)
+        mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period)
         adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
         return relax(system, self._tied(system, adopted))
 
     def _tied(self, system: System, orbit: Orbit) -> Orbit:
         """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        slides = slides_of(system)
-        if not slides or any(group(system, orbit.mesh, k) for k in slides):
+        held = of_held(system)
+        if not held or any(group(system, orbit.mesh, k) for k in held):
             return orbit
         settings = (self.kinks or KinkSettings()).at(self.tolerance)
-        events, phases = kinks.placed(system, orbit, kinks.wanted(system, orbit, settings))
+        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         return transfer(orbit, mesh, phases)
 
@@ -189,6 +194,11 @@ class Collocation(Discretisation):
         found = linearised(partial(self._equations, off=off), *given)
         return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
 
+    def _breached(self, found: list[Violation], breach: Breach) -> bool:
+        """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
+        least = self.tolerance if breach is Breach.THROUGH else -np.inf
+        return any(v.breach is breach and v.depth > least for v in found)
+
     @property
     def _plain(self) -> bool:
         """Whether its equations are those of the compiled iteration."""
@@ -196,14 +206,10 @@ class Collocation(Discretisation):
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
-        if not impacts.arrived(system, correction.orbit):
-            return replace(correction, outcome=Outcome.GRAZING)
-        if not impacts.free(system, correction.orbit, self.tolerance):
-            return replace(correction, outcome=Outcome.THROUGH_STOP)
-        if not impacts.crossed(system, correction.orbit):
-            return replace(correction, outcome=Outcome.SLIDES)
-        if not kinks.genuine(system, correction.orbit):
-            return replace(correction, outcome=Outcome.EVENTS_CROSSED)
+        found = violations(system, correction.orbit)
+        wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
+        if wrong is not None:
+            return replace(correction, outcome=wrong)
         given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
         return SteppedCorrection(**given, system=system, equations=self.linearise)
 
@@ -230,7 +236,7 @@ class Collocation(Discretisation):
         if error is UNKNOWN:
             return error
         own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(abs(place.value) > own for place in slide.wrong(system, orbit)) else 0.0
+        missing = np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
@@ -244,17 +250,11 @@ class Collocation(Discretisation):
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
-        if not system.switches:
-            return None
-        found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
-        first = min((c for c in found if c is not None), key=lambda c: (not c.strict, c.part), default=None)
-        if not isinstance(first, touch.Birth):
-            return first
-        return touch.or_meeting(system, first, before, after, self.ends_below)
+        return first_change(system, before, after, self.shortest)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""
-        return None if slide.wrong(system, orbit) else touch.pattern(system, orbit)
+        return word(system, orbit)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
@@ -276,9 +276,9 @@ class CollocationRefinement(Refinement):
     @cached_property
     def wanted(self) -> list[Crossing]:
         """The crossings to tie the mesh to, at levels that the orbit is accurate enough for."""
-        settings, meaningful = self._settings, kinks.DEEPEST * min(self.error.orbit, 1.0)
+        settings, meaningful = self._settings, tying.DEEPEST * min(self.error.orbit, 1.0)
         deepest = max(settings.deepest or 0.0, meaningful)
-        return kinks.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
+        return tying.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
 
     @property
     def _settings(self) -> KinkSettings:
@@ -287,7 +287,7 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return kinks.fits(self.wanted, self.orbit)
+        return tying.fits(self.wanted, self.orbit)
 
     @property
     def exhausted(self) -> bool:
@@ -303,7 +303,7 @@ class CollocationRefinement(Refinement):
     @cached_property
     def _misplaced(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(slide.wrong(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(misplaced(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -333,7 +333,7 @@ class CollocationRefinement(Refinement):
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
         for chosen in self._choices():
-            tied, phases = kinks.placed(self.system, self.orbit, chosen)
+            tied, phases = tying.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -353,7 +353,12 @@ class CollocationRefinement(Refinement):
         levels = [c.event.level for c in self.wanted if c.event.level > 0]
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
-            yield kinks.wanted(self.system, self.orbit, shallower)
+            yield tying.wanted(self.system, self.orbit, shallower)
+
+
+def misplaced(system: System, orbit: Orbit) -> list[Violation]:
+    """Return where an orbit slips that should be held, or the reverse."""
+    return [v for v in between_nodes(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
 
 
 def scheme_for(tolerance: float) -> Scheme:

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.rates import before
-from periodic.events.modes import linearise, sides
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.response import Response
+from periodic.events.modes import linearise, sides
+from periodic.events.rates import before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, System, jumps_of

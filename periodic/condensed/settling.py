@@ -9,17 +9,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.events.tying import exact_crossings
-from periodic.events.modes import STUCK, linearise
-from periodic.events.rewrites.touch import ordered
 from periodic.correction.outcome import FAILURES
+from periodic.events.modes import linearise
+from periodic.events.rewrites.sites import ordered
+from periodic.events.sticking import stop
+from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.redistribution import redistribute
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import System, jumps_of, linear_of, slides_of
+from periodic.system import STUCK, System, jumps_of, linear_of, slides_of
 
 STEPS = 512
 """Steps in a period that settles."""
@@ -194,7 +195,7 @@ class Motion:
             if old[i] == STUCK:
                 event = EventNode(up if way > 0 else down, way)
             else:
-                event = EventNode(switch, -way if self.side[i] == STUCK else way)
+                event = stop(switch, -way) if self.side[i] == STUCK else EventNode(switch, way)
             self.events.append((event, tau))
 
     @property

@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.collocation.condensation import Condensed, condense
-from periodic.events.impacts import jumps
-from periodic.events.saltation import at_fixed_phase, saltation_gradient
 from periodic.collocation.residual import evaluated
 from periodic.conditions.curvature import beside, curvature
+from periodic.events.impacts import jumps
+from periodic.events.saltation import at_fixed_phase, saltation_gradient
 from periodic.linear.bordering import Chain, chain, onto_start
 from periodic.linear.pair import subspaces, within
 from periodic.linear.variation import Complex, Tangent

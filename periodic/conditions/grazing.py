@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.events.sideconditions import Clearance
-from periodic.events.switchpolynomials import Dense
 from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
+from periodic.events.sideconditions import Clearance
+from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -62,7 +62,7 @@ class _Grazing:
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return the clearance, less what is left of it, and its gradient."""
         k = index_of_switch(system, self.switch)
-        dense = Dense(system, orbit)
+        dense = SwitchPolynomials(system, orbit)
         if self.held is None:
             both = [(side, e) for side in (-1, 1) for e in dense.minima(k, side)]
             side, extremum = min(both, key=lambda pair: abs(pair[1].value))

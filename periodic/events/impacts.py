@@ -9,21 +9,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from periodic.events.saltation import mapped, saltation
+from periodic.events.modes import guard_slopes, guards, modes_in, of_kind
 from periodic.events.rates import before, rate_before
+from periodic.events.saltation import mapped, saltation
 from periodic.orbit.jump import Jump
-from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System, jumps_of, resets_of, slides_of
-
-SAMPLES = 17
-"""Places in each interval at which an orbit is looked at between its impacts."""
-
-TINY = 1e-300
+from periodic.system import Kind, System, jumps_of, resets_of
 
 
 def tied(system: System, orbit: Orbit) -> list[int]:
@@ -37,8 +31,17 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
 
     Raises numpy.linalg.LinAlgError where one has no rates.
     """
-    special = (*resets_of(system), *jumps_of(system))
-    return [_jump(system, orbit, i, free) for i, e in enumerate(orbit.mesh.events) if e.switch in special]
+    jumping = {*resets_of(system), *jumps_of(system), *_carried(system)}
+    return [
+        _jump(system, orbit, i, free)
+        for i, event in enumerate(orbit.mesh.events)
+        if event.switch in jumping or {k for k, _ in event.modes} & jumping
+    ]
+
+
+def _carried(system: System) -> list[int]:
+    """The switches at which elastic sliders give way: the rate of their place jumps there."""
+    return [k for surface in of_kind(system, Kind.SLIDER) for k in surface.releases or ()]
 
 
 def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
@@ -78,74 +81,22 @@ def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
     """Return the condition of an impact, linearised: s(x-, phi, p) = 0 where the interval before it ends."""
     switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
     interval, x, phase = before(orbit, index)
-    d_state, d_phase, d_parameter = system.switch_gradient(x, phase, orbit.parameter)
+    side = modes_in(system, orbit, interval)
+    d_state, d_phase, d_parameter = guard_slopes(system, x, phase, orbit.parameter, side)
     nodes, stages = np.zeros_like(orbit.nodes), np.zeros_like(orbit.stages)
     nodes[interval] = end[0] * d_state[0, switch]
     stages[interval] = end[1:, None] * d_state[0, switch]
     outer = np.zeros(k + len(free))
     outer[index] = d_phase[0, switch]
     outer[k:] = d_parameter[0, switch, list(free)]
-    return Row(float(system.switch(x, phase, orbit.parameter)[0, switch]), nodes, outer, stages)
+    value = guards(system, x, phase, orbit.parameter, side)[0, switch]
+    return Row(float(value), nodes, outer, stages)
 
 
 def slope_before(system: System, orbit: Orbit, index: int) -> float:
     """ds/dtau with which a switch arrives at its impact."""
     switch = orbit.mesh.events[index].switch
-    _, x, phase = before(orbit, index)
-    d_state, d_phase, _ = system.switch_gradient(x, phase, orbit.parameter)
+    interval, x, phase = before(orbit, index)
+    side = modes_in(system, orbit, interval)
+    d_state, d_phase, _ = guard_slopes(system, x, phase, orbit.parameter, side)
     return float(d_phase[0, switch] + d_state[0, switch] @ rate_before(orbit, index))
-
-
-def arrived(system: System, orbit: Orbit) -> bool:
-    """Whether every impact of an orbit is met in the direction of its switch."""
-    every = ((orbit.mesh.events[i], slope_before(system, orbit, i)) for i in tied(system, orbit))
-    return all(slope * event.direction > 0 for event, slope in every)
-
-
-def crossed(system: System, orbit: Orbit) -> bool:
-    """Whether an orbit goes on past every jump of the equations along which it is not known to slide."""
-    jumps = set(jumps_of(system)) - set(slides_of(system))
-    for i, event in enumerate(orbit.mesh.events):
-        if event.switch in jumps:
-            start = orbit.mesh.starts[i]
-            at = orbit.nodes[start : start + 1], orbit.phases[i : i + 1], orbit.parameter
-            d_state, d_phase, _ = system.switch_gradient(*at)
-            onward = d_phase[0, event.switch] + d_state[0, event.switch] @ orbit.node_rates[start]
-            if not onward * event.direction > 0:
-                return False
-    return True
-
-
-def free(system: System, orbit: Orbit, least: float) -> bool:
-    """Whether an orbit keeps to its side of all impacts, on the whole of it, but for `least` (in s)."""
-    resets = list(resets_of(system))
-    if not resets:
-        return True
-    count, theta = orbit.mesh.ntst, np.linspace(0.0, 1.0, SAMPLES)
-    index = np.repeat(np.arange(count), SAMPLES)
-    values = _sides(system, orbit, index, np.tile(theta, count)).reshape(count, SAMPLES, len(resets))
-    left, middle, right = values[:, :-2], values[:, 1:-1], values[:, 2:]
-    lowest = np.argwhere((middle <= left) & (middle <= right))
-    bend = (left + right - 2 * middle)[tuple(lowest.T)]
-    tilt = (right - left)[tuple(lowest.T)]
-    vertex = theta[1 + lowest[:, 1]] - np.where(bend > 0, tilt / (2 * np.maximum(bend, TINY)), 0.0) * theta[1]
-    deepest = _sides(system, orbit, lowest[:, 0], np.clip(vertex, 0.0, 1.0))
-    return bool(values.min() >= -least and deepest.min(initial=0.0) >= -least)
-
-
-def _sides(system: System, orbit: Orbit, index: NDArray[np.int_], theta: Array) -> Array:
-    """Switches of impacts at places in intervals, positive on the free side, shape (points, impacts)."""
-    resets = list(resets_of(system))
-    basis = orbit.mesh.scheme.basis(theta)
-    state = np.einsum("pl,pln->pn", basis, orbit.knots[index])
-    tau = orbit.grid.left[index] + orbit.grid.width[index] * theta
-    away = [-system.switches[k].direction for k in resets]
-    return system.switch(state, tau, orbit.parameter)[:, resets] * away
-
-
-def passages(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
-    """Return event, phase and |ds/dtau| of an orbit's impacts."""
-    return [
-        (orbit.mesh.events[i], float(orbit.phases[i]), abs(slope_before(system, orbit, i)))
-        for i in tied(system, orbit)
-    ]

@@ -1,67 +1,193 @@
-"""Jumps of the equations: on either side of an event node they take the branch of their own side.
+"""The word of an orbit: the modes of its surfaces between its event nodes.
 
-The side of a switch in an interval is known from the last event node of that switch, whatever the last digits
-of the state say. Without any it is that on which the orbit is, but for what is shallow: so an orbit is smooth
-past the touch up to which it is followed. Else the state decides. See `periodic.system.Jumping`.
+An event node is a transition: it takes its own surface, and what follows at once, from one mode to another.
+So the mode of a surface in an interval is that of the last event node that changed it, whatever the last
+digits of the state say. A surface that no event node changes keeps to the side on which the orbit is, but for
+what is shallow, so that an orbit is smooth past the grazing up to which it is followed; else the state
+decides. See `periodic.system.SurfaceLike`.
 """
 
 from __future__ import annotations
 
-from typing import cast
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 
-from periodic.orbit.mesh import Mesh
+from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import Jumping, LinearisationLike, System, jumps_of, slides_of
-
-STUCK = 2
-"""Side of a jump on which the motion slides along it."""
-
+from periodic.system import (
+    STUCK,
+    Jumping,
+    Kind,
+    LinearisationLike,
+    SurfaceLike,
+    System,
+    surfaces_of,
+)
 
 SHALLOW = 0.05
 """How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
 
 
-def sides(system: System, orbit: Orbit) -> Array:
-    """Return the side of each jump in each interval, 0 where the state decides, shape (N, jumps).
+def surface_of(system: System, switch: int) -> SurfaceLike:
+    """Return the surface that a switch is the guard or a release of."""
+    return next(s for s in surfaces_of(system) if switch == s.switch or switch in (s.releases or ()))
 
-    1 and -1 are the signs of its switch, STUCK says that the motion slides on the jump.
-    """
-    jumps, mesh = jumps_of(system), orbit.mesh
-    found = np.zeros((mesh.ntst, len(jumps)))
-    for i, k in enumerate(jumps):
-        own = group(system, mesh, k)
-        modes = [STUCK if sticks(system, mesh, k, j) is not None else mesh.events[j].direction for j in own]
-        found[:, i] = modes[-1] if own else _whole(system, orbit, k)
-        for j, mode in zip(own, modes, strict=True):
-            found[mesh.starts[j] :, i] = mode
+
+def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
+    """Return the surfaces of some kinds."""
+    return [surface for surface in surfaces_of(system) if surface.kind in kinds]
+
+
+def bends(system: System) -> list[int]:
+    """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
+    return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
+
+
+def of_held(system: System) -> list[int]:
+    """Return the guards of the surfaces at which motions may be held."""
+    return [surface.switch for surface in surfaces_of(system) if surface.releases is not None]
+
+
+def sliding(system: System, switch: int) -> int | None:
+    """Return the guard of the surface along which motions slide that a switch belongs to, if it does."""
+    surface = surface_of(system, switch)
+    return None if surface.releases is None else surface.switch
+
+
+def releases(system: System, switch: int) -> tuple[int, int]:
+    """Return the switches (up, down) at which what a guard holds is released."""
+    found = surface_of(system, switch).releases
+    assert found is not None
     return found
 
 
-def _whole(system: System, orbit: Orbit, switch: int) -> int:
+def column(system: System, switch: int) -> int:
+    """Return the column of a guard's surface among the modes."""
+    found = surface_of(system, switch).column
+    assert found is not None
+    return found
+
+
+def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
+    """Return the mode of a surface after an event node, None where that leaves it as it is."""
+    own = dict(event.modes).get(surface.switch)
+    if own is not None:
+        return own
+    passes = event.switch == surface.switch or event.switch in (surface.releases or ())
+    return event.direction if passes and surface.kind != Kind.IMPACT else None
+
+
+def group(system: System, mesh: Mesh, switch: int) -> list[int]:
+    """Return the event nodes that change the mode of a guard's surface, in order."""
+    surface = surface_of(system, switch)
+    return [j for j, event in enumerate(mesh.events) if mode_after(surface, event) is not None]
+
+
+def sticks(system: System, mesh: Mesh, switch: int, node: int) -> int | None:
+    """Return the event node at which sticking ends that begins at one; None where none does."""
+    if mode_after(surface_of(system, switch), mesh.events[node]) != STUCK:
+        return None
+    own = group(system, mesh, switch)
+    return own[(own.index(node) + 1) % len(own)]
+
+
+def sides(system: System, orbit: Orbit) -> Array:
+    """Return the mode of each surface with a column in each interval, shape (N, columns).
+
+    1 and -1 are the signs of its guard, STUCK says that it is held at 0; where it is 0 the state decides.
+    """
+    own, mesh = [s for s in surfaces_of(system) if s.column is not None], orbit.mesh
+    found = np.zeros((mesh.ntst, len(own)))
+    for surface in own:
+        found[:, cast(int, surface.column)] = _along(system, orbit, surface)
+    return found
+
+
+def _along(system: System, orbit: Orbit, surface: SurfaceLike) -> Array:
+    """The mode of a surface in each interval."""
+    mesh = orbit.mesh
+    changes = [(int(j), mode_after(surface, e)) for j, e in zip(mesh.starts, mesh.events, strict=True)]
+    changes = [(j, mode) for j, mode in changes if mode is not None]
+    found = np.full(mesh.ntst, changes[-1][1] if changes else _whole(system, orbit, surface), dtype=float)
+    for j, mode in changes:
+        found[j:] = mode
+    return found
+
+
+def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
     """The side of a jump all along an orbit without event nodes of it, 0 if it has none."""
-    if switch in slides_of(system):
+    if surface.releases is not None:
         return 0
     states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
-    values = system.switch(states, tau, orbit.parameter)[:, switch]
+    values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
     side = 1 if values.max() > -values.min() else -1
     return side if (side * values).min() > -SHALLOW * np.abs(values).max() else 0
 
 
-def group(system: System, mesh: Mesh, switch: int) -> list[int]:
-    """Return the event nodes of a jump and of its releases, in order."""
-    releases = slides_of(system).get(switch, ())
-    return [j for j, event in enumerate(mesh.events) if event.switch in (switch, *releases)]
+def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, ...]:
+    """Return event nodes with their modes where they come from a file that has none.
+
+    Sticking begins where the next event node of a surface is one of its releases.
+    """
+    found = list(events)
+    for surface in surfaces_of(system):
+        own = [j for j, e in enumerate(events) if mode_after(surface, e) is not None]
+        for j, after in zip(own, [*own[1:], *own[:1]], strict=True):
+            released = events[after].switch in (surface.releases or ())
+            if released and events[j].switch == surface.switch and not events[j].modes:
+                found[j] = replace(events[j], modes=((surface.switch, STUCK),))
+    return tuple(found)
 
 
-def sticks(system: System, mesh: Mesh, switch: int, node: int) -> int | None:
-    """Return the event node of the release where an event node of a jump begins a stretch of sticking."""
-    own, releases = group(system, mesh, switch), slides_of(system).get(switch, ())
-    after = own[(own.index(node) + 1) % len(own)]
-    begins = mesh.events[node].switch == switch and mesh.events[after].switch in releases
-    return after if begins else None
+def inconsistency(system: System, events: Sequence[EventNode]) -> str:
+    """Return where event nodes are no word: transitions that do not begin where those before ended; or ''."""
+    for surface in surfaces_of(system):
+        own = [(e, cast(int, mode_after(surface, e))) for e in events if mode_after(surface, e) is not None]
+        for (_, before), (event, after) in zip(own[-1:] + own[:-1], own, strict=True):
+            if not _follows(surface, event, before, after):
+                return f"{surface.name} goes to mode {after} from mode {before}"
+    return ""
+
+
+def _follows(surface: SurfaceLike, event: EventNode, before: int, after: int) -> bool:
+    """Whether a transition may begin in a mode."""
+    if event.switch == surface.switch and surface.kind != Kind.IMPACT:
+        return before == -event.direction
+    if event.switch in (surface.releases or ()):
+        return before == STUCK and after == event.direction
+    return before != after
+
+
+def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
+    """Return the modes in one interval as `guards` take them, shape (1, columns), or none of them."""
+    if not getattr(system, "guards_depend", False):
+        return np.zeros((1, 0))
+    return sides(system, orbit)[interval][None]
+
+
+def modes_at(system: System, orbit: Orbit, phase: Array) -> Array:
+    """Return the modes at phases (K,), shape (K, columns)."""
+    return sides(system, orbit)[orbit.locate(phase)[0]]
+
+
+def guards(system: System, state: Array, phase: Array, parameter: Array, side: Array) -> Array:
+    """Return the switches (N, switches) in given modes (N, columns) of the surfaces."""
+    if not getattr(system, "guards_depend", False):
+        return system.switch(state, phase, parameter)
+    return cast(Any, system).switch(state, phase, parameter, side)
+
+
+def guard_slopes(
+    system: System, state: Array, phase: Array, parameter: Array, side: Array
+) -> tuple[Array, Array, Array]:
+    """Return the derivatives of `guards` in state, phase and parameters."""
+    if not getattr(system, "guards_depend", False):
+        return system.switch_gradient(state, phase, parameter)
+    return cast(Any, system).switch_gradient(state, phase, parameter, side)
 
 
 def linearise(
@@ -74,7 +200,7 @@ def linearise(
     side: Array,
     free: tuple[int, ...] = (),
 ) -> LinearisationLike:
-    """Linearise the equations on the given sides (points, jumps) of their jumps."""
+    """Linearise the equations in given modes (points, columns) of the surfaces."""
     if not side.any():
         return system.linearise(rate, state, algebraic, phase, parameter, free)
     beside = cast(Jumping, system)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.events.impacts import event_row, tied
+from periodic.events.modes import guard_slopes, guards, modes_in
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System
@@ -20,10 +21,11 @@ def event_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Row]
 def _row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
     node, event, k = orbit.mesh.starts[index], orbit.mesh.events[index], len(orbit.phases)
     where = (orbit.nodes[node : node + 1], orbit.phases[index : index + 1], orbit.parameter)
-    d_state, d_phase, d_parameter = system.switch_gradient(*where)
+    side = modes_in(system, orbit, node - 1)
+    d_state, d_phase, d_parameter = guard_slopes(system, *where, side)
     nodes = np.zeros_like(orbit.nodes)
     nodes[node] = d_state[0, event.switch]
     outer = np.zeros(k + len(free))
     outer[index] = d_phase[0, event.switch]
     outer[k:] = d_parameter[0, event.switch, list(free)]
-    return Row(float(system.switch(*where)[0, event.switch]) - event.level, nodes, outer)
+    return Row(float(guards(system, *where, side)[0, event.switch]) - event.level, nodes, outer)

@@ -6,11 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.switchpolynomials import Dense, Extremum
+from periodic.events.impacts import slope_before
+from periodic.events.modes import guard_slopes, guards, modes_in
+from periodic.events.rates import before, rate_before
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System
+
+STEP = 1e-4
+"""Step (rad) along the motion of differences of a switch's gradient."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +30,7 @@ class Clearance:
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
-        at = Dense(system, orbit).nearest(self.switch, self.side, self.phase)
+        at = SwitchPolynomials(system, orbit).nearest(self.switch, self.side, self.phase)
         row = clearance(system, orbit, at, self.side, free)
         return Row(row.value - self.level, row.nodes, row.outer, row.stages)
 
@@ -42,12 +48,13 @@ def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple
         state,
         np.zeros((1, orbit.algebraic.shape[2])),
     )
+    modes = modes_in(system, orbit, at.interval)
     d_state, d_phase, d_parameter = (
-        side * g[:, at.switch] for g in system.switch_gradient(state, phase, orbit.parameter)
+        side * g[:, at.switch] for g in guard_slopes(system, state, phase, orbit.parameter, modes)
     )
     slopes = Slopes(np.zeros_like(state), d_state, np.zeros((1, 0)), d_phase, d_parameter[0, list(free)])
     row = gathered(system, orbit, points, slopes, free)
-    value = side * float(system.switch(state, phase, orbit.parameter)[0, at.switch])
+    value = side * float(guards(system, state, phase, orbit.parameter, modes)[0, at.switch])
     return Row(value, row.nodes, row.outer, row.stages)
 
 
@@ -81,11 +88,41 @@ class Limit:
         """Return its value and gradient."""
         start, k = orbit.mesh.starts[self.node], len(orbit.phases)
         where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
-        d_state, d_phase, d_parameter = system.switch_gradient(*where)
+        modes = modes_in(system, orbit, start - 1)
+        d_state, d_phase, d_parameter = guard_slopes(system, *where, modes)
         nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
         nodes[start] = d_state[0, self.switch]
         outer[self.node] = d_phase[0, self.switch]
         outer[k:] = d_parameter[0, self.switch, list(free)]
-        value = float(system.switch(*where)[0, self.switch])
+        value = float(guards(system, *where, modes)[0, self.switch])
         row = Row(value, nodes, outer).scaled(self.side)
         return Row(row.value - self.level, row.nodes, row.outer)
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Side condition: the switch of an impact arrives at its level with a given |ds/dtau|."""
+
+    index: int
+    speed: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return the speed less the given one."""
+        interval, x, phase = before(orbit, self.index)
+        event, rate = orbit.mesh.events[self.index], rate_before(orbit, self.index)[None]
+        points = Points(np.array([interval]), np.ones(1), phase, rate, x, np.zeros((1, 0)))
+        ends = [
+            system.switch_gradient(x + step * rate, phase + step, orbit.parameter) for step in (STEP, -STEP)
+        ]
+        by_state, by_phase, by_parameter = (
+            (ahead - back)[:, event.switch] / (2 * STEP) for ahead, back in zip(*ends, strict=True)
+        )
+        slope = system.switch_gradient(x, phase, orbit.parameter)[0][:, event.switch]
+        slopes = Slopes(slope, by_state, np.zeros((1, 0)), by_phase, by_parameter[0, list(free)])
+        row = gathered(system, orbit, points, slopes, free).scaled(event.direction)
+        return Row(speed(system, orbit, self.index) - self.speed, row.nodes, row.outer, row.stages)
+
+
+def speed(system: System, orbit: Orbit, index: int) -> float:
+    """Return |ds/dtau| with which a switch arrives at its impact."""
+    return slope_before(system, orbit, index) * orbit.mesh.events[index].direction

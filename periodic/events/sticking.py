@@ -13,13 +13,23 @@ from itertools import pairwise
 
 import numpy as np
 
-from periodic.events.rewrites.slide import wrong
+from periodic.events.modes import (
+    column,
+    group,
+    guards,
+    modes_at,
+    of_kind,
+    releases,
+    sides,
+    sticks,
+    surface_of,
+)
 from periodic.events.rates import rate_at, slope_at
-from periodic.events.modes import STUCK, group, sides, sticks
+from periodic.events.violations import Breach, between_nodes
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, jumps_of, slides_of
+from periodic.system import STUCK, Kind, System
 
 VANISHING = 0.1
 """Part of the bound of what matters below which a stretch of sticking is given up again."""
@@ -41,30 +51,44 @@ def passages(system: System, orbit: Orbit, least: float) -> list[Passage]:
 
     least: change of a switch by which a stretch of sticking matters.
     """
-    slides = slides_of(system)
-    if slides and orbit.mesh.events and not wrong(system, orbit):
-        return [
-            (orbit.mesh.events[j], float(orbit.phases[j]), 1.0)
-            for k in slides
-            for j in group(system, orbit.mesh, k)
-        ]
-    return [passage for k in slides for passage in _passages(system, orbit, k, least)]
+    held = [surface.switch for surface in of_kind(system, Kind.SLIDING)]
+    if held and orbit.mesh.events and not any(v.breach is Breach.MODE for v in between_nodes(system, orbit)):
+        own = [j for k in held for j in _own(system, orbit, k)]
+        return [(orbit.mesh.events[j], float(orbit.phases[j]), 1.0) for j in own]
+    return [passage for k in held for passage in _passages(system, orbit, k, least)]
+
+
+def _own(system: System, orbit: Orbit, switch: int) -> list[int]:
+    """The event nodes at which a guard or a release of its surface passes its level."""
+    surface = surface_of(system, switch)
+    own = (surface.switch, *(surface.releases or ()))
+    return [j for j, event in enumerate(orbit.mesh.events) if event.switch in own]
+
+
+def stop(switch: int, direction: int) -> EventNode:
+    """Return the event node at which a motion that passes a switch in a direction begins to be held there."""
+    return EventNode(switch, direction, modes=((switch, STUCK),))
 
 
 def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[Passage]:
     events, new = orbit.mesh.events, []
     found: list[Passage] = []
     gone = _vanished(system, orbit, switch, VANISHING * least)
-    for j in group(system, orbit.mesh, switch):
+    for j in _own(system, orbit, switch):
         state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
-        found += [(events[j], phase, 1.0)] if j not in gone else []
         if events[j].switch != switch or j in gone:
+            found += [(events[j], phase, 1.0)] if j not in gone else []
             continue
         ending = sticks(system, orbit.mesh, switch, j)
+        passing = EventNode(switch, events[j].direction)
         if ending is None:
             stretch = _stretch(system, orbit, switch, state, phase)
-            new += [stretch.release] if stretch.release and stretch.size > least else []
-        elif ending not in gone:
+            begins = stretch.release is not None and stretch.size > least
+            found.append((stop(switch, passing.direction) if begins else passing, phase, 1.0))
+            new += [stretch.release] if begins and stretch.release else []
+            continue
+        found.append((passing if ending in gone else events[j], phase, 1.0))
+        if ending not in gone:
             slip = _slip(system, orbit, switch, j)
             found += slip.passages if slip.size > least else ()
     if new:  # beyond a crossing that should stick an orbit tells nothing
@@ -77,7 +101,8 @@ def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[P
         if stretch.release is None:
             found.append((event, phase, 1.0))
         else:
-            found += [(event, phase, 1.0), stretch.release] if stretch.size > least else []
+            begun = (stop(switch, event.direction), phase, 1.0)
+            found += [begun, stretch.release] if stretch.size > least else []
             held = stretch.release[1]
     return found
 
@@ -107,8 +132,8 @@ def _sigma(system: System, state: Array, phase: float, orbit: Orbit, switch: int
 
 def _sigmas(system: System, orbit: Orbit, switch: int, state: Array, phase: Array) -> Array:
     """sigma at several states (K, n); infinite where nothing jumps, as without friction."""
-    up, down = slides_of(system)[switch]
-    values = system.switch(state, phase, orbit.parameter)
+    up, down = releases(system, switch)
+    values = guards(system, state, phase, orbit.parameter, modes_at(system, orbit, phase))
     jump = values[:, down] - values[:, up]
     held = np.where(jump > 0, jump, 1.0)
     return np.where(jump > 0, (values[:, up] + values[:, down]) / held, np.inf)
@@ -134,7 +159,7 @@ def _values(system: System, orbit: Orbit, switch: int) -> tuple[Array, Array]:
     """A switch at the collocation points, and the side that the equations are on there."""
     flat = (-1, orbit.stages.shape[2])
     values = system.switch(orbit.stages.reshape(flat), orbit.stage_phases.ravel(), orbit.parameter)
-    mode = sides(system, orbit)[:, jumps_of(system).index(switch)]
+    mode = sides(system, orbit)[:, column(system, switch)]
     return values[:, switch], np.repeat(mode, orbit.mesh.scheme.ncol)
 
 
@@ -161,7 +186,7 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
 
     It ends about where the integral of sigma - 1, a parabola from its passage on, comes back to 0.
     """
-    start, (up, down) = orbit.mesh.starts[node], slides_of(system)[switch]
+    start, (up, down) = orbit.mesh.starts[node], releases(system, switch)
     count = len(orbit.mesh.breaks[node]) - 1
     tau = orbit.stage_phases[start : start + count].ravel()
     state = orbit.stages[start : start + count].reshape(len(tau), -1)
@@ -179,10 +204,10 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
 
     begin, end = passed(first), passed(back)
     release = (EventNode(up if way > 0 else down, way), begin, 1.0)
-    stop = (EventNode(switch, -way), min(begin + 1.5 * (end - begin), (end + float(tau[-1])) / 2), 1.0)
+    stopped = (stop(switch, -way), min(begin + 1.5 * (end - begin), (end + float(tau[-1])) / 2), 1.0)
     excess = float((way * sigma[first:back] - 1).max())
     speed = sum(_speeds(system, orbit, switch, node)) / 2
-    return _Slip((release, stop), excess * speed * (end - begin))
+    return _Slip((release, stopped), excess * speed * (end - begin))
 
 
 def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: float) -> _Stretch:
@@ -190,7 +215,7 @@ def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: flo
     sigma = _sigma(system, state, phase, orbit, switch)
     if not abs(sigma) < 1:
         return _Stretch()
-    (up, down), motion = slides_of(system)[switch], _Motion(system, orbit, switch, phase)
+    (up, down), motion = releases(system, switch), _Motion(system, orbit, switch, phase)
     try:
         speed, held = min(motion.speeds(state, phase)), motion.steps(state, phase)
     except np.linalg.LinAlgError:  # the equations do not determine the rates, as without a mass
@@ -243,14 +268,16 @@ class _Motion:
         return self.orbit.algebraic_guess(np.array([self.phase]))[0]
 
     def _mode(self, side: float) -> Array:
-        mode = np.zeros(len(jumps_of(self.system)))
-        mode[jumps_of(self.system).index(self.switch)] = side
+        mode = modes_at(self.system, self.orbit, np.array([self.phase]))[0]
+        mode[column(self.system, self.switch)] = side
         return mode
 
     def speeds(self, state: Array, phase: float) -> tuple[float, float]:
         """|ds/dtau| on either side."""
-        values = self.system.switch(state[None], np.array([phase]), self.orbit.parameter)[0]
-        up, down = slides_of(self.system)[self.switch]
+        at, orbit = np.array([phase]), self.orbit
+        side = modes_at(self.system, orbit, np.array([self.phase]))
+        values = guards(self.system, state[None], at, orbit.parameter, side)[0]
+        up, down = releases(self.system, self.switch)
         return abs(float(values[up])), abs(float(values[down]))
 
 

@@ -15,35 +15,26 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.events.modes import STUCK, group, sides
+from periodic.events.modes import (
+    group,
+    guard_slopes,
+    guards,
+    mode_after,
+    of_kind,
+    sides,
+    sliding,
+    surface_of,
+)
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import System, jumps_of, resets_of, slides_of
+from periodic.system import STUCK, Kind, SurfaceLike, System
 
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
 
 SHARED = 1e-9
 """A switch that is as near to its level at another one's event node passes it there too."""
-
-
-def exact(system: System) -> list[int]:
-    """Return the switches at whose level 0 the equations have a kink or a jump: those without further levels.
-
-    Not those at which the state jumps or motions slide: see `periodic.collocation.jumping` and `stick`.
-    """
-    slides = slides_of(system)
-    releases = (k for pair in slides.values() for k in pair)
-    elsewhere = {*resets_of(system), *slides, *releases}
-    each = ((k, s) for k, s in enumerate(system.switches) if k not in elsewhere)
-    return [k for k, switch in each if tuple(switch.levels) == (0.0,) and switch.direction == 0]
-
-
-def sliding(system: System, switch: int) -> int | None:
-    """Return the jump along which motions slide that a switch belongs to, its own or that of a release."""
-    pairs = slides_of(system).items()
-    return next((jump for jump, pair in pairs if switch in (jump, *pair)), None)
 
 
 @dataclass(frozen=True)
@@ -77,7 +68,7 @@ class Along:
 
 
 @dataclass(frozen=True)
-class Dense:
+class SwitchPolynomials:
     """The switches of a system along an orbit."""
 
     system: System
@@ -89,7 +80,13 @@ class Dense:
         orbit = self.orbit
         tau = orbit.grid.left[:, None] + orbit.grid.width[:, None] * orbit.mesh.scheme.knots
         flat = orbit.knots.reshape(tau.size, -1)
-        return self.system.switch(flat, tau.ravel(), orbit.parameter).reshape(*tau.shape, -1)
+        side = np.repeat(self.modes, tau.shape[1], axis=0)
+        return guards(self.system, flat, tau.ravel(), orbit.parameter, side).reshape(*tau.shape, -1)
+
+    @cached_property
+    def modes(self) -> Array:
+        """The modes of the surfaces in each interval, shape (N, columns)."""
+        return sides(self.system, self.orbit)
 
     def along(self, switch: int, everywhere: bool = False) -> Along:
         """Return a switch around the orbit, with extremes where it may pass its level, or `everywhere`."""
@@ -113,17 +110,31 @@ class Dense:
         return Along(interval, theta, grid.left[interval] + theta * grid.width[interval], value, sides)
 
     def passages(self, switch: int) -> list[tuple[EventNode, float]]:
-        """Return where a switch passes its level, with the phases in order, those of event nodes exact."""
+        """Return where a switch passes its level, with the phases in order, those of event nodes exact.
+
+        What an impact brings about is no passage.
+        """
         along = self.along(switch)
         kept = np.flatnonzero(along.sides)
         if len(kept) == 0:
             return []
         found, last = [], len(kept) - 1
         for i in np.flatnonzero(along.sides[kept] != along.sides[np.roll(kept, -1)]):
-            a, b = kept[i], kept[i + 1 if i < last else 0]
-            phase = self._between(switch, along, int(a), int(b))
-            found.append((EventNode(switch, int(along.sides[b])), phase))
+            a, b = int(kept[i]), int(kept[i + 1 if i < last else 0])
+            if not self._struck(along, a, b):
+                phase = self._between(switch, along, a, b)
+                found.append((EventNode(switch, int(along.sides[b])), phase))
         return found
+
+    def _struck(self, along: Along, a: int, b: int) -> bool:
+        """Whether two neighbouring points lie just before and after an impact that maps the state."""
+        impacts = {s.switch for s in of_kind(self.system, Kind.IMPACT)}
+        events = zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True)
+        starts = [int(j) for j, event in events if event.switch in impacts]
+        later = int(along.interval[b])
+        next_to = (later - int(along.interval[a])) % self.orbit.mesh.ntst == 1 % self.orbit.mesh.ntst
+        at_end = along.theta[a] == 1.0 and along.theta[b] == 0.0
+        return next_to and at_end and later in starts
 
     def _between(self, switch: int, along: Along, a: int, b: int) -> float:
         """Phase at which a switch passes its level between two points, at most zeros between them."""
@@ -152,30 +163,30 @@ class Dense:
         return {int(j): float(phase) for j, direction, phase in each if direction}
 
     def _directions(self, switch: int) -> list[int]:
-        """Directions in which a switch passes its level at the event nodes, 0 where it does not.
+        """The sides to which a switch goes at the event nodes, 0 where it passes its level at none.
 
         It shares the nodes of other switches that are equal to it.
         """
         values, found = self.knots[:, :, switch], []
+        surface = surface_of(self.system, switch)
         near = SHARED * float(np.abs(values).max())
         for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
             before, after = values[j - 1, -2], values[j, 1]
             shared = abs(values[j, 0]) <= near and before * after < 0
             other = int(np.sign(after)) if shared else 0
-            found.append(event.direction if event.switch == switch else other)
+            found.append(mode_after(surface, event) or (event.direction if event.switch == switch else other))
         return found
 
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
-        """Side of a switch in each interval by the mesh's event nodes, or `otherwise` without any.
+        """Side of a switch in each interval by the modes of its surface, `otherwise` without event nodes.
 
-        Of a switch with impacts it is the side that they lead back to. Where the motion slides on a jump its
-        switch has none, 0, and elsewhere those of the releases have none.
+        Of a switch with impacts it is the side that they lead back to. Where the motion is held at a surface
+        its guard has none, 0, and elsewhere those of the releases have none.
         """
-        mesh = self.orbit.mesh
-        jump = sliding(self.system, switch)
-        if jump is not None:
-            return self._sliding(switch, jump, otherwise)
-        if switch in resets_of(self.system):
+        mesh, surface = self.orbit.mesh, surface_of(self.system, switch)
+        if surface.releases is not None:
+            return self._held(switch, surface, otherwise)
+        if surface.kind == Kind.IMPACT:
             return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
         sides = np.full(mesh.ntst, otherwise if not own else own[-1][1])
@@ -183,20 +194,21 @@ class Dense:
             sides[start:] = direction
         return sides
 
-    def _sliding(self, switch: int, jump: int, otherwise: int) -> NDArray[np.int_]:
-        mesh = self.orbit.mesh
-        mode = sides(self.system, self.orbit)[:, jumps_of(self.system).index(jump)].astype(int)
-        if switch == jump:
+    def _held(self, switch: int, surface: SurfaceLike, otherwise: int) -> NDArray[np.int_]:
+        assert surface.releases is not None and surface.column is not None
+        mode = self.modes[:, surface.column].astype(int)
+        if switch == surface.switch:
             own = np.where(mode == STUCK, 0, mode)
-            return own if group(self.system, mesh, jump) else np.full(mesh.ntst, otherwise)
-        up, _ = slides_of(self.system)[jump]
-        return np.where(mode == STUCK, -1 if switch == up else 1, 0)
+            tied = group(self.system, self.orbit.mesh, switch)
+            return own if tied else np.full(self.orbit.mesh.ntst, otherwise)
+        return np.where(mode == STUCK, -1 if switch == surface.releases[0] else 1, 0)
 
     def size(self, switch: int) -> float:
         """How far the states take a switch: the largest s_x . x along the orbit."""
         orbit = self.orbit
         states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
-        slope = self.system.switch_gradient(states, tau, orbit.parameter)[0][:, switch]
+        side = np.repeat(self.modes, orbit.mesh.scheme.ncol, axis=0)
+        slope = guard_slopes(self.system, states, tau, orbit.parameter, side)[0][:, switch]
         return float(np.abs(np.einsum("pn,pn->p", slope, states)).max())
 
     def flat(self, switch: int, part: float) -> bool:
@@ -222,7 +234,7 @@ class Dense:
         for j in self._ends(switch):
             first = int(np.searchsorted(along.interval, j))
             at_nodes[[first, first - 1]] = True
-        if switch in resets_of(self.system):
+        if surface_of(self.system, switch).kind == Kind.IMPACT:
             wrong |= at_nodes  # there it is at its level, and goes past it from there on if the impact ends
         shift = 0 if wrong.all() else int(np.flatnonzero(~wrong)[0])
         order = np.roll(np.arange(len(wrong)), -shift)
@@ -243,7 +255,8 @@ class Dense:
     def value(self, at: Extremum) -> float:
         """Return the switch itself at a point, not the polynomial through its values at the knots."""
         state = self.orbit.mesh.scheme.basis(np.array([at.theta])) @ self.orbit.knots[at.interval]
-        found = self.system.switch(state, np.array([at.phase]), self.orbit.parameter)
+        side = self.modes[at.interval : at.interval + 1]
+        found = guards(self.system, state, np.array([at.phase]), self.orbit.parameter, side)
         return float(found[0, at.switch])
 
     def nearest(self, switch: int, side: int, phase: float) -> Extremum:
@@ -278,7 +291,7 @@ class Dense:
         value = side * along.value[points]
         before, after = np.roll(value, 1), np.roll(value, -1)
         low = points[(value <= before) & (value <= after)]
-        if switch in resets_of(self.system):
+        if surface_of(self.system, switch).kind == Kind.IMPACT:
             impacts = [
                 j
                 for j, e in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True)

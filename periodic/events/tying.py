@@ -14,13 +14,14 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
-from periodic.collocation import stick
-from periodic.events.switchpolynomials import Dense, exact
-from periodic.collocation.jumping import impacts
+from periodic.events import impacts, sticking
+from periodic.events.impactmodes import brought_about
+from periodic.events.modes import bends
+from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, resets_of, slides_of
+from periodic.system import Kind, System, surfaces_of
 
 SAME = 1e-9
 """Phases closer than this are the same."""
@@ -125,8 +126,8 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
 
     Of switches that are equal, those of the first.
     """
-    dense, found = Dense(system, orbit), list[Crossing]()
-    for k in exact(system):
+    dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
+    for k in bends(system):
         new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
         found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME for f in found)]
     return found
@@ -162,16 +163,16 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
 
 
 def _elsewhere(system: System) -> set[int]:
-    """The switches whose event nodes are those of impacts and of sliding."""
-    slides = slides_of(system)
-    return {*resets_of(system), *slides, *(k for pair in slides.values() for k in pair)}
+    """The switches whose event nodes are those of impacts and of what is held."""
+    special = [s for s in surfaces_of(system) if s.kind == Kind.IMPACT or s.releases is not None]
+    return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
 
 
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
     """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
     if not system.switches:
         return []
-    sharp, chosen = exact(system), list[Crossing]()
+    sharp, chosen = bends(system), list[Crossing]()
     blunt = [(k, switch) for k, switch in enumerate(system.switches) if k not in sharp]
     found = crossings(system, orbit) if blunt else []
     for k, switch in blunt:
@@ -188,10 +189,19 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*impacts.passages(system, orbit), *stick.passages(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
+
+
+def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """Event, phase and |ds/dtau| of an orbit's impacts, with the modes that they bring about."""
+    found = []
+    for i in impacts.tied(system, orbit):
+        event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
+        found.append((event, float(orbit.phases[i]), abs(impacts.slope_before(system, orbit, i))))
+    return found
 
 
 def _phase(crossing: Crossing) -> float:

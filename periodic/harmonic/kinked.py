@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.switchpolynomials import exact
-from periodic.events.tying import exact_crossings, placed
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.problem import Problem
+from periodic.events.modes import bends
+from periodic.events.tying import exact_crossings, placed
 from periodic.harmonic.series import NO_PHASES, FourierOrbit
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
@@ -28,7 +28,7 @@ from periodic.system import System
 
 def has_kinks(system: System) -> bool:
     """Whether the equations have kinks that a mesh can be tied to."""
-    return bool(exact(system))
+    return bool(bends(system))
 
 
 def beside(

@@ -151,7 +151,9 @@ def _modes(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:
     """The modes of event nodes; none in files that were written before there were any."""
     if "event_modes" not in arrays:
         return [()] * len(arrays["event_switch"])
-    pairs = [(int(k), int(mode)) for k, mode in zip(arrays["mode_surface"], arrays["mode_value"], strict=True)]
+    pairs = [
+        (int(k), int(mode)) for k, mode in zip(arrays["mode_surface"], arrays["mode_value"], strict=True)
+    ]
     return [tuple(pairs[span]) for span in _spans(arrays["event_modes"], len(pairs))]
 
 

@@ -1,1 +1,1 @@
-"""Changes of the pattern of events: rows of one table, read both ways."""
+"""How words of orbits change along a branch: the rows of one table, each read both ways."""

@@ -10,11 +10,10 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.events.sideconditions import Limit
-from periodic.collocation.jumping import slide
-from periodic.events.rewrites.slide import Place
+from periodic.collocation import method as collocation
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate
+from periodic.events.violations import Breach, Violation
 
 FINE, COARSE = 1e-2, 1e-10
 """Tolerances that the orbit meets, and that it misses."""
@@ -47,8 +46,8 @@ def test_slip_by_less_than_the_error(
     method, orbit = replace(method, tolerance=tolerance), correction.orbit
     own = method.error(problem, correction, tangent, spectrum)
     assert orbit.mesh.events and COARSE < 3 * own.orbit < FINE
-    place = Place(0, 0, Limit(0, 0, 1), -part * own.orbit, ())
-    monkeypatch.setattr(slide, "wrong", lambda system, orbit, otherwise=None: [place])
+    place = Violation(Breach.MODE, 0, 0, 1, part * own.orbit)
+    monkeypatch.setattr(collocation, "misplaced", lambda system, orbit: [place])
     found = method.error(problem, correction, tangent, spectrum)
     assert np.isfinite(found.orbit) == refined
     refinement = method.refine(problem.system, orbit, found)

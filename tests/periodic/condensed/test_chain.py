@@ -12,10 +12,10 @@ from support.cantilevers import cantilever
 
 import periodic as per
 import symbolic as sym
-from periodic.events.noderows import event_rows
 from periodic.condensed import floquet, operator
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.operator import Condensed
+from periodic.events.noderows import event_rows
 
 ELEMENTS, RANGE = 2, (2.8, 2.95)
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.switchpolynomials import Dense, exact, sliding
-from periodic.events.modes import group, sticks
+from periodic.events.modes import bends, group, of_held, sliding, sticks
+from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.orbit.orbit import Orbit
-from periodic.system import System, slides_of
+from periodic.system import System
 
 TURNING = 1e-6
 """Rate of a switch at a node where it turns, as a part of its largest rate, at the most."""
@@ -30,7 +30,7 @@ A collocation point lies there, and rounding would decide of what side it takes 
 
 
 @dataclass(frozen=True)
-class Turn:
+class Reversal:
     """The event nodes at which an excursion begins and ends, and those of the speed between them."""
 
     begin: int
@@ -38,9 +38,9 @@ class Turn:
     end: int
 
 
-def turns(system: System, orbit: Orbit) -> list[Turn]:
+def reversals(system: System, orbit: Orbit) -> list[Reversal]:
     """Return the excursions of an orbit that turn back at an event node of another switch."""
-    events, own, found = orbit.mesh.events, exact(system), list[Turn]()
+    events, own, found = orbit.mesh.events, bends(system), list[Reversal]()
     if len(events) < 3:
         return []
     for i, first in enumerate(events):
@@ -52,14 +52,14 @@ def turns(system: System, orbit: Orbit) -> list[Turn]:
         last = ahead[len(inside)]
         closes = events[last].switch == first.switch and events[last].direction == -first.direction
         if closes and _turns(system, orbit, inside[0], first.switch):
-            found.append(Turn(i, tuple(inside), last))
+            found.append(Reversal(i, tuple(inside), last))
     return found
 
 
 def stuck_until(system: System, orbit: Orbit, node: int) -> int | None:
     """Return the event node of the release where sticking begins at one."""
     switch = orbit.mesh.events[node].switch
-    return sticks(system, orbit.mesh, switch, node) if switch in slides_of(system) else None
+    return sticks(system, orbit.mesh, switch, node) if switch in of_held(system) else None
 
 
 def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
@@ -75,7 +75,7 @@ def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
 
 def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
     """Return where sticking that holds a switch about a phase begins and ends; the phase twice if none."""
-    for jump in slides_of(system):
+    for jump in of_held(system):
         for j in group(system, orbit.mesh, jump):
             release = stuck_until(system, orbit, j)
             if release is None:
@@ -94,7 +94,7 @@ def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
     apart = [abs(_wrapped(begin - tau, orbit)) for e, tau in events if sliding(system, e.switch) is not None]
     if begin == end and min(apart, default=np.inf) > SAME:
         return 0.0
-    return SHORT_OF * float(np.abs(Dense(system, orbit).knots[:, :, switch]).max())
+    return SHORT_OF * float(np.abs(SwitchPolynomials(system, orbit).knots[:, :, switch]).max())
 
 
 def _wrapped(phase: float, orbit: Orbit) -> float:

@@ -1,0 +1,180 @@
+"""The first rewrite on the way from one orbit to another on the same mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.correction.change import Change
+from periodic.events.modes import of_held, of_kind, sliding, surface_of
+from periodic.events.rewrites.corners import reversed_by_impact
+from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
+from periodic.events.rewrites.onsets import begins
+from periodic.events.rewrites.reversals import reversals
+from periodic.events.rewrites.rewrite import Begins, Ends, Swaps
+from periodic.events.rewrites.sites import Site
+from periodic.events.rewrites.table import (
+    ADDING_SLIDING,
+    CORNER,
+    GRAZING,
+    IMPACT,
+    REVERSAL,
+    ROOT,
+    SHORT,
+    SWAP,
+)
+from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import Kind, System
+
+VANISHING = 0.5
+"""What a step would leave this part of, by its tangent, may end within the step."""
+
+LAST = 1e-2
+"""Length (rad) of the last slips of a motion that will not slip any more."""
+
+
+def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -> Change | None:
+    """Return the first rewrite between two orbits on one mesh, where there is one.
+
+    `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
+    it is none of the system, on this mesh. A grazing that may be the end of an excursion is told as either.
+    """
+    if not system.switches:
+        return None
+    ending = _endings(system, before, after, shortest)
+    swaps = _swaps(system, before, after, shortest)
+    found = [*ending, *swaps, *_onsets(system, before, after, ending, shortest)]
+    first = min(found, key=lambda change: (not change.strict, change.part), default=None)
+    if isinstance(first, Begins) and first.site.row is GRAZING:
+        return _or_end(first, before, after, [*ending, *swaps])
+    return first
+
+
+def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends | Swaps]) -> Begins:
+    """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
+
+    In a guess depth goes before length.
+    """
+    each = [end for end in ending if isinstance(end, Ends) and end.site.row is GRAZING]
+    end = min(each, key=lambda end: end.part, default=None)
+    if end is None or end.site.switch != begins.site.switch:
+        return begins
+    i, at = end.excursion.index, begins.site.at
+    assert isinstance(at, Extremum)
+    now, then = (o.mesh.segment_lengths(o.phases)[i] for o in (before, after))
+    inside = np.mod(at.phase - after.phases[i], after.mesh.period) <= then
+    return replace(begins, otherwise=end) if inside and now < SHORT[-1] else begins
+
+
+def _onsets(
+    system: System, before: Orbit, after: Orbit, ending: list[Ends], shortest: float
+) -> list[Begins | WholeOrbit]:
+    """What begins between two orbits."""
+    if not bool((after.mesh.segment_lengths(after.phases) > 0).all()):
+        return []
+    held = of_held(system)
+    slips = any(sliding(system, end.site.switch) is not None for end in ending)
+    resting = {jump for jump in held if not SwitchPolynomials(system, before).knots[:, :, jump].any()}
+    found = list[Begins | WholeOrbit]()
+    for violation in between_nodes(system, after, before):
+        jump = sliding(system, violation.switch)
+        if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
+            continue
+        part = _share(system, before, violation)
+        whole = whole_orbit(system, before, violation, part)
+        site = begins(system, after, violation)
+        if whole is not None:
+            found.append(whole)
+        elif site is not None:
+            found.append(Begins(system, site, part, shortest))
+    return found
+
+
+def _share(system: System, before: Orbit, violation: Violation) -> float:
+    """At which part of the way to an orbit that is past a change the change lies, about."""
+    dense, at = SwitchPolynomials(system, before), violation.at
+    if isinstance(at, Extremum):
+        if not dense.minima(at.switch, violation.side):
+            return 0.0
+        most = largest(dense, at.switch) if sliding(system, at.switch) is not None else 1.0
+        clear = abs(dense.nearest(at.switch, violation.side, at.phase).value) / most
+    else:
+        surface = surface_of(system, violation.switch)
+        clear = next(abs(each.depth) for each in limits(system, before, surface) if each.at == at)
+    return float(clear / (clear + abs(violation.depth)))
+
+
+def _endings(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Ends]:
+    """What becomes so small between two orbits that it may end."""
+    if not before.mesh.events:
+        return []
+    each = (_ending(system, before, after, shortest, excursion) for excursion in excursions(system, before))
+    return [end for end in each if end is not None]
+
+
+def _ending(
+    system: System, before: Orbit, after: Orbit, shortest: float, excursion: Excursion
+) -> Ends | None:
+    """The end of one excursion, if it is near."""
+    row, unit = excursion.row, excursion.unit
+    now, then = (excursion.size(system, orbit) / unit for orbit in (before, after))
+    if row is CORNER and now <= row.least:
+        return None
+    half = VANISHING * now
+    size, last = row.size_below(half), False
+    if row is IMPACT and size >= half:
+        return None
+    site = ends(system, before, excursion)[0]
+    if row is ADDING_SLIDING:
+        jump = sliding(system, site.switch)
+        assert jump is not None
+        last = longest_slip(system, before, jump) <= 2 * now
+        size = LAST if last else size
+    if then > (max(half, size) if row.power == ROOT and not last else size):
+        return None
+    final = last or size <= row.least
+    part = row.part(now, then, size)
+    name = _name(system, site, last)
+    return Ends(system, excursion, site, size * unit, final, last, part, shortest, name)
+
+
+def _name(system: System, site: Site, last: bool) -> str:
+    """What ends, in words."""
+    name, jump = system.switches[site.switch].name, sliding(system, site.switch)
+    if jump is not None:
+        name = system.switches[jump].name
+        return (
+            f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
+        )
+    if site.row is IMPACT:
+        return f"the impact at {name} has no speed left"
+    if site.row is REVERSAL:
+        return "an excursion ends where friction turns the motion"
+    return f"the events {name} meet"
+
+
+def _swaps(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Swaps]:
+    """The event nodes of different surfaces that come near to each other between two orbits."""
+    events, k, found = before.mesh.events, len(before.phases), list[Swaps]()
+    marked = {surface.switch for surface in of_kind(system, Kind.MARKER)}
+    about = {i for turn in reversals(system, before) for i in (turn.begin, turn.inside[-1])}
+    now, then = (orbit.mesh.segment_lengths(orbit.phases) for orbit in (before, after))
+    for i, first in enumerate(events):
+        second = events[(i + 1) % k]
+        if {first.switch, second.switch} & marked or i in about or _one_surface(system, first, second):
+            continue
+        length = SWAP.size_below(VANISHING * float(now[i]))
+        if then[i] <= length and not reversed_by_impact(system, before, i):
+            part = SWAP.part(float(now[i]), float(then[i]), length)
+            found.append(Swaps(system, i, (first, second), length, part, shortest))
+    return found
+
+
+def _one_surface(system: System, first: EventNode, second: EventNode) -> bool:
+    """Whether two event nodes are those of one surface."""
+    return surface_of(system, first.switch).switch == surface_of(system, second.switch).switch
