@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 
@@ -124,6 +124,9 @@ class Jumping(System, Protocol):
     slide (stick, for friction) the indices of two further switches: ds/dtau by the equations of its positive
     side, and by those of its negative side. It slides where the first is negative and the second positive;
     a rise of the first ends that with a positive switch s, a fall of the second with a negative one.
+
+    Where jumps know of each other, as joints on one mass do, these depend on the modes of the others. Then it
+    has `guards_depend`, which is True, and its `switch` and `switch_gradient` take `side` as a last argument.
     """
 
     @property
@@ -155,6 +158,62 @@ class Jumping(System, Protocol):
         LinearisationLike
             Residual and its derivatives.
         """
+
+
+class Guarded(Jumping, Protocol):
+    """A system whose switches may depend on the sides of its jumps."""
+
+    @property
+    def guards_depend(self) -> bool:
+        """Whether they do."""
+
+    def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array:
+        """Return the switch functions.
+
+        Parameters
+        ----------
+        state, phase, parameter
+            As of any system.
+        side : ndarray, shape (N, jumps), optional
+            As in `linearise_beside`; by default the state decides everywhere.
+
+        Returns
+        -------
+        ndarray, shape (N, switches)
+            s.
+        """
+
+    def switch_gradient(
+        self, state: Array, phase: Array, parameter: Array, side: Array | None = None
+    ) -> tuple[Array, Array, Array]:
+        """Return the derivatives of `switch` in state, phase and parameters.
+
+        Parameters
+        ----------
+        state, phase, parameter, side
+            As of `switch`.
+
+        Returns
+        -------
+        tuple of ndarray
+            As of any system.
+        """
+
+
+def guards(system: System, state: Array, phase: Array, parameter: Array, side: Array) -> Array:
+    """Return the switch functions (N, switches), on sides (N, jumps) where they depend on these."""
+    if getattr(system, "guards_depend", False):
+        return cast(Guarded, system).switch(state, phase, parameter, side)
+    return system.switch(state, phase, parameter)
+
+
+def guards_gradient(
+    system: System, state: Array, phase: Array, parameter: Array, side: Array
+) -> tuple[Array, Array, Array]:
+    """Return the derivatives of `guards` in state, phase and parameters."""
+    if getattr(system, "guards_depend", False):
+        return cast(Guarded, system).switch_gradient(state, phase, parameter, side)
+    return system.switch_gradient(state, phase, parameter)
 
 
 def surfaces_of(system: System) -> tuple[SurfaceLike, ...]:

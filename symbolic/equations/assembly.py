@@ -22,8 +22,7 @@ from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
 from symbolic.equations.terms import Motion, Place, State, Unknown, struck
-from symbolic.equations.units import ANGULAR
-from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
+from symbolic.equations.variables import ANGULAR, Coordinate, Parameter, SwitchInfo, Value, Variable
 from symbolic.mistakes import explained
 from symbolic.sketch import Sketch
 

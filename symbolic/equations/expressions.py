@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.packed import Packed
-from symbolic.equations.sides import Sided, sided
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,9 @@ class Expressions:
     """The scaled symbolic system.
 
     `waved` are residual and outputs in terms of the symbols `waves` of the excitation, sin(k tau) and
-    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `moved` is
-    where an `increment` takes the unknowns.
+    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `guards`
+    are the switches on given sides of the jumps, `switches` those where the state decides. `moved` is where
+    an `increment` takes the unknowns.
     """
 
     rate: ca.SX
@@ -43,6 +44,7 @@ class Expressions:
     frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
+    guards: ca.SX
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -68,6 +70,7 @@ def expressed(assembly: Assembly) -> Expressions:
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
     beside = sided(packed, residual, switches, resets, telling)
+    guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -84,7 +87,8 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=ca.vertcat(switches, *(s for _, *both in beside.slides for s in both)),
+        switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
+        guards=guards,
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

@@ -319,21 +319,36 @@ class CompiledSystem:
             self._generated.output(rate, state, algebraic, phase, parameter, result)
         return result
 
-    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
-        """Return the switch functions, shape (N, switches)."""
+    @cached_property
+    def guards_depend(self) -> bool:
+        """Whether switches depend on the sides of jumps, as where a joint slips does on its neighbours."""
+        e = self.expressions
+        return bool(ca.depends_on(e.guards, e.sided.side)) if self.jumps else False
+
+    def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array:
+        """Return the switch functions, shape (N, switches), on sides (N, jumps) of the jumps if given."""
         result = np.zeros((len(phase), len(self.switches)))
         with np.errstate(all="ignore"):
-            self._generated.switch(state, phase, parameter, result)
+            if side is None or not self.guards_depend:
+                self._generated.switch(state, phase, parameter, result)
+            else:
+                self._generated.guards(state, phase, parameter, side, result)
         return result
 
-    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+    def switch_gradient(
+        self, state: Array, phase: Array, parameter: Array, side: Array | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return derivatives in state (N, switches, n), phase (N, switches), parameters (N, switches, p)."""
         count, k = len(phase), len(self.switches)
         d_state = np.zeros((count, k, len(self.states)))
         d_phase = np.zeros((count, k))
         d_parameter = np.zeros((count, k, len(self.parameters)))
+        columns = _columns(d_state, d_phase, d_parameter)
         with np.errstate(all="ignore"):
-            self._generated.switch_gradient(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+            if side is None or not self.guards_depend:
+                self._generated.switch_gradient(state, phase, parameter, *columns)
+            else:
+                self._generated.guards_gradient(state, phase, parameter, side, *columns)
         return d_state, d_phase, d_parameter
 
     @property
