@@ -10,14 +10,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.events.modes import guard_slopes, guards, modes_in, of_kind
+from periodic.events.modes import modes_in, of_kind
 from periodic.events.rates import before, rate_before
 from periodic.events.saltation import mapped, saltation
 from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Kind, System, jumps_of, resets_of
+from periodic.system import Kind, System, guards, guards_gradient, jumps_of, resets_of
 
 
 def tied(system: System, orbit: Orbit) -> list[int]:
@@ -82,7 +82,7 @@ def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
     switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
     interval, x, phase = before(orbit, index)
     side = modes_in(system, orbit, interval)
-    d_state, d_phase, d_parameter = guard_slopes(system, x, phase, orbit.parameter, side)
+    d_state, d_phase, d_parameter = guards_gradient(system, x, phase, orbit.parameter, side)
     nodes, stages = np.zeros_like(orbit.nodes), np.zeros_like(orbit.stages)
     nodes[interval] = end[0] * d_state[0, switch]
     stages[interval] = end[1:, None] * d_state[0, switch]
@@ -98,5 +98,5 @@ def slope_before(system: System, orbit: Orbit, index: int) -> float:
     switch = orbit.mesh.events[index].switch
     interval, x, phase = before(orbit, index)
     side = modes_in(system, orbit, interval)
-    d_state, d_phase, _ = guard_slopes(system, x, phase, orbit.parameter, side)
+    d_state, d_phase, _ = guards_gradient(system, x, phase, orbit.parameter, side)
     return float(d_phase[0, switch] + d_state[0, switch] @ rate_before(orbit, index))

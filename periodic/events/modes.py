@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -172,22 +172,6 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
 def modes_at(system: System, orbit: Orbit, phase: Array) -> Array:
     """Return the modes at phases (K,), shape (K, columns)."""
     return sides(system, orbit)[orbit.locate(phase)[0]]
-
-
-def guards(system: System, state: Array, phase: Array, parameter: Array, side: Array) -> Array:
-    """Return the switches (N, switches) in given modes (N, columns) of the surfaces."""
-    if not getattr(system, "guards_depend", False):
-        return system.switch(state, phase, parameter)
-    return cast(Any, system).switch(state, phase, parameter, side)
-
-
-def guard_slopes(
-    system: System, state: Array, phase: Array, parameter: Array, side: Array
-) -> tuple[Array, Array, Array]:
-    """Return the derivatives of `guards` in state, phase and parameters."""
-    if not getattr(system, "guards_depend", False):
-        return system.switch_gradient(state, phase, parameter)
-    return cast(Any, system).switch_gradient(state, phase, parameter, side)
 
 
 def linearise(

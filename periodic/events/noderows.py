@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.events.impacts import event_row, tied
-from periodic.events.modes import guard_slopes, guards, modes_in
+from periodic.events.modes import modes_in
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
-from periodic.system import System
+from periodic.system import System, guards, guards_gradient
 
 
 def event_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Row]:
@@ -22,7 +22,7 @@ def _row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row
     node, event, k = orbit.mesh.starts[index], orbit.mesh.events[index], len(orbit.phases)
     where = (orbit.nodes[node : node + 1], orbit.phases[index : index + 1], orbit.parameter)
     side = modes_in(system, orbit, node - 1)
-    d_state, d_phase, d_parameter = guard_slopes(system, *where, side)
+    d_state, d_phase, d_parameter = guards_gradient(system, *where, side)
     nodes = np.zeros_like(orbit.nodes)
     nodes[node] = d_state[0, event.switch]
     outer = np.zeros(k + len(free))

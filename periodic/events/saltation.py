@@ -16,13 +16,13 @@ from typing import cast
 
 import numpy as np
 
-from periodic.events.modes import guard_slopes, modes_in, sides
+from periodic.events.modes import modes_in, sides
 from periodic.events.rates import before, rate_at, rate_before
 from periodic.orbit.jump import Jump
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, resets_of
+from periodic.system import Resetting, System, guards_gradient, resets_of
 
 STEP = 1e-3
 """Step of differences in each argument, as a part of its size: they are of the fourth order."""
@@ -50,7 +50,7 @@ def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
         after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, parameter)
         old = rate_at(system, at, x, *arriving, phase, side[interval])
         new = rate_at(system, at, after, *leaving, phase, side[start])
-        slopes_of = guard_slopes(system, x, phase, parameter, side[interval : interval + 1])
+        slopes_of = guards_gradient(system, x, phase, parameter, side[interval : interval + 1])
         s_state, s_phase, s_parameter = (g[0, switch] for g in slopes_of)
         slopes = np.append(s_state, s_parameter[chosen])
         jump = new - by_state[0] @ old - by_phase[0]
@@ -118,7 +118,7 @@ def at_fixed_phase(
         late = late + np.einsum("jln,jln,jlk->k", row.stages, orbit.knot_rates[:, 1:], at_stages)
     for jump in jumps:
         interval, x, phase = before(orbit, jump.index)
-        gradient = guard_slopes(system, x, phase, orbit.parameter, modes_in(system, orbit, interval))
+        gradient = guards_gradient(system, x, phase, orbit.parameter, modes_in(system, orbit, interval))
         s_state, s_phase, s_parameter = (g[0, orbit.mesh.events[jump.index].switch] for g in gradient)
         moved = -late[jump.index] / (s_state @ rate_before(orbit, jump.index) + s_phase)
         nodes[jump.interval] += scheme.end[0] * moved * s_state

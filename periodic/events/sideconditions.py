@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.events.impacts import slope_before
-from periodic.events.modes import guard_slopes, guards, modes_in
+from periodic.events.modes import modes_in
 from periodic.events.rates import before, rate_before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
-from periodic.system import System
+from periodic.system import System, guards, guards_gradient
 
 STEP = 1e-4
 """Step (rad) along the motion of differences of a switch's gradient."""
@@ -50,7 +50,7 @@ def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple
     )
     modes = modes_in(system, orbit, at.interval)
     d_state, d_phase, d_parameter = (
-        side * g[:, at.switch] for g in guard_slopes(system, state, phase, orbit.parameter, modes)
+        side * g[:, at.switch] for g in guards_gradient(system, state, phase, orbit.parameter, modes)
     )
     slopes = Slopes(np.zeros_like(state), d_state, np.zeros((1, 0)), d_phase, d_parameter[0, list(free)])
     row = gathered(system, orbit, points, slopes, free)
@@ -89,7 +89,7 @@ class Limit:
         start, k = orbit.mesh.starts[self.node], len(orbit.phases)
         where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
         modes = modes_in(system, orbit, start - 1)
-        d_state, d_phase, d_parameter = guard_slopes(system, *where, modes)
+        d_state, d_phase, d_parameter = guards_gradient(system, *where, modes)
         nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
         nodes[start] = d_state[0, self.switch]
         outer[self.node] = d_phase[0, self.switch]

@@ -13,23 +13,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from periodic.events.modes import (
-    column,
-    group,
-    guards,
-    modes_at,
-    of_kind,
-    releases,
-    sides,
-    sticks,
-    surface_of,
-)
+from periodic.events.modes import column, group, modes_at, of_kind, releases, sides, sticks, surface_of
 from periodic.events.rates import rate_at, slope_at
 from periodic.events.violations import Breach, between_nodes
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import STUCK, Kind, System
+from periodic.system import STUCK, Kind, System, guards
 
 VANISHING = 0.1
 """Part of the bound of what matters below which a stretch of sticking is given up again."""

@@ -15,20 +15,11 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.events.modes import (
-    group,
-    guard_slopes,
-    guards,
-    mode_after,
-    of_kind,
-    sides,
-    sliding,
-    surface_of,
-)
+from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import STUCK, Kind, SurfaceLike, System
+from periodic.system import STUCK, Kind, SurfaceLike, System, guards, guards_gradient
 
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
@@ -208,7 +199,7 @@ class SwitchPolynomials:
         orbit = self.orbit
         states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
         side = np.repeat(self.modes, orbit.mesh.scheme.ncol, axis=0)
-        slope = guard_slopes(self.system, states, tau, orbit.parameter, side)[0][:, switch]
+        slope = guards_gradient(self.system, states, tau, orbit.parameter, side)[0][:, switch]
         return float(np.abs(np.einsum("pn,pn->p", slope, states)).max())
 
     def flat(self, switch: int, part: float) -> bool:

@@ -13,11 +13,11 @@ from enum import Enum, auto
 import numpy as np
 
 from periodic.events.impacts import slope_before
-from periodic.events.modes import guards, mode_after, modes_in, surface_of
+from periodic.events.modes import mode_after, modes_in, surface_of
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
+from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
 NOISE = 1e-10
 """How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from periodic.events.impacts import tied
-from periodic.events.modes import guard_slopes, modes_in
+from periodic.events.modes import modes_in
 from periodic.events.rates import before, rate_before
 from periodic.orbit.orbit import Orbit
-from periodic.system import System
+from periodic.system import System, guards_gradient
 
 
 def reversed_by_impact(system: System, orbit: Orbit, segment: int) -> bool:
@@ -23,7 +23,7 @@ def reversed_by_impact(system: System, orbit: Orbit, segment: int) -> bool:
             slopes = []
             for state, rate, place in pieces:
                 modes = modes_in(system, orbit, place)
-                by_state, by_phase, _ = guard_slopes(system, state, phase, orbit.parameter, modes)
+                by_state, by_phase, _ = guards_gradient(system, state, phase, orbit.parameter, modes)
                 slopes.append(float(by_phase[0, switch] + by_state[0, switch] @ rate))
             if slopes[0] * slopes[1] <= 0:
                 return True

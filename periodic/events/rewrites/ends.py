@@ -13,6 +13,7 @@ from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.reversals import reversals, short_of
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strikes import last_impact
+from periodic.events.rewrites.swaps import swapped, swaps
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CORNER,
@@ -21,6 +22,7 @@ from periodic.events.rewrites.table import (
     GRAZING_SLIDING,
     IMPACT,
     REVERSAL,
+    SWAP,
     SWITCHING_SLIDING,
     Row,
 )
@@ -66,12 +68,16 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
             yield Excursion(row, i)
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
+        if swaps(system, orbit, i) and i not in about:
+            yield Excursion(SWAP, i)
 
 
 def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
     """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
+    if excursion.row is SWAP:
+        return [swapped(system, orbit, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]
 
 

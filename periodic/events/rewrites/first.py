@@ -7,12 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.change import Change
-from periodic.events.modes import of_held, of_kind, sliding, surface_of
-from periodic.events.rewrites.corners import reversed_by_impact
+from periodic.events.modes import of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
 from periodic.events.rewrites.onsets import begins
-from periodic.events.rewrites.reversals import reversals
-from periodic.events.rewrites.rewrite import Begins, Ends, Swaps
+from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
@@ -27,9 +25,8 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
-from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import Kind, System
+from periodic.system import System
 
 VANISHING = 0.5
 """What a step would leave this part of, by its tangent, may end within the step."""
@@ -47,20 +44,19 @@ def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -
     if not system.switches:
         return None
     ending = _endings(system, before, after, shortest)
-    swaps = _swaps(system, before, after, shortest)
-    found = [*ending, *swaps, *_onsets(system, before, after, ending, shortest)]
+    found = [*ending, *_onsets(system, before, after, ending, shortest)]
     first = min(found, key=lambda change: (not change.strict, change.part), default=None)
     if isinstance(first, Begins) and first.site.row is GRAZING:
-        return _or_end(first, before, after, [*ending, *swaps])
+        return _or_end(first, before, after, ending)
     return first
 
 
-def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends | Swaps]) -> Begins:
+def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> Begins:
     """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
 
     In a guess depth goes before length.
     """
-    each = [end for end in ending if isinstance(end, Ends) and end.site.row is GRAZING]
+    each = [end for end in ending if end.site.row is GRAZING]
     end = min(each, key=lambda end: end.part, default=None)
     if end is None or end.site.switch != begins.site.switch:
         return begins
@@ -78,7 +74,7 @@ def _onsets(
     if not bool((after.mesh.segment_lengths(after.phases) > 0).all()):
         return []
     held = of_held(system)
-    slips = any(sliding(system, end.site.switch) is not None for end in ending)
+    slips = any(end.site.row is not SWAP and sliding(system, end.site.switch) is not None for end in ending)
     resting = {jump for jump in held if not SwitchPolynomials(system, before).knots[:, :, jump].any()}
     found = list[Begins | WholeOrbit]()
     for violation in between_nodes(system, after, before):
@@ -145,6 +141,9 @@ def _ending(
 
 def _name(system: System, site: Site, last: bool) -> str:
     """What ends, in words."""
+    if site.row is SWAP:
+        names = [system.switches[each.event.switch].name for each in reversed(site.added)]
+        return f"the events {' and '.join(dict.fromkeys(names))} meet"
     name, jump = system.switches[site.switch].name, sliding(system, site.switch)
     if jump is not None:
         name = system.switches[jump].name
@@ -156,25 +155,3 @@ def _name(system: System, site: Site, last: bool) -> str:
     if site.row is REVERSAL:
         return "an excursion ends where friction turns the motion"
     return f"the events {name} meet"
-
-
-def _swaps(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Swaps]:
-    """The event nodes of different surfaces that come near to each other between two orbits."""
-    events, k, found = before.mesh.events, len(before.phases), list[Swaps]()
-    marked = {surface.switch for surface in of_kind(system, Kind.MARKER)}
-    about = {i for turn in reversals(system, before) for i in (turn.begin, turn.inside[-1])}
-    now, then = (orbit.mesh.segment_lengths(orbit.phases) for orbit in (before, after))
-    for i, first in enumerate(events):
-        second = events[(i + 1) % k]
-        if {first.switch, second.switch} & marked or i in about or _one_surface(system, first, second):
-            continue
-        length = SWAP.size_below(VANISHING * float(now[i]))
-        if then[i] <= length and not reversed_by_impact(system, before, i):
-            part = SWAP.part(float(now[i]), float(then[i]), length)
-            found.append(Swaps(system, i, (first, second), length, part, shortest))
-    return found
-
-
-def _one_surface(system: System, first: EventNode, second: EventNode) -> bool:
-    """Whether two event nodes are those of one surface."""
-    return surface_of(system, first.switch).switch == surface_of(system, second.switch).switch

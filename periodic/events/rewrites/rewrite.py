@@ -19,7 +19,7 @@ from periodic.correction.condition import SideCondition
 from periodic.events.modes import releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
-from periodic.events.rewrites.sites import Site, index_of, ordered, rewritten
+from periodic.events.rewrites.sites import Site, index_of, rewritten
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
 from periodic.events.sideconditions import Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
@@ -28,7 +28,7 @@ from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.redistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.orbit.scheme import Array
-from periodic.system import System, resets_of
+from periodic.system import System
 
 ALIKE = 1e-3
 """Excursions whose sizes differ by this part end at once."""
@@ -158,6 +158,8 @@ class Ends:
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
         """What is 0 where it ends, but for what rounding decides."""
+        if own.row is SWAP:
+            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         held, left = own.held, 0.0
         jump = sliding(system, own.switch)
         if jump is not None and not own.row.touches:
@@ -173,49 +175,3 @@ class Ends:
 
 def _touched(site: Site) -> Sequence[int]:
     return (*site.removed, *(j for j, _ in site.replaced))
-
-
-@dataclass(frozen=True)
-class Swaps:
-    """Two neighbouring event nodes of different surfaces come as near as `length`: they change places."""
-
-    system: System
-    segment: int
-    events: tuple[EventNode, EventNode]
-    length: float
-    part: float
-    shortest: float
-
-    touches = False
-    strict = False
-    otherwise = None
-
-    @property
-    def final(self) -> bool:
-        """Whether events are never looked at nearer to each other."""
-        return self.length <= SWAP.least
-
-    @property
-    def condition(self) -> Length:
-        """How near they come."""
-        return Length(self.segment, self.length)
-
-    @property
-    def name(self) -> str:
-        """Which switches meet their levels at once."""
-        names = [self.system.switches[event.switch].name for event in self.events]
-        return f"the events {' and '.join(dict.fromkeys(names))} meet"
-
-    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
-        """Yield the mesh with the two events the other way round."""
-        k, (first, second) = len(orbit.phases), self.events
-        i, j = self.segment, (self.segment + 1) % len(orbit.phases)
-        begin, end = orbit.phases[i], orbit.phases[j] + (orbit.mesh.period if j < i else 0.0)
-        others = [(orbit.mesh.events[m], float(orbit.phases[m])) for m in range(k) if m not in (i, j)]
-        early, impacts = (begin + end - self.length) / 2, resets_of(system)
-        if first.switch in impacts or second.switch in impacts:  # whose state before it is that of its phase
-            early = begin - self.length if first.switch in impacts else end
-        pair = [(second, float(early)), (first, float(early + self.length))]
-        events, phases = ordered([*others, *pair], orbit)
-        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-        yield Beyond(mesh, phases, Length(index_of(events, phases, pair[0], orbit), self.length), False)

@@ -1,8 +1,8 @@
 """Grazing of an impact whose rebound reverses what slides: events of friction that meet it.
 
-The speed of a mass that just touches a wall is 0 there, and so is that at which it slides: the orbit without the
-impact has an event node of friction at the touch. With the impact, that takes the guard to its other side; where
-friction held the mass at the touch, it stops it again after the rebound.
+The speed of a mass that just touches a wall is 0 there, and so is that at which it slides: the orbit without
+the impact has an event node of friction at the touch. With the impact, that takes the guard to its other
+side; where friction held the mass at the touch, it stops it again after the rebound.
 """
 
 from __future__ import annotations
