@@ -230,7 +230,11 @@ class SwitchPolynomials:
         shift = 0 if wrong.all() else int(np.flatnonzero(~wrong)[0])
         order = np.roll(np.arange(len(wrong)), -shift)
         runs = np.split(order, np.flatnonzero(np.diff(wrong[order].astype(int))) + 1)
-        apart = [run for run in runs if wrong[run[0]] and not at_nodes[run].any()]
+        at_level = at_nodes & (along.sides == 0)  # from there an excursion begins, or there it ends
+        near = np.roll(at_level, 1) | np.roll(at_level, -1) | at_nodes
+        apart = [
+            run for run in runs if wrong[run[0]] and not (near[run[[0, -1]]].any() or at_nodes[run].any())
+        ]
         farthest = [run[np.abs(along.value[run]).argmax()] for run in apart]
         found = [along.extremum(switch, int(i)) for i in farthest]
         noise = NOISE * float(np.abs(along.value).max())
