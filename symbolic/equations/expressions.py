@@ -17,6 +17,7 @@ import casadi as ca
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.jumps.sides import Sided, sided
+from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
 
 
@@ -45,6 +46,7 @@ class Expressions:
     outputs: ca.SX
     switches: ca.SX
     guards: ca.SX
+    sliders: dict[int, Held]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -69,8 +71,10 @@ def expressed(assembly: Assembly) -> Expressions:
     residual = both[: len(rows)]
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
-    beside = sided(packed, residual, switches, resets, telling)
+    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders))
     guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
+    first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
+    beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -89,6 +93,7 @@ def expressed(assembly: Assembly) -> Expressions:
         outputs=packed.scaled(outputs),
         switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
         guards=guards,
+        sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

@@ -63,6 +63,7 @@ def surfaces(
     resets: Container[int],
     jumps: Sequence[int],
     slides: Mapping[int, tuple[int, int]],
+    sliders: Container[int] = (),
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -75,13 +76,17 @@ def surfaces(
     jumps : sequence of int
         Those at which the equations jump, in the order of the columns of `side`.
     slides : mapping of int to tuple of int
-        Of those along which motions slide, the two releases.
+        Of those along which motions slide, and of sliders, the two releases.
+    sliders : container of int
+        Those of elastic sliders.
     """
     released = {k for pair in slides.values() for k in pair}
 
     def kind(k: int) -> Kind:
         if k in resets:
             return Kind.IMPACT
+        if k in sliders:
+            return Kind.SLIDER
         if k in jumps:
             return Kind.SLIDING if k in slides else Kind.JUMP
         plain = switches[k].levels == (0.0,) and switches[k].direction == 0

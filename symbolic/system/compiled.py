@@ -254,15 +254,17 @@ class CompiledSystem:
 
     @property
     def slides(self) -> dict[int, tuple[int, int]]:
-        """Of each jump along which motions can slide, the switches at which that ends."""
+        """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""
         switches = [k for k, *_ in self.expressions.sided.slides]
         first = len(self.switches) - 2 * len(switches)
-        return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found |= {k: held.releases for k, held in self.expressions.sliders.items()}
+        return dict(sorted(found.items()))
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
-        return surfaces(self.switches, self.resets, self.jumps, self.slides)
+        return surfaces(self.switches, self.resets, self.jumps, self.slides, self.expressions.sliders)
 
     @property
     def kinks(self) -> tuple[int, ...]:

@@ -31,7 +31,7 @@ EQUAL = 1e-8
 
 @dataclass(frozen=True)
 class Sided:
-    """The residual with sides: a symbol each for the switches with the indices `jumps`.
+    """The residual with sides: a symbol each for the switches with the indices `jumps`, among them sliders.
 
     slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
     positive side and on the negative one, the other jumps on their given sides; between them the motion is
@@ -45,7 +45,12 @@ class Sided:
 
 
 def sided(
-    packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...], moving: ca.SX | None = None
+    packed: Packed,
+    residual: ca.SX,
+    switches: ca.SX,
+    excluded: tuple[int, ...],
+    moving: ca.SX | None = None,
+    sliders: tuple[int, ...] = (),
 ) -> Sided:
     """Return a residual with the side of every jump as an argument.
 
@@ -59,6 +64,8 @@ def sided(
         Switches that are no jumps of the equations: impacts.
     moving : casadi.SX, optional
         Rows that tell all rates, where those of the residual do not.
+    sliders : tuple of int
+        Switches that have a side besides.
 
     Returns
     -------
@@ -67,16 +74,17 @@ def sided(
     """
     rows = residual if moving is None else ca.vertcat(residual, moving)
     count = residual.numel()
-    operations = Operations(rows, _owned(packed, residual, switches, excluded))
+    operations = Operations(rows, _owned(packed, residual, switches, (*excluded, *sliders)))
     every = operations.switches
     side = ca.SX.sym("side", len(every))
     marked = operations.on({k: side[i] for i, k in enumerate(every)})[:count]
     jumps = [k for i, k in enumerate(every) if _jumps(packed, marked, side, i, switches[k])]
-    kept = ca.SX.sym("side", len(jumps))
-    sides = {k: kept[jumps.index(k)] if k in jumps else ca.SX(0) for k in every}
+    columns = sorted({*jumps, *sliders})
+    kept = ca.SX.sym("side", len(columns))
+    sides = {k: kept[columns.index(k)] if k in jumps else ca.SX(0) for k in every}
     telling = slice(0 if moving is None else count, rows.numel())
     slid, slides = sliding(packed, operations, sides, jumps, switches, telling)
-    return Sided(slid[:count], kept, tuple(jumps), slides)
+    return Sided(slid[:count], kept, tuple(columns), slides)
 
 
 def _owned(
