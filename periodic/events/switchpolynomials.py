@@ -24,6 +24,9 @@ from periodic.system import STUCK, Kind, SurfaceLike, System, guards, guards_gra
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
 
+BRIEF = 1e-2
+"""Length (rad) of excursions beside an event node that are not told from the passage there."""
+
 SHARED = 1e-9
 """A switch that is as near to its level at another one's event node passes it there too."""
 
@@ -230,15 +233,27 @@ class SwitchPolynomials:
         shift = 0 if wrong.all() else int(np.flatnonzero(~wrong)[0])
         order = np.roll(np.arange(len(wrong)), -shift)
         runs = np.split(order, np.flatnonzero(np.diff(wrong[order].astype(int))) + 1)
-        at_level = at_nodes & (along.sides == 0)  # from there an excursion begins, or there it ends
-        near = np.roll(at_level, 1) | np.roll(at_level, -1) | at_nodes
-        apart = [
-            run for run in runs if wrong[run[0]] and not (near[run[[0, -1]]].any() or at_nodes[run].any())
-        ]
+        held = surface_of(self.system, switch).releases is not None
+        attached = self._attached if held else self._beginning
+        apart = [run for run in runs if wrong[run[0]] and not attached(along, run, at_nodes)]
         farthest = [run[np.abs(along.value[run]).argmax()] for run in apart]
         found = [along.extremum(switch, int(i)) for i in farthest]
         noise = NOISE * float(np.abs(along.value).max())
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
+
+    def _beginning(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
+        """Whether an excursion begins or ends at an event node of the switch that is not at its passage."""
+        return bool(at_nodes[run].any())
+
+    def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
+        """Whether it does, or is as brief beside one as what polynomials make of a slow passage."""
+        if self._beginning(along, run, at_nodes):
+            return True
+        at_level = at_nodes & (along.sides == 0)
+        beside = at_level[(run[0] - 1) % len(at_level)] or at_level[(run[-1] + 1) % len(at_level)]
+        return bool(
+            beside and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < BRIEF
+        )
 
     def _ends(self, switch: int) -> list[int]:
         """The intervals at whose begin a switch has an event node, or one of the jump that it belongs to."""

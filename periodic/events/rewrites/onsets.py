@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.events.modes import mode_after, surface_of
+from periodic.events.modes import group, mode_after, surface_of
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
@@ -96,9 +96,13 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     """The extrema of a switch on the sides that it is on."""
     sides = dense.expected(switch, dense.side(switch))
     most = largest(dense, switch)
+    nodes = group(dense.system, dense.orbit.mesh, switch) if surface.releases is not None else []
+    own = dense.orbit.phases[nodes]
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
-            if sides[e.interval] == side:
+            if sides[e.interval] == side and not any(
+                apart(e.phase, tau, dense.orbit) < BESIDE for tau in own
+            ):
                 yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
 
 
@@ -175,7 +179,7 @@ def _same(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
     if not (isinstance(one.at, Extremum) and isinstance(other.at, Extremum)):
         return one.at == other.at
     if one.row is not GRAZING:
-        return one.at == other.at
+        return apart(one.at.phase, other.at.phase, orbit) < BESIDE
     begin, end = held(system, orbit, one.switch, one.at.phase)
     later = np.mod(other.at.phase - begin + BESIDE, orbit.mesh.period)
     return bool(later <= end - begin + 2 * BESIDE)
