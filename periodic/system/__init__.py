@@ -23,6 +23,7 @@ from periodic.system.equations import (
     index_of,
 )
 from periodic.system.events import (
+    HELD,
     MINUS,
     PLUS,
     STUCK,
@@ -45,6 +46,7 @@ from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Wit
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
 
 __all__ = [
+    "HELD",
     "MINUS",
     "PLUS",
     "STUCK",

@@ -71,7 +71,8 @@ def expressed(assembly: Assembly) -> Expressions:
     residual = both[: len(rows)]
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
-    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders))
+    at = {k: packed.scaled([place]) for k, (_, place) in assembly.places_held.items()}
+    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders), at)
     guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
     first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
     beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)

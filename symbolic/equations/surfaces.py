@@ -1,7 +1,8 @@
 """Surfaces of a system: what happens where one of its switches vanishes, and the modes beside it.
 
 The mode of a surface is a number: PLUS on the side s > 0 of its guard, MINUS on the other, STUCK where the
-motion is held to it; 0 leaves it to the state.
+motion is held to it, HELD where that lasts all along, at a place that the motion does not determine and a
+parameter says; 0 leaves it to the state.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from enum import StrEnum
 
 from symbolic.equations.variables import SwitchInfo
 
-MINUS, PLUS, STUCK = -1, 1, 2
+MINUS, PLUS, STUCK, HELD = -1, 1, 2, 3
 
 
 class Kind(StrEnum):

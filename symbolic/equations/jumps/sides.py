@@ -7,6 +7,7 @@ jump the equations get a number: 1 for s > 0, -1 for s < 0, 0 where the state de
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -51,6 +52,7 @@ def sided(
     excluded: tuple[int, ...],
     moving: ca.SX | None = None,
     sliders: tuple[int, ...] = (),
+    places: Mapping[int, ca.SX] | None = None,
 ) -> Sided:
     """Return a residual with the side of every jump as an argument.
 
@@ -66,6 +68,8 @@ def sided(
         Rows that tell all rates, where those of the residual do not.
     sliders : tuple of int
         Switches that have a side besides.
+    places : mapping of int to casadi.SX, optional
+        Of the switches at which something may be held all along, how far it is from where it is.
 
     Returns
     -------
@@ -83,7 +87,7 @@ def sided(
     kept = ca.SX.sym("side", len(columns))
     sides = {k: kept[columns.index(k)] if k in jumps else ca.SX(0) for k in every}
     telling = slice(0 if moving is None else count, rows.numel())
-    slid, slides = sliding(packed, operations, sides, jumps, switches, telling)
+    slid, slides = sliding(packed, operations, sides, jumps, switches, telling, places or {})
     return Sided(slid[:count], kept, tuple(columns), slides)
 
 

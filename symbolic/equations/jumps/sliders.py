@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from symbolic.equations.jumps.sides import Sided
+from symbolic.equations.jumps.sliding import RETURN
 from symbolic.equations.packed import Packed
-from symbolic.equations.surfaces import MINUS, PLUS, STUCK
+from symbolic.equations.surfaces import HELD, MINUS, PLUS, STUCK
 from symbolic.equations.terms import Slider
 
 
@@ -42,10 +43,10 @@ def with_sliders(
     rows, guards = ca.SX(beside.residual), ca.SX(guards)
     for k, slider in sliders.items():
         side, row = beside.side[beside.jumps.index(k)], first + slider.row
-        held, plus, minus, *speeds = ca.vertsplit(
-            packed.scaled([slider.held, *slider.slipping, *slider.speeds])
+        held, place, plus, minus, *speeds = ca.vertsplit(
+            packed.scaled([slider.held, slider.place, *slider.slipping, *slider.speeds])
         )
-        modes = {STUCK: held, PLUS: plus, MINUS: minus}
+        modes = {STUCK: held, HELD: held + RETURN * place, PLUS: plus, MINUS: minus}
         for mode, own in modes.items():
             rows[row] = ca.if_else(side == mode, own, rows[row])
         if not ca.is_equal(speeds[0], speeds[1], 10):

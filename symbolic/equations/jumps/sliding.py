@@ -19,10 +19,13 @@ import numpy as np
 from symbolic.equations.jumps.operations import Operations
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples
-from symbolic.equations.surfaces import STUCK
+from symbolic.equations.surfaces import HELD, STUCK
 
 EQUAL = 1e-8
 """What is smaller than this part of its largest value is 0."""
+
+RETURN = 3.0
+"""Rate (1/rad) at which what is HELD comes back to its place: it is there on an orbit, whatever the rate."""
 
 Slide = tuple[int, ca.SX, ca.SX]
 """Index of a switch, and the functions at whose zeros its sliding ends: s' on either side."""
@@ -35,6 +38,7 @@ def sliding(
     jumps: Sequence[int],
     switches: ca.SX,
     telling: slice,
+    places: Mapping[int, ca.SX],
 ) -> tuple[ca.SX, tuple[Slide, ...]]:
     """Return rows on sides of their jumps, sliding along them among these, and where sliding ends.
 
@@ -52,6 +56,8 @@ def sliding(
         All switches.
     telling : slice
         The rows that tell the rates.
+    places : mapping of int to casadi.SX
+        Of what may be HELD, how far it is from its place.
 
     Returns
     -------
@@ -69,7 +75,8 @@ def sliding(
         left = [k for i, k in enumerate(chosen) if _attracts(packed, pull[i, i], forces.sigma, sides)]
         left = [k for k in left if k not in forces.crossed] if left == chosen else left
         if left == chosen:
-            return _slid(packed, plain, sides, switches, chosen, forces, pull, push)
+            drawn = [_drawn(switches[k], places.get(k)) for k in chosen]
+            return _slid(packed, plain, sides, switches, chosen, forces, pull, push, drawn)
         chosen = left
     return plain, ()
 
@@ -133,6 +140,11 @@ def _attracts(packed: Packed, pull: ca.SX, sigma: ca.SX, sides: Mapping[int, ca.
     return True
 
 
+def _drawn(switch: ca.SX, place: ca.SX | None) -> ca.SX:
+    """How s falls where it is HELD: s' = -2 a s - a^2 u with u' = s, so that s and u vanish on an orbit."""
+    return ca.SX(0) if place is None else 2 * RETURN * switch + RETURN**2 * place
+
+
 def _slid(
     packed: Packed,
     plain: ca.SX,
@@ -142,14 +154,21 @@ def _slid(
     forces: _Forces,
     pull: ca.SX,
     push: ca.SX,
+    drawn: list[ca.SX],
 ) -> tuple[ca.SX, tuple[Slide, ...]]:
     """The rows with what slides, and where sliding ends."""
     given = [ca.if_else(sides[k] == 0, ca.sign(switches[k]), sides[k]) for k in chosen]
-    stuck = [sides[k] == STUCK for k in chosen]
+    held = [sides[k] == HELD for k in chosen]
+    stuck = [(sides[k] == STUCK) + one for k, one in zip(chosen, held, strict=True)]
+    wanted = [ca.if_else(one, by, 0) for one, by in zip(held, drawn, strict=True)]
     sigma, slides = ca.SX.zeros(len(chosen)), []
     for block in _blocks(pull):
         system = _System(
-            pull[block, block], push[block], [given[i] for i in block], [stuck[i] for i in block]
+            pull[block, block],
+            push[block],
+            [given[i] for i in block],
+            [stuck[i] for i in block],
+            [wanted[i] for i in block],
         )
         for row, i in enumerate(block):
             sigma[i] = system.solved()[row]
@@ -159,8 +178,8 @@ def _slid(
     for r in range(plain.numel()):
         own = [i for i in range(len(chosen)) if not forces.gains[r, i].is_zero()]
         if own:
-            held = sum((stuck[i] for i in own[1:]), stuck[own[0]])
-            rows[r] = ca.if_else(held > 0 if len(own) > 1 else held, slid[r], plain[r])
+            slides_here = sum((stuck[i] for i in own[1:]), stuck[own[0]])
+            rows[r] = ca.if_else(slides_here > 0, slid[r], plain[r])
     return rows, tuple(sorted(slides, key=lambda slide: slide[0]))
 
 
@@ -182,6 +201,7 @@ class _System:
     push: ca.SX
     given: list[ca.SX]
     stuck: list[ca.SX]
+    wanted: list[ca.SX]
 
     def solved(self, free: Mapping[int, float] | None = None) -> list[ca.SX]:
         """sigma of all, those in `free` not stuck but with a given number."""
@@ -195,7 +215,7 @@ class _System:
             else:
                 own = [ca.if_else(self.stuck[i], self.pull[i, j], float(i == j)) for j in range(count)]
                 rows.append([_sparse(self.pull[i, j], own[j]) if i != j else own[j] for j in range(count)])
-                right.append(ca.if_else(self.stuck[i], self.push[i], self.given[i]))
+                right.append(ca.if_else(self.stuck[i], self.push[i] + self.wanted[i], self.given[i]))
         return _eliminated(rows, right)
 
     def slope(self, i: int, side: int) -> ca.SX:

@@ -10,7 +10,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, not_negative
-from symbolic.parts.mechanics.ends import resist, speed
+from symbolic.parts.mechanics.ends import deflection, resist, speed
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,10 @@ class CoulombFriction(Part):
         force = assembly.parameter(self.force, "F_f", "N", NOT_NEGATIVE)
         rate = speed(assembly, self.q, self.to)
         resist(assembly, self.q, self.to, force * ca.sign(rate))
-        scale = assembly.omega * assembly.motion(self.q).position.scale
+        size = assembly.motion(self.q).position.scale
+        scale = assembly.omega * size
         between = self.q.name if self.to is None else f"({self.q.name} - {self.to.name})"
         if f"d{between}/dt = 0" not in [info.name for info, _ in assembly.switches]:
-            assembly.switch(f"d{between}/dt = 0", rate / scale, 0)
+            held = deflection(assembly, self.q, self.to)
+            assembly.holds(between.strip("()"), held, size, self.q.unit)
+        assembly.switch(f"d{between}/dt = 0", rate / scale, 0)
