@@ -181,7 +181,7 @@ def repeated(orbit: Orbit, times: int) -> Orbit:
         breaks = (np.append(np.concatenate([(k + mesh.breaks[0][:-1]) / times for k in range(times)]), 1.0),)
     return replace(
         orbit,
-        mesh=Mesh(mesh.scheme, breaks, mesh.events * times, times * mesh.period),
+        mesh=Mesh(mesh.scheme, breaks, mesh.events * times, times * mesh.period, mesh.modes),
         nodes=np.concatenate([*[orbit.nodes[:ntst]] * (times - 1), orbit.nodes]),
         stages=np.concatenate([orbit.stages] * times),
         algebraic=np.concatenate([orbit.algebraic] * times),

@@ -134,7 +134,7 @@ class Collocation(Discretisation):
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
         old = near.mesh
-        mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period)
+        mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
         adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
         return relax(system, self._tied(system, adopted))
 

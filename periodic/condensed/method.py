@@ -78,7 +78,7 @@ class CondensedCollocation(Collocation):
         if near is None or near.equilibrium:
             return super().guess(system, parameter, near)
         old = near.mesh
-        mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period)
+        mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period, old.modes)
         found = replace(transfer(near, mesh, near.phases), parameter=parameter)
         forces = algebraic_at(system, found, found.stage_phases.ravel())
         return replace(found, algebraic=forces.reshape(found.algebraic.shape))

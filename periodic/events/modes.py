@@ -112,7 +112,8 @@ def _along(system: System, orbit: Orbit, surface: SurfaceLike) -> Array:
     mesh = orbit.mesh
     changes = [(int(j), mode_after(surface, e)) for j, e in zip(mesh.starts, mesh.events, strict=True)]
     changes = [(j, mode) for j, mode in changes if mode is not None]
-    found = np.full(mesh.ntst, changes[-1][1] if changes else _whole(system, orbit, surface), dtype=float)
+    whole = changes[-1][1] if changes else dict(mesh.modes).get(surface.switch)
+    found = np.full(mesh.ntst, _whole(system, orbit, surface) if whole is None else whole, dtype=float)
     for j, mode in changes:
         found[j:] = mode
     return found

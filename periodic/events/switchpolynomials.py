@@ -19,7 +19,7 @@ from periodic.events.modes import group, mode_after, of_kind, sides, sliding, su
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import STUCK, Kind, SurfaceLike, System, guards, guards_gradient
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
 
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
@@ -191,11 +191,10 @@ class SwitchPolynomials:
     def _held(self, switch: int, surface: SurfaceLike, otherwise: int) -> NDArray[np.int_]:
         assert surface.releases is not None and surface.column is not None
         mode = self.modes[:, surface.column].astype(int)
+        held = (mode == STUCK) | (mode == HELD)
         if switch == surface.switch:
-            own = np.where(mode == STUCK, 0, mode)
-            tied = group(self.system, self.orbit.mesh, switch)
-            return own if tied else np.full(self.orbit.mesh.ntst, otherwise)
-        return np.where(mode == STUCK, -1 if switch == surface.releases[0] else 1, 0)
+            return np.where(held, 0, np.where(mode == 0, otherwise, mode))
+        return np.where(held, -1 if switch == surface.releases[0] else 1, 0)
 
     def size(self, switch: int) -> float:
         """How far the states take a switch: the largest s_x . x along the orbit."""

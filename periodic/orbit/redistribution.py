@@ -97,7 +97,7 @@ def spread(
     begins = phases if events else np.zeros(1)
     ends = np.append(begins[1:], begins[0] + period)
     breaks = tuple(_halved(begin, end, curve, shortest) for begin, end in zip(begins, ends, strict=True))
-    return Mesh(orbit.mesh.scheme, breaks, events, period)
+    return Mesh(orbit.mesh.scheme, breaks, events, period, orbit.mesh.modes)
 
 
 def _halved(begin: float, end: float, curve: Array, shortest: float) -> Array:

@@ -61,6 +61,9 @@ def orbit_tables(orbits: Sequence[Orbit], layout: Layout) -> Tables:
         "parameters": (("point", "parameter"), _rows([o.parameter for o in orbits], (p,))),
         "period": (("point",), np.array([o.mesh.period for o in orbits], dtype=float)),
         "equilibrium": (("point",), np.array([o.equilibrium for o in orbits], dtype=bool)),
+        "held_count": (("point",), counts([len(o.mesh.modes) for o in orbits])),
+        "held_surface": (("held",), counts([k for o in orbits for k, _ in o.mesh.modes])),
+        "held_mode": (("held",), counts([mode for o in orbits for _, mode in o.mesh.modes])),
         "segment_count": (("point",), counts([len(o.mesh.breaks) for o in orbits])),
         "event_count": (("point",), counts([len(o.mesh.events) for o in orbits])),
         "break_count": (("segment",), counts([len(b) for b in breaks])),
@@ -142,9 +145,18 @@ def _meshes(arrays: Arrays, scheme: Scheme) -> list[Mesh]:
     segments = _spans(arrays["segment_count"], len(breaks))
     tied = _spans(arrays["event_count"], len(events))
     return [
-        Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period))
-        for own, ties, period in zip(segments, tied, arrays["period"], strict=True)
+        Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period), held)
+        for own, ties, period, held in zip(segments, tied, arrays["period"], _held(arrays), strict=True)
     ]
+
+
+def _held(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:
+    """The modes of surfaces that no event node changes; none in files that were written before."""
+    if "held_count" not in arrays:
+        return [()] * len(arrays["period"])
+    both = zip(arrays["held_surface"], arrays["held_mode"], strict=True)
+    pairs = [(int(k), int(mode)) for k, mode in both]
+    return [tuple(pairs[span]) for span in _spans(arrays["held_count"], len(pairs))]
 
 
 def _modes(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:

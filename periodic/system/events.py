@@ -42,7 +42,8 @@ class SurfaceLike(Protocol):
 
     switch: index of its guard s. releases: indices of two further switches (up, down), or None; what is
     STUCK is held where up < 0 < down, goes on as PLUS where up rises to 0, as MINUS where down falls to 0.
-    column: its column in the `side` of `Jumping`, None of a surface that is in none.
+    column: its column in the `side` of `Jumping`, None of a surface that is in none. place: of what may be
+    HELD the index of the parameter that says where, and the weights (n,) of states in its deflection (SI).
     """
 
     @property
@@ -55,6 +56,8 @@ class SurfaceLike(Protocol):
     def releases(self) -> tuple[int, int] | None: ...
     @property
     def column(self) -> int | None: ...
+    @property
+    def place(self) -> tuple[int, tuple[float, ...]] | None: ...
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,7 @@ class Surface:
     switch: int
     releases: tuple[int, int] | None = None
     column: int | None = None
+    place: tuple[int, tuple[float, ...]] | None = None
 
 
 class Resetting(System, Protocol):

@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.jumps.sides import Sided, sided
@@ -38,6 +39,7 @@ class Expressions:
     parameter: ca.SX
     residual: ca.SX
     sided: Sided
+    places: dict[int, tuple[str, tuple[float, ...]]]
     unexcited: ca.SX
     harmonics: tuple[int, ...]
     waves: ca.SX
@@ -84,6 +86,7 @@ def expressed(assembly: Assembly) -> Expressions:
         parameter=packed.parameter,
         residual=residual,
         sided=beside,
+        places=_places(packed, assembly),
         unexcited=ca.substitute(
             packed.scaled(rows, ca.SX.zeros(packed.waves.size1())), packed.phase, ca.SX(0)
         ),
@@ -104,6 +107,18 @@ def expressed(assembly: Assembly) -> Expressions:
         increment=packed.increment,
         moved=ca.substitute(moved, ca.vertcat(*[u.increment for u in unknowns]), packed.increment),
     )
+
+
+def _places(packed: Packed, assembly: Assembly) -> dict[int, tuple[str, tuple[float, ...]]]:
+    """Of what may be held all along the parameter's name, and the weights of scaled states in it (SI)."""
+    found = {}
+    for k, (name, place) in assembly.places_held.items():
+        slope = ca.jacobian(packed.scaled([place]), ca.vertcat(packed.state, packed.parameter))
+        row = np.array(ca.DM(slope)).ravel() if slope.is_constant() else np.zeros(0)
+        if row.size:
+            n = packed.state.numel()
+            found[k] = name, tuple(float(w) for w in -row[:n] / row[n:].min())
+    return found
 
 
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:

@@ -50,6 +50,9 @@ class Surface:
         where up rises to 0, as MINUS where down falls to 0.
     column : int, optional
         Its column in the `side` of equations on given sides; None where they take none.
+    place : (int, tuple of float), optional
+        Of what may be HELD: the index of the parameter that says where, and the weights (n,) of the scaled
+        states in how far it is deflected (SI).
     """
 
     kind: Kind
@@ -57,6 +60,7 @@ class Surface:
     switch: int
     releases: tuple[int, int] | None = None
     column: int | None = None
+    place: tuple[int, tuple[float, ...]] | None = None
 
 
 def surfaces(
@@ -65,6 +69,7 @@ def surfaces(
     jumps: Sequence[int],
     slides: Mapping[int, tuple[int, int]],
     sliders: Container[int] = (),
+    places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -80,6 +85,8 @@ def surfaces(
         Of those along which motions slide, and of sliders, the two releases.
     sliders : container of int
         Those of elastic sliders.
+    places : mapping of int to (int, tuple of float), optional
+        Where they may be held: see `Surface`.
     """
     released = {k for pair in slides.values() for k in pair}
 
@@ -94,7 +101,14 @@ def surfaces(
         return Kind.KINK if plain else Kind.MARKER
 
     return tuple(
-        Surface(kind(k), info.name, k, slides.get(k), jumps.index(k) if k in jumps else None)
+        Surface(
+            kind(k),
+            info.name,
+            k,
+            slides.get(k),
+            jumps.index(k) if k in jumps else None,
+            (places or {}).get(k) if k in slides else None,
+        )
         for k, info in enumerate(switches)
         if k not in released
     )

@@ -264,7 +264,14 @@ class CompiledSystem:
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
-        return surfaces(self.switches, self.resets, self.jumps, self.slides, self.expressions.sliders)
+        e = self.expressions
+        return surfaces(self.switches, self.resets, self.jumps, self.slides, e.sliders, self._places)
+
+    @property
+    def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:
+        """Of what may be held all along, the parameter that says where, and the weights of its deflection."""
+        names = [parameter.name for parameter in self.parameters]
+        return {k: (names.index(name), weights) for k, (name, weights) in self.expressions.places.items()}
 
     @property
     def kinks(self) -> tuple[int, ...]:

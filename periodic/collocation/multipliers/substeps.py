@@ -92,4 +92,6 @@ def divided(orbit: Orbit, counts: NDArray[np.int_]) -> Orbit:
         inner = [np.linspace(a, b, k, endpoint=False) for a, b, k in zip(ends, ends[1:], own, strict=False)]
         breaks.append(np.concatenate([*inner, ends[-1:]]))
         begin += len(own)
-    return transfer(orbit, Mesh(mesh.scheme, tuple(breaks), mesh.events, mesh.period), orbit.phases)
+    return transfer(
+        orbit, Mesh(mesh.scheme, tuple(breaks), mesh.events, mesh.period, mesh.modes), orbit.phases
+    )

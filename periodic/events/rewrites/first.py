@@ -119,7 +119,7 @@ def _ending(
     """The end of one excursion, if it is near."""
     row, unit = excursion.row, excursion.unit
     now, then = (excursion.size(system, orbit) / unit for orbit in (before, after))
-    if row is CORNER and now <= row.least:
+    if then >= now or (row is CORNER and now <= row.least):
         return None
     half = VANISHING * now
     size, last = row.size_below(half), False
@@ -130,7 +130,7 @@ def _ending(
         jump = sliding(system, site.switch)
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now
-        size = LAST if last else size
+        size = min(LAST, half) if last else size
     if then > (max(half, size) if row.power == ROOT and not last else size):
         return None
     final = last or size <= row.least

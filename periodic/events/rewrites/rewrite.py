@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from periodic.correction.change import Beyond, Change
 from periodic.correction.condition import SideCondition
+from periodic.events.heldalong import all_along
 from periodic.events.modes import releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
@@ -129,7 +130,9 @@ class Ends:
                 events, phases = rewritten(orbit, chosen, self.size)
                 mesh = self._mesh(orbit, events, phases)
                 held = self._held(system, orbit, own, events, phases)
-                yield Beyond(mesh, phases, held, own.row.touches)
+                modes, parameter = all_along(system, orbit, events)
+                mesh = replace(mesh, modes=modes)
+                yield Beyond(mesh, phases, held, own.row.touches, parameter=parameter)
 
     def _alike(self, system: System, orbit: Orbit, own: Site) -> list[Site]:
         """What ends of the same row, as small as this."""

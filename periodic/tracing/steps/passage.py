@@ -154,7 +154,8 @@ def _onward(before: Solution, after: Solution) -> bool:
 def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
     """The orbit beyond a change on one way, if there is one near."""
     problem, old = solver.problem, at.end.orbit
-    for guess in solver.transfers(old, way.mesh, way.phases):
+    moved = old if way.parameter is None else replace(old, parameter=way.parameter)
+    for guess in solver.transfers(moved, way.mesh, way.phases):
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
         if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
