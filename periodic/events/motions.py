@@ -18,7 +18,18 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import HELD, STUCK, Followed, Happened, Kind, Moving, SurfaceLike, System, surfaces_of
+from periodic.system import (
+    HELD,
+    STUCK,
+    Followed,
+    Happened,
+    Kind,
+    Moving,
+    SurfaceLike,
+    System,
+    linear_of,
+    surfaces_of,
+)
 
 PER_PERIOD, LEAST = 60, 4
 """Intervals in a period, and in the shortest segment."""
@@ -89,6 +100,18 @@ def orbit_of(
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
     return _on(system, mesh, phases, state, algebraic, parameter, tolerance)
+
+
+def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
+    """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
+
+    It may violate its word: that of the motion does not. Raises what the integration raises.
+    """
+    if not hasattr(system, "motion") or linear_of(system) or orbit.mesh.period != FORCED:
+        return None
+    at = np.zeros(1)
+    state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
+    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance)
 
 
 def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
