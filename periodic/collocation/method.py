@@ -23,9 +23,9 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
 from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
-from periodic.correction.outcome import EventsCrossedError, Outcome
+from periodic.correction.outcome import FAILURES, EventsCrossedError, Outcome
 from periodic.correction.problem import Problem
-from periodic.events import impacts, tying
+from periodic.events import impacts, motions, tying
 from periodic.events.modes import completed, group, of_held
 from periodic.events.noderows import event_rows
 from periodic.events.rewrites.first import first_change
@@ -55,6 +55,9 @@ WRONG = {
     Breach.REVERSED: Outcome.EVENTS_CROSSED,
 }
 """What an orbit that violates its word so is refused as, the first of them."""
+
+FOLLOWED = 1e-8
+"""Tolerance with which motions are followed in time for their events."""
 
 SHALLOWER = (10.0, 100.0)
 """How much shallower event nodes are tried where a new mesh fails."""
@@ -251,6 +254,14 @@ class Collocation(Discretisation):
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
         return first_change(system, before, after, self.shortest)
+
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return a guess with the events of the orbit's own motion, where that can be followed."""
+        try:
+            told = motions.followed(system, orbit, FOLLOWED)
+        except FAILURES:
+            return None
+        return None if told is None else self.guess(system, told.parameter, told)
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""

@@ -235,6 +235,23 @@ class Discretisation(Protocol):
         """
         return self
 
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return an orbit with the events of its own motion, followed in time through its period.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            An orbit, or a guess of one, whose events may not be those of its motion.
+
+        Returns
+        -------
+        Orbit or None
+            A guess; None where the motion cannot be followed, or nothing tells more than the orbit does.
+        """
+        return None
+
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return a converged correction with its fundamental matrices, or as failed where it is spurious.
 

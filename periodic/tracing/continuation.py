@@ -28,6 +28,7 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
+from periodic.tracing.rereading import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
 from periodic.tracing.steps.passage import Reached, crossed, standing
@@ -242,6 +243,10 @@ class Continuation:
         while self.state.steps + 1 < self.control.max_points:
             step = self._taken(base)
             if step is None:
+                if self._reread(self.state.last):
+                    yield self.collected[-1]
+                    base = self._prepared(self.state.last)
+                    continue
                 yield self._emitted(base, Label.FAILED)
                 return
             for special in step.special:
@@ -355,8 +360,28 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
+        elif self._reread(at.end):
+            yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
+
+    def _reread(self, base: Solution) -> bool:
+        """Go on beyond a change that no rewrite is for, to an orbit whose word its own motion tells."""
+        assert self.state is not None
+        found = reread(self.solver, base, self.control.ds)
+        if found is None:
+            return False
+        self.stop = None
+        for label in at_once(base, found.solution):
+            self._counted(label.value)
+            self._emitted(found.solution, label)
+        self._emitted(found.solution, Label.NONE)
+        ds = min(max(found.distance, self.control.ds_min), self.control.ds)
+        kept, last = len(self.collected), found.solution
+        self.state = replace(
+            self.state, last=last, ds=ds, kept=kept, steps=self.state.steps + 1, course=Course()
+        )
+        return True
 
     def _completed(self, step: Step) -> None:
         """Keep a step: its end becomes the last solution."""

@@ -8,7 +8,6 @@ import numpy as np
 
 from periodic.condensed import settling as condensed
 from periodic.correction.outcome import FAILURES
-from periodic.events import motions
 from periodic.events.motions import orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -54,14 +53,6 @@ def settled(system: System, start: Orbit) -> Orbit | None:
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None
-
-
-def followed(system: System, orbit: Orbit) -> Orbit | None:
-    """Return an orbit with the word of its motion, followed through a period; None where it cannot be."""
-    try:
-        return motions.followed(system, orbit, TOLERANCE)
-    except FAILURES:
-        return None
 
 
 def held(system: System, motion: Orbit) -> list[str]:

@@ -17,19 +17,14 @@ from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
 from periodic.system import linear_of, slides_of
-from periodic.tracing import settling
+from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
+from periodic.tracing.rereading import worded
 from periodic.tracing.resting import resting
 from periodic.tracing.settling import held, settled
 
-COLLAPSED = 0.1
-"""An orbit that is so much smaller than its guess is not what was guessed."""
-
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
-
-REREAD = 5
-"""How often the word of a first orbit that violates it is read from its own motion."""
 
 ASIDE = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
@@ -111,7 +106,7 @@ class Start:
             if self.shortfall:
                 return first
         for orbit in others:
-            if orbit is not None and (last := self._worded(orbit, sign)).ok:
+            if orbit is not None and (last := worded(self.solver, orbit, sign)).ok:
                 return last
         return first
 
@@ -181,18 +176,6 @@ class Start:
     def _fixed(self, guess: Orbit, sign: float) -> Solution:
         return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)
 
-    def _worded(self, guess: Orbit, sign: float) -> Solution:
-        """The orbit near a motion; where it violates its word, that is read from its own motion again."""
-        system, found = self.solver.problem.system, self._fixed(guess, sign)
-        for _ in range(REREAD):
-            if not found.ok or np.isfinite(found.error.motion):
-                break
-            told = settling.followed(system, found.orbit)
-            if told is None:
-                break
-            found = self._fixed(self.solver.discretisation.guess(system, told.parameter, told), sign)
-        return found
-
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
         """Find the first orbit by that of another discretisation; None where there is none."""
         solver, system = self.solver, self.solver.problem.system
@@ -252,8 +235,3 @@ class Start:
     def _adopted(solver: Solver, orbit: Orbit) -> Orbit:
         """An orbit as a guess in the solver's discretisation."""
         return solver.discretisation.guess(solver.problem.system, orbit.parameter, orbit)
-
-
-def collapsed(guess: Orbit, found: Solution) -> bool:
-    """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
-    return found.problem.autonomous and found.orbit.span() < COLLAPSED * guess.span()

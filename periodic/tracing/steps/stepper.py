@@ -18,7 +18,7 @@ from periodic.correction.refinement import carried, is_refined, refined, remeshe
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
-from periodic.tracing.start import collapsed
+from periodic.tracing.collapse import collapsed
 from periodic.tracing.steps.passage import Reached, reached
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.steps.strain import strains
