@@ -10,7 +10,7 @@ its limit, the Coulomb joints being loose; a Coulomb joint where what holds it, 
 the sliders stuck, would exceed its own. The first joint has 0.2 to 0.6 of the smaller of both ends of the
 range, so that it slips all along if the others leave it what it would have alone; the others have the same
 in three models of five, else anything between 0.2 of that and 0.8 of the largest in the range, so that some
-of them are held in parts of it.
+of them are held in parts of it. Where at an end of the range all could stick, all limits are made smaller.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import scipy
 from numpy.typing import NDArray
 from reference.joints.model import Coulomb, Cubic, Joint, Jointed, Slider, Stop
 
+import periodic as per
 import symbolic as sym
 
 Array = NDArray[np.float64]
@@ -37,12 +38,17 @@ SHARES = (0.3, 0.3, 0.15, 0.25)
 LOOSE = 0.6
 """Share of the models in which all joints are to slip throughout the range."""
 
+UP, DOWN = "joints", "joints down"
+"""What the survey calls the models traced from the lower and from the upper end of their ranges."""
+
+CREEP: float | None = None
+"""Of sliders: they are exact."""
+
 SLIDERS = ("jenkins", "iwan")
 
 Links = tuple[tuple[int, int | None, float, float], ...]
 
 STIFFNESS = {
-    "coulomb": (1.0, 1.0),
     "jenkins": (0.1, 1.0),
     "iwan": (0.1, 1.0),
     "stop": (1.0, 1e3),
@@ -52,6 +58,9 @@ STIFFNESS = {
 
 MOST = 2.0
 """What an amplitude counts for at the most, in parts of that at the ends: joints take it away."""
+
+NEEDED = 1.5
+"""Of the limits, what at least one joint would have to carry at either end if all were to stick there."""
 
 FREQUENCIES = 80
 """At which the linear response is looked at."""
@@ -104,6 +113,18 @@ class JointModel:
         low, high = self.bounds
         joints = "; ".join(_said(a) for a in self.attached)
         return f"joints {self.seed}: {body}, {joints}; Omega {low:.4f} to {high:.4f}"
+
+    @property
+    def sliders(self) -> list[str]:
+        """What the places of sliders are called in the model of parts."""
+        found = []
+        for a in self.attached:
+            between = f"q{a.i}" if a.to is None else f"q{a.i} - q{a.to}"
+            if a.kind == "jenkins":
+                found.append(f"z of {between}")
+            elif a.kind == "iwan":
+                found += [f"z{k} of {between}" for k in range(1, len(a.limits) + 1)]
+        return found
 
     def row(self, i: int, to: int | None) -> Array:
         """u = q_i - q_to as a row."""
@@ -262,7 +283,30 @@ def _sized(random: Random, model: JointModel) -> JointModel:
         _given(random, a, (holds if a.kind == "coulomb" else swings)[:, k], loose or k == 0)
         for k, a in enumerate(model.attached)
     ]
-    return replace(model, bounds=(low, high), attached=tuple(sized))
+    return _slipping(replace(model, bounds=(low, high), attached=tuple(sized)), stuck)
+
+
+def _slipping(model: JointModel, stuck: Array) -> JointModel:
+    """The model with smaller limits, so that not all that sticks can do so at an end of the range."""
+    least = min(_needed(model, stuck, Omega) for Omega in model.bounds)
+    part = min(1.0, least / NEEDED)
+    each = [replace(a, limits=tuple(part * limit for limit in a.limits)) for a in model.attached]
+    return replace(model, attached=tuple(each))
+
+
+def _needed(model: JointModel, stuck: Array, Omega: float) -> float:
+    """The largest of the forces in the joints, none of them slipping, over its limit."""
+    held = [a for a in model.attached if a.kind == "coulomb"]
+    rows = np.array([model.row(a.i, a.to) for a in held]).reshape(-1, len(stuck))
+    dynamic = stuck + 1j * Omega * model.damping - Omega**2 * model.mass
+    whole = np.block([[dynamic, rows.T], [rows, np.zeros((len(held), len(held)))]])
+    force = model.force * model.row(model.forced, None)
+    swing, forces = np.split(np.linalg.solve(whole, np.append(force, np.zeros(len(held)))), [len(stuck)])
+    parts = [float(abs(size) / a.limits[0]) for size, a in zip(forces, held, strict=True)]
+    for a in model.attached:
+        if a.kind in SLIDERS:
+            parts.append(float(a.stiffness * abs(model.row(a.i, a.to) @ swing) / sum(a.limits)))
+    return max(parts)
 
 
 def _given(random: Random, a: Attached, seen: Array, loose: bool) -> Attached:
@@ -300,13 +344,47 @@ def _log(random: Random, low: float, high: float) -> float:
     return float(np.exp(random.uniform(math.log(low), math.log(high))))
 
 
-def compiled(model: JointModel, creep: float | None = None) -> sym.CompiledSystem:
-    """The model of parts; sliders are exact, or creep."""
+@dataclass(frozen=True)
+class JointCase:
+    """What is traced in Omega, from where, and the same in numbers for the judge; `told` says it in words."""
+
+    system: sym.CompiledSystem
+    exact: Jointed
+    bounds: tuple[float, float]
+    start: float
+    model: JointModel
+
+    @property
+    def told(self) -> str:
+        """The model in words."""
+        return f"{self.model.told} from {self.start:.4f}"
+
+    def states(self, orbit: per.Orbit, taus: Array) -> Array:
+        """(q, q', places of sliders) at phases, shape (len(taus), states), in SI."""
+        times = taus / orbit.omega
+        if self.model.beam:
+            found = list(per.motion(self.system, orbit, None, taus))
+        else:
+            names = [f"q{k}" for k in self.model.places]
+            found = [np.array([orbit[f"{name}{dot}"](times) for name in names]).T for dot in ("", "'")]
+        places = [orbit[name](times) for name in self.model.sliders]
+        return np.column_stack([*found, *places])
+
+
+def drawn_joints(kind: str, seed: int) -> JointCase:
+    """Return the case of a seed: from the lower end of its range, or from the upper one ("joints down")."""
+    model = joint_model(seed)
+    start = model.bounds[kind == DOWN]
+    return JointCase(compiled(model), model.record(), model.bounds, start, model)
+
+
+def compiled(model: JointModel) -> sym.CompiledSystem:
+    """The model of parts."""
     names, parts = count(), list[sym.Part]()
     coordinates = _coordinates(model, parts, names)
     for a in model.attached:
         q, to = coordinates[a.i], None if a.to is None else coordinates[a.to]
-        parts.append(_part(a, q, to, creep, names))
+        parts.append(_part(a, q, to, names))
     parts.append(sym.HarmonicForce(coordinates[model.forced], _value(names, "f", model.force)))
     return sym.compile(sym.combine(parts))
 
@@ -323,7 +401,7 @@ def _coordinates(model: JointModel, parts: list[sym.Part], names: Iterator[int])
         structure = sym.Structure(model.mass, model.damping, model.stiffness, at=at)
         parts.append(structure)
         return [structure[name] for name in at]
-    found = [sym.coordinate(f"q{k}") for k in model.places]
+    found = [sym.coordinate(f"q{k}") for k in range(len(model.places))]
     parts += [sym.Mass(q, _value(names, "m", m)) for q, m in zip(found, np.diag(model.mass), strict=True)]
     for i, to, k, c in model.links:
         values = _value(names, "k", k), _value(names, "c", c)
@@ -334,9 +412,7 @@ def _coordinates(model: JointModel, parts: list[sym.Part], names: Iterator[int])
     return found
 
 
-def _part(
-    a: Attached, q: sym.Coordinate, to: sym.Coordinate | None, creep: float | None, names: Iterator[int]
-) -> sym.Part:
+def _part(a: Attached, q: sym.Coordinate, to: sym.Coordinate | None, names: Iterator[int]) -> sym.Part:
     limits = [_value(names, "F", limit) for limit in a.limits]
     if a.kind == "coulomb":
         return sym.CoulombFriction(q, limits[0], to=to)
@@ -346,5 +422,5 @@ def _part(
     if a.kind == "cubic":
         return sym.CubicSpring(q, k, to=to)
     if a.kind == "jenkins":
-        return sym.Jenkins(q, k, limits[0], to=to, creep=creep)
-    return sym.Iwan(q, k, limits, to=to, creep=creep)
+        return sym.Jenkins(q, k, limits[0], to=to, creep=CREEP)
+    return sym.Iwan(q, k, limits, to=to, creep=CREEP)
