@@ -22,12 +22,32 @@ from periodic.system.equations import (
     check_value,
     index_of,
 )
-from periodic.system.events import Jumping, Resetting, check_continuous, jumps_of, resets_of, slides_of
+from periodic.system.events import (
+    MINUS,
+    PLUS,
+    STUCK,
+    Guarded,
+    Jumping,
+    Kind,
+    Resetting,
+    Surface,
+    SurfaceLike,
+    check_continuous,
+    guards,
+    guards_gradient,
+    jumps_of,
+    resets_of,
+    slides_of,
+    surfaces_of,
+)
 from periodic.system.motion import Flowing, FlowLike, Moving, TrajectoryLike
 from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
 
 __all__ = [
+    "MINUS",
+    "PLUS",
+    "STUCK",
     "Array",
     "Checked",
     "Compiling",
@@ -37,13 +57,17 @@ __all__ = [
     "FlowLike",
     "Flowing",
     "GradientLike",
+    "Guarded",
     "Jumping",
+    "Kind",
     "LinearPart",
     "LinearisationLike",
     "ModesLike",
     "Moving",
     "Resetting",
     "Split",
+    "Surface",
+    "SurfaceLike",
     "SwitchLike",
     "System",
     "Timed",
@@ -59,9 +83,12 @@ __all__ = [
     "frequency_factor_of",
     "frequency_held_of",
     "frequency_of",
+    "guards",
+    "guards_gradient",
     "index_of",
     "jumps_of",
     "linear_of",
     "resets_of",
     "slides_of",
+    "surfaces_of",
 ]

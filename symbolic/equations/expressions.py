@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.jumps.sides import Sided, sided
+from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
-from symbolic.equations.sides import Sided, sided
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,9 @@ class Expressions:
     """The scaled symbolic system.
 
     `waved` are residual and outputs in terms of the symbols `waves` of the excitation, sin(k tau) and
-    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `moved` is
-    where an `increment` takes the unknowns.
+    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `guards`
+    are the switches on given sides of the jumps, `switches` those where the state decides. `moved` is where
+    an `increment` takes the unknowns.
     """
 
     rate: ca.SX
@@ -43,6 +45,8 @@ class Expressions:
     frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
+    guards: ca.SX
+    sliders: dict[int, Held]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -67,7 +71,10 @@ def expressed(assembly: Assembly) -> Expressions:
     residual = both[: len(rows)]
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
-    beside = sided(packed, residual, switches, resets, telling)
+    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders))
+    guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
+    first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
+    beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -84,7 +91,9 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=ca.vertcat(switches, *(s for _, *both in beside.slides for s in both)),
+        switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
+        guards=guards,
+        sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

@@ -12,7 +12,7 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
-from symbolic.equations.sides import STUCK
+from symbolic.equations.surfaces import STUCK
 from symbolic.integration.events import Event, Value
 from symbolic.integration.lsoda import Rates
 

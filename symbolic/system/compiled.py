@@ -14,6 +14,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
+from symbolic.equations.surfaces import Kind, Surface, surfaces
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
@@ -253,17 +254,22 @@ class CompiledSystem:
 
     @property
     def slides(self) -> dict[int, tuple[int, int]]:
-        """Of each jump along which motions can slide, the switches at which that ends."""
+        """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""
         switches = [k for k, *_ in self.expressions.sided.slides]
         first = len(self.switches) - 2 * len(switches)
-        return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found |= {k: held.releases for k, held in self.expressions.sliders.items()}
+        return dict(sorted(found.items()))
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """What happens where the switches vanish; each of them belongs to one surface."""
+        return surfaces(self.switches, self.resets, self.jumps, self.slides, self.expressions.sliders)
 
     @property
     def kinks(self) -> tuple[int, ...]:
         """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
-        jumping = {*self.resets, *self.jumps, *(k for pair in self.slides.values() for k in pair)}
-        each = ((k, s) for k, s in enumerate(self.switches) if k not in jumping)
-        return tuple(k for k, s in each if s.levels == (0.0,) and s.direction == 0)
+        return tuple(surface.switch for surface in self.surfaces if surface.kind == Kind.KINK)
 
     def linearise_beside(
         self,
@@ -315,21 +321,36 @@ class CompiledSystem:
             self._generated.output(rate, state, algebraic, phase, parameter, result)
         return result
 
-    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
-        """Return the switch functions, shape (N, switches)."""
+    @cached_property
+    def guards_depend(self) -> bool:
+        """Whether switches depend on the sides of jumps, as where a joint slips does on its neighbours."""
+        e = self.expressions
+        return bool(ca.depends_on(e.guards, e.sided.side)) if self.jumps else False
+
+    def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array:
+        """Return the switch functions, shape (N, switches), on sides (N, jumps) of the jumps if given."""
         result = np.zeros((len(phase), len(self.switches)))
         with np.errstate(all="ignore"):
-            self._generated.switch(state, phase, parameter, result)
+            if side is None or not self.guards_depend:
+                self._generated.switch(state, phase, parameter, result)
+            else:
+                self._generated.guards(state, phase, parameter, side, result)
         return result
 
-    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+    def switch_gradient(
+        self, state: Array, phase: Array, parameter: Array, side: Array | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return derivatives in state (N, switches, n), phase (N, switches), parameters (N, switches, p)."""
         count, k = len(phase), len(self.switches)
         d_state = np.zeros((count, k, len(self.states)))
         d_phase = np.zeros((count, k))
         d_parameter = np.zeros((count, k, len(self.parameters)))
+        columns = _columns(d_state, d_phase, d_parameter)
         with np.errstate(all="ignore"):
-            self._generated.switch_gradient(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+            if side is None or not self.guards_depend:
+                self._generated.switch_gradient(state, phase, parameter, *columns)
+            else:
+                self._generated.guards_gradient(state, phase, parameter, side, *columns)
         return d_state, d_phase, d_parameter
 
     @property

@@ -87,6 +87,20 @@ class Generated:
         return self._built(self._at_states, self._along_states(self.expressions.switches))
 
     @cached_property
+    def guards(self) -> Kernel:
+        """The switches of (state, phase, parameter, side), where they depend on the sides of jumps."""
+        return self._built([*self._at_states, self._side], [self.expressions.guards])
+
+    @cached_property
+    def guards_gradient(self) -> Kernel:
+        """Their derivatives in state, phase and parameter."""
+        return self._built([*self._at_states, self._side], self._along_states(self.expressions.guards))
+
+    @property
+    def _side(self) -> Argument:
+        return batch(self.expressions.sided.side, "side")
+
+    @cached_property
     def resets(self) -> dict[int, Kernel]:
         """By switch: the states after its event, of (state, phase, parameter)."""
         return {k: self._built(self._at_states, [after]) for k, after in self.expressions.resets.items()}
@@ -126,7 +140,7 @@ class Generated:
         """Rows to be differentiated, and the arguments that they take beside the usual ones."""
         e = self.expressions
         if name == "beside":
-            return e.sided.residual, (batch(e.sided.side, "side"),)
+            return e.sided.residual, (self._side,)
         return {"residual": e.residual, "outputs": e.outputs}[name], ()
 
     @property

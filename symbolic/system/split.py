@@ -286,6 +286,7 @@ class _Split:
             waved=waved,
             outputs=shown,
             switches=ca.substitute(e.switches, e.state, full_state),
+            guards=ca.substitute(e.guards, e.state, full_state),
             rest_state=e.rest_state[[int(k) for k in self.places]],
             rest_algebraic=ca.vertcat(e.rest_algebraic, ca.SX.zeros(len(self.rows))),
             increment=increment,

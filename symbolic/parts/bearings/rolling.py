@@ -14,13 +14,13 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.excitation import Order, order_of
 from symbolic.equations.interval import POSITIVE, Interval
 from symbolic.equations.model import Part
-from symbolic.equations.rest import steady_force
 from symbolic.equations.variables import Coordinate, Value, apart
 from symbolic.parts.bearings.ranked import ranked
 from symbolic.parts.bearings.squeezed import SqueezedElements
 from symbolic.parts.bearings.waves import RaceWave, Turns
 from symbolic.parts.contact.law import ContactLaw, lawful
 from symbolic.parts.films.series import SeriesFilm
+from symbolic.parts.rest import steady_force
 from symbolic.sketch import at
 
 NEAR = 0.02

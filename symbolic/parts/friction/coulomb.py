@@ -49,4 +49,5 @@ class CoulombFriction(Part):
         resist(assembly, self.q, self.to, force * ca.sign(rate))
         scale = assembly.omega * assembly.motion(self.q).position.scale
         between = self.q.name if self.to is None else f"({self.q.name} - {self.to.name})"
-        assembly.switch(f"d{between}/dt = 0", rate / scale, 0)
+        if f"d{between}/dt = 0" not in [info.name for info, _ in assembly.switches]:
+            assembly.switch(f"d{between}/dt = 0", rate / scale, 0)

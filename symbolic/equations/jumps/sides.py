@@ -7,7 +7,6 @@ jump the equations get a number: 1 for s > 0, -1 for s < 0, 0 where the state de
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -15,14 +14,13 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
+from symbolic.equations.jumps.operations import Operations
+from symbolic.equations.jumps.sliding import Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
 
 ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
-
-STUCK = 2
-"""Value of the side of a jump along which the motion slides."""
 
 CLOSE = 1e-10
 """Value of a switch that is as good as 0."""
@@ -33,20 +31,26 @@ EQUAL = 1e-8
 
 @dataclass(frozen=True)
 class Sided:
-    """The residual with sides: a symbol each for the switches with the indices `jumps`.
+    """The residual with sides: a symbol each for the switches with the indices `jumps`, among them sliders.
 
     slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
-    positive side and on the negative one; between them the motion is held.
+    positive side and on the negative one, the other jumps on their given sides; between them the motion is
+    held.
     """
 
     residual: ca.SX
     side: ca.SX
     jumps: tuple[int, ...]
-    slides: tuple[tuple[int, ca.SX, ca.SX], ...] = ()
+    slides: tuple[Slide, ...] = ()
 
 
 def sided(
-    packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...], moving: ca.SX | None = None
+    packed: Packed,
+    residual: ca.SX,
+    switches: ca.SX,
+    excluded: tuple[int, ...],
+    moving: ca.SX | None = None,
+    sliders: tuple[int, ...] = (),
 ) -> Sided:
     """Return a residual with the side of every jump as an argument.
 
@@ -60,66 +64,27 @@ def sided(
         Switches that are no jumps of the equations: impacts.
     moving : casadi.SX, optional
         Rows that tell all rates, where those of the residual do not.
+    sliders : tuple of int
+        Switches that have a side besides.
 
     Returns
     -------
     Sided
         With no sides where nothing jumps.
     """
-    found = _owned(packed, residual, switches, excluded)
-    every = sorted({k for _, k, _ in found.values()})
-    side = ca.SX.sym("side", len(every))
-    names = {k: side[i] for i, k in enumerate(every)}
-    branches = {node: _branch(*given, names) for node, given in found.items()}
+    rows = residual if moving is None else ca.vertcat(residual, moving)
     count = residual.numel()
-    rows = _rebuilt(residual if moving is None else ca.vertcat(residual, moving), branches)
-    telling = slice(0 if moving is None else count, rows.numel())
-    marked = rows[:count]
+    operations = Operations(rows, _owned(packed, residual, switches, (*excluded, *sliders)))
+    every = operations.switches
+    side = ca.SX.sym("side", len(every))
+    marked = operations.on({k: side[i] for i, k in enumerate(every)})[:count]
     jumps = [k for i, k in enumerate(every) if _jumps(packed, marked, side, i, switches[k])]
-    kept = ca.SX.sym("side", len(jumps))
-    values = [kept[jumps.index(k)] if k in jumps else ca.SX(0) for k in every]
-    rows = ca.substitute(rows, side, ca.vertcat(ca.SX(0, 1), *values))
-    slides = []
-    for i, k in enumerate(jumps):
-        sliding = _sliding(packed, rows, telling, kept, i, switches[k])
-        if sliding is not None:
-            slides.append((k, *sliding[1:]))
-            rows = ca.if_else(kept[i] == STUCK, sliding[0], rows)
-    return Sided(rows[:count], kept, tuple(jumps), tuple(slides))
-
-
-def _sliding(
-    packed: Packed, rows: ca.SX, telling: slice, side: ca.SX, index: int, switch: ca.SX
-) -> tuple[ca.SX, ca.SX, ca.SX] | None:
-    """The rows M x' + g0 + sigma g1 of sliding, and s' on either side; None where nothing slides.
-
-    On the sides themselves they are M x' + g0 + g1 and M x' + g0 - g1. sigma keeps s_x x' + s_tau at 0, x'
-    being what the `telling` rows say; it must not depend on the sides of other jumps.
-    """
-    rate = packed.rate
-    if not rows.numel() or ca.depends_on(rows[telling], packed.unknown):
-        return None
-    mass = ca.jacobian(rows, rate)
-    if ca.depends_on(mass, ca.vertcat(side, rate)):
-        return None
-    still = ca.substitute(rows, rate, ca.SX.zeros(rate.numel()))
-    above, below = (_with(still, side, index, value) for value in (1, -1))
-    mean, half = (above + below) / 2, (above - below) / 2
-    by_state, by_phase = ca.jacobian(switch, packed.state), ca.jacobian(switch, packed.phase)
-    pushed, pulled = (by_state @ ca.solve(mass[telling, :], g[telling]) for g in (mean, half))
-    # Both sides lead back to the jump where s' falls by this from one to the other.
-    if ca.depends_on(pulled, side) or not all(row.min() > EQUAL for row in Samples(packed).rows(pulled)[0]):
-        return None
-    slope = by_phase - pushed
-    if ca.depends_on(slope, side):
-        return None
-    return mass @ rate + mean + slope / pulled * half, slope - pulled, slope + pulled
-
-
-def _with(expression: ca.SX, side: ca.SX, index: int, value: int) -> ca.SX:
-    """An expression on one side of one jump."""
-    given = [ca.SX(value) if i == index else side[i] for i in range(side.numel())]
-    return ca.substitute(expression, side, ca.vertcat(*given))
+    columns = sorted({*jumps, *sliders})
+    kept = ca.SX.sym("side", len(columns))
+    sides = {k: kept[columns.index(k)] if k in jumps else ca.SX(0) for k in every}
+    telling = slice(0 if moving is None else count, rows.numel())
+    slid, slides = sliding(packed, operations, sides, jumps, switches, telling)
+    return Sided(slid[:count], kept, tuple(columns), slides)
 
 
 def _owned(
@@ -142,36 +107,6 @@ def _owned(
                 found[node.element_hash()] = (node, k, float(np.sign(np.nanmedian(ratio))))
                 break
     return found
-
-
-def _branch(node: ca.SX, switch: int, sign: float, sides: Mapping[int, ca.SX]) -> ca.SX:
-    """What an operation is on a side of its switch, itself where the side is 0."""
-    side = sides[switch]
-    known = sign * side if node.op() == ca.OP_SIGN else sign * side < 0
-    return ca.if_else(side == 0, node, known)
-
-
-def _rebuilt(rows: ca.SX, replaced: Mapping[int, ca.SX]) -> ca.SX:
-    """Return expressions with some of their operations replaced."""
-    if not replaced:
-        return rows
-    new: dict[int, ca.SX] = {}
-
-    def of(node: ca.SX) -> ca.SX:
-        return node if node.is_leaf() else new[node.element_hash()]
-
-    for node in nodes(rows):
-        key = node.element_hash()
-        parts = [of(node.dep(i)) for i in range(node.n_dep())]
-        if key in replaced:
-            new[key] = replaced[key]
-        elif all(a.element_hash() == node.dep(i).element_hash() for i, a in enumerate(parts)):
-            new[key] = node
-        elif len(parts) == 1:
-            new[key] = ca.SX.unary(node.op(), *parts)
-        else:
-            new[key] = ca.SX.binary(node.op(), *parts)
-    return ca.vertcat(*[of(rows[i]) for i in range(rows.numel())])
 
 
 def _jumps(packed: Packed, marked: ca.SX, side: ca.SX, index: int, switch: ca.SX) -> bool:
