@@ -166,7 +166,7 @@ def verdicts(case: Case | JointCase, branch: per.Branch, seed: int, count: int =
 def _verdict(case: Case | JointCase, point: per.Point) -> Verdict:
     if isinstance(case, Case):
         return judged(case.exact, point, case.names)
-    return judged_joints(case.exact, point, case.states, not case.model.beam)
+    return judged_joints(case.exact, point, case.states)
 
 
 def read(files: list[Path]) -> dict[tuple[str, int], Row]:

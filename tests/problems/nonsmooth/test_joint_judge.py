@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,14 @@ from numpy.typing import NDArray
 from reference.contact import Contact, Friction
 from reference.contact import Stop as ElasticStop
 from reference.contact import periodic as of_contact
+from reference.joints.judging import judged
 from reference.joints.model import Coulomb, Cubic, Jointed, Slider, Stop
 from reference.joints.period import Follower, peak_to_peak, periodic, settled
 from reference.joints.series import ORDER, first_below
 from scipy.integrate import solve_ivp
-from support.drawn.joints import joint_model
+from support.drawn.joints import Attached, JointCase, beam, compiled, joint_model
+
+import periodic as per
 
 Array = NDArray[np.float64]
 ONE, TWO = np.eye(1), np.eye(2)
@@ -223,6 +227,20 @@ def test_first_zero(depth: float) -> None:
         assert found == pytest.approx(0.3 - np.sqrt(depth), abs=1e-8)
     else:
         assert found is None
+
+
+def test_points_of_a_beam_are_judged() -> None:
+    """Assert orbits and multipliers of a condensed beam with friction at its tip."""
+    body = beam(np.random.default_rng(1), 0)
+    tip = len(body.places) - 1
+    friction = Attached(kind="coulomb", i=tip, to=None, limits=(0.2,))
+    model = replace(body, attached=(friction,), forced=tip, bounds=(2.8, 2.85))
+    case = JointCase(compiled(model), model.record(), model.bounds, 2.8, model)
+    branch = per.trace(case.system, "Omega", (2.8, 2.85), tol=1e-6)
+    for point in (branch[0], branch[-1]):
+        verdict = judged(case.exact, point, case.states)
+        assert verdict.wrong(point, 1e-6) == ""
+        assert len(verdict.found.events) >= 2
 
 
 def test_models_are_drawn() -> None:

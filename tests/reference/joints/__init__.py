@@ -4,8 +4,7 @@ model    matrices, joints, and what a mode of the joints makes of them
 series   pieces of a motion by Taylor's series, and the first zero of what stays positive in a mode
 modes    which mode follows an event, several joints at once where they turn together
 period   the map over a period with its monodromy matrix; its fixed points; where motions settle
-
-They share nothing with `symbolic` and `periodic`; an integrator takes no part.
+judging  points of branches against them; the others share nothing with `symbolic` and `periodic`
 """
 
 from __future__ import annotations

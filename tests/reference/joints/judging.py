@@ -15,16 +15,14 @@ PHASES = 80
 """At which it is seen how far the joints are from a change, at the most."""
 
 LEADING = 0.1
-"""Multipliers of that modulus are compared where a condensed system has not all of them."""
+"""Multipliers of that modulus are compared where a point has not all of them."""
 
 
-def judged(
-    exact: Jointed, point: per.Point, states: Callable[[per.Orbit, Array], Array], all_of_them: bool = True
-) -> Verdict:
+def judged(exact: Jointed, point: per.Point, states: Callable[[per.Orbit, Array], Array]) -> Verdict:
     """Follow a point's orbit over a period from where its joints are farthest from a change.
 
     Where joints hold all along the orbit nearest to it is sought: what they hold is not determined.
-    `states` gives (q, q', s) in SI; a condensed system has its leading multipliers.
+    `states` gives (q, q', s) in SI.
     """
     orbit, follower = point.orbit, Follower(exact, point.parameter)
     tau, begin = quiet(follower, orbit, states)
@@ -38,7 +36,7 @@ def judged(
         found = again if least > BESIDE else found
     else:
         off = float(np.abs(found.end - found.start).max()) / found.growth
-    apart = _apart(found, point, all_of_them)
+    apart = _apart(found, point)
     moduli = np.abs(found.multipliers)
     near = np.abs(np.concatenate([moduli, np.abs(point.multipliers)]) - 1).min() < CIRCLE + apart
     near = near or point.label in (per.Label.FOLD, per.Label.DOUBLING, per.Label.TORUS)
@@ -46,12 +44,11 @@ def judged(
     return Verdict(off / size, apart, stable, found.growth, found)
 
 
-def _apart(found: Period, point: per.Point, all_of_them: bool) -> float:
+def _apart(found: Period, point: per.Point) -> float:
     """How far the multipliers' polynomials are apart, or each leading one from the next of the other."""
     theirs, own = found.multipliers, np.asarray(point.multipliers)
-    if all_of_them:
-        length = max(len(theirs), len(own))
-        polynomials = [np.poly(np.pad(some, (0, length - len(some)))) for some in (theirs, own)]
+    if len(theirs) == len(own):
+        polynomials = np.poly(theirs), np.poly(own)
         return float(np.abs(polynomials[0] - polynomials[1]).max() / np.abs(polynomials[0]).max())
     pairs = [(theirs, own), (own, theirs)]
     each = [np.abs(a[np.abs(a) > LEADING][:, None] - b).min(axis=1).max(initial=0.0) for a, b in pairs]

@@ -27,6 +27,7 @@ from reference.joints.model import Coulomb, Cubic, Joint, Jointed, Slider, Stop
 
 import periodic as per
 import symbolic as sym
+from periodic.orbit.layout import layout_of
 
 Array = NDArray[np.float64]
 Random = np.random.Generator
@@ -361,6 +362,7 @@ class JointCase:
 
     def states(self, orbit: per.Orbit, taus: Array) -> Array:
         """(q, q', places of sliders) at phases, shape (len(taus), states), in SI."""
+        orbit = orbit.expressed_in(layout_of(self.system))
         times = taus / orbit.omega
         if self.model.beam:
             found = list(per.motion(self.system, orbit, None, taus))
