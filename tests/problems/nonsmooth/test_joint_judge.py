@@ -236,7 +236,9 @@ def test_points_of_a_beam_are_judged() -> None:
     friction = Attached(kind="coulomb", i=tip, to=None, limits=(0.2,))
     model = replace(body, attached=(friction,), forced=tip, bounds=(2.8, 2.85))
     case = JointCase(compiled(model), model.record(), model.bounds, 2.8, model)
-    branch = per.trace(case.system, "Omega", (2.8, 2.85), tol=1e-6)
+    branch = per.trace(
+        case.system, "Omega", (2.8, 2.85), tol=1e-6, control=per.ArclengthControl(max_points=3)
+    )
     for point in (branch[0], branch[-1]):
         verdict = judged(case.exact, point, case.states)
         assert verdict.wrong(point, 1e-6) == ""

@@ -1,7 +1,7 @@
 """Pieces of a motion in one mode, by Taylor's series, and the first zero of a guard.
 
-z(t + x h) = sum_j D_j x^j, 0 <= x <= 1, exact to rounding: h is half of what the fastest mode takes for a
-radian. A guard on the piece is a polynomial, enclosed by its Bernstein coefficients: where they are positive
+z(t + x h) = sum_j D_j x^j, 0 <= x <= 1, exact to rounding: h is what the fastest mode takes for 1.5
+radians. A guard on the piece is a polynomial, enclosed by its Bernstein coefficients: where they are positive
 it is, everywhere on the piece; else the piece is halved until it is decided.
 """
 
@@ -18,6 +18,9 @@ from reference.joints.model import Array, Equations
 
 ORDER = 22
 """Terms of a series."""
+
+LONGEST = 1.5
+"""Length of a piece times the fastest rate: the first term left out of a series is 1.5^22/22! = 7e-18."""
 
 SAMPLES = 24
 """Pieces of a period, at the least."""
@@ -200,7 +203,7 @@ class Curved:
 def step(matrix: Array, Omega: float) -> float:
     """The length h of a piece."""
     fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
-    return float(min(2 * np.pi / Omega / SAMPLES, 0.5 / fastest))
+    return float(min(2 * np.pi / Omega / SAMPLES, LONGEST / fastest))
 
 
 def earliest(polynomials: Array, which: range | Array, small: Array, most: float) -> tuple[int, float] | None:
