@@ -30,7 +30,7 @@ from periodic.events.modes import completed, group, of_held
 from periodic.events.noderows import event_rows
 from periodic.events.rewrites.first import first_change
 from periodic.events.tying import Crossing, KinkSettings
-from periodic.events.violations import Breach, Violation, between_nodes, violations, word
+from periodic.events.violations import Breach, Violation, violations, word
 from periodic.linear.operator import LinearSolver, Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import at_rest, transfer
@@ -369,7 +369,7 @@ class CollocationRefinement(Refinement):
 
 def misplaced(system: System, orbit: Orbit) -> list[Violation]:
     """Return where an orbit slips that should be held, or the reverse."""
-    return [v for v in between_nodes(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
+    return [v for v in violations(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
 
 
 def scheme_for(tolerance: float) -> Scheme:

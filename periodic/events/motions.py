@@ -37,6 +37,9 @@ PER_PERIOD, LEAST = 60, 4
 SAME = 1e-9
 """Events that lie so near to each other (rad) are one."""
 
+APART = 1e-5
+"""How far from each other (rad) events are put that are one in time, but do not bring each other about."""
+
 ASIDE = 1e-10
 """How far beside an event (rad) the motion is looked at, which may jump there."""
 
@@ -45,17 +48,29 @@ def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
     """Return the event nodes of what happened along a motion, with their phases."""
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
-    for _, together in groupby(rows, key=lambda event: round(event.phase / SAME)):
-        each = sorted(together, key=lambda event: _rank(surfaces[event.surface], event))
-        first, modes = each[0], list[tuple[int, int]]()
-        for event in each:
-            own = surfaces[event.surface]
-            if own.kind != Kind.IMPACT and (event is not first or event.after == STUCK):
-                modes.append((own.switch, event.after))
-        surface = surfaces[first.surface]
-        switch, direction = _passage(system, surface, first)
-        found.append((EventNode(switch, direction, modes=tuple(modes)), first.phase))
+    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME)):
+        each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
+        if not _brings_about(system, surfaces[each[0].surface]):
+            for count, event in enumerate(each):  # which of them is first is left open
+                found.append((_node(system, surfaces[event.surface], [event]), event.phase + count * APART))
+            continue
+        found.append((_node(system, surfaces[each[0].surface], each), each[0].phase))
     return found
+
+
+def _brings_about(system: System, surface: SurfaceLike) -> bool:
+    """Whether an event at a surface may bring about others: an impact, and joints that know of each other."""
+    return surface.kind == Kind.IMPACT or getattr(system, "guards_depend", False)
+
+
+def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> EventNode:
+    """The event node of what happens at once, the first of which brings the others about."""
+    surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
+    for event in each:
+        if surfaces[event.surface].kind != Kind.IMPACT and (event is not first or event.after == STUCK):
+            modes.append((surfaces[event.surface].switch, event.after))
+    switch, direction = _passage(system, surface, first)
+    return EventNode(switch, direction, modes=tuple(modes))
 
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:

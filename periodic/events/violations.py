@@ -143,6 +143,26 @@ def largest(dense: SwitchPolynomials, *switches: int) -> float:
     return float(np.abs(dense.knots[:, :, list(switches)]).max()) or 1.0
 
 
+def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> list[Violation]:
+    """What an event node says to happen at once to other surfaces, and does not.
+
+    A joint that another's event tears off is released by the modes after it, and was held by those before.
+    """
+    event, start, found = orbit.mesh.events[index], int(orbit.mesh.starts[index]), list[Violation]()
+    at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
+    for k, mode in event.modes:
+        surface = surface_of(system, k)
+        if k == own.switch or surface.releases is None or surface.column is None:
+            continue
+        up, down = surface.releases
+        before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
+        torn = mode != STUCK and mode * (before[up if mode > 0 else down]) < 0
+        torn = torn and mode * (after[up if mode > 0 else down]) > 0
+        if not torn:
+            found.append(Violation(Breach.MODE, k, index, mode, 1.0))
+    return found
+
+
 def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
     """What is wrong at an event node."""
     event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
@@ -155,7 +175,8 @@ def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
     if surface.kind == Kind.IMPACT:
         return told(Breach.GRAZED, slope_before(system, orbit, index))
     if surface.releases is not None:
-        return told(Breach.REVERSED, slope_before(system, orbit, index))
+        reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
+        return reversed_there + _unforced(system, orbit, index, surface)
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])
