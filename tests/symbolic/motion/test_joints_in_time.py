@@ -159,3 +159,18 @@ def test_interrupt() -> None:
     with pytest.raises(KeyboardInterrupt):
         sym.simulate(system, settle=100_000)
     assert time.monotonic() - begin < 10
+
+
+def test_events_of_kinks_and_impacts() -> None:
+    """Assert that motions without friction tell their events too: sides of a stop in turn, and impacts."""
+    x = sym.coordinate("x")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 0.1), sym.HarmonicForce(x, 1.0, OMEGA)]
+    wall = [sym.OneSidedSpring(x, 2.0, gap=0.2), sym.RigidStop(x, 0.5, 0.8, below=True)]
+    motion = sym.simulate(sym.compile(sym.combine([*parts, *wall])), settle=0, periods=2)
+    kinks, impacts = ([e for e in motion.events if e.surface == i] for i in (0, 1))
+    assert len(kinks) > 1 and len(impacts) == len(motion.phase) - len(np.unique(motion.phase)) > 0
+    assert all(a.after == b.before for a, b in zip(kinks, kinks[1:], strict=False))
+    assert {(e.before, e.after) for e in impacts} == {(PLUS, PLUS)}
+    assert [e.phase for e in motion.events] == sorted(e.phase for e in motion.events)
+    for event in kinks:
+        assert np.interp(event.phase, motion.phase, motion.state[:, 0]) == pytest.approx(0.2, abs=1e-3)
