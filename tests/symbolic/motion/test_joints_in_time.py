@@ -174,3 +174,19 @@ def test_events_of_kinks_and_impacts() -> None:
     assert [e.phase for e in motion.events] == sorted(e.phase for e in motion.events)
     for event in kinks:
         assert np.interp(event.phase, motion.phase, motion.state[:, 0]) == pytest.approx(0.2, abs=1e-3)
+
+
+@pytest.mark.parametrize("depth", [1e-4, 1e-6])
+def test_short_excursion(depth: float) -> None:
+    """Assert that a stop that is touched for a moment only is passed into and out of, beside friction."""
+    x = sym.coordinate("x")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 0.1), sym.HarmonicForce(x, 1.0, 2.0)]
+    free = [*parts, sym.CoulombFriction(x, 0.1)]
+    motion = sym.simulate(sym.compile(sym.combine(free)), settle=0, periods=2, samples=10_000)
+    largest = motion["x"].max()
+    assert 0 < motion["x"].argmax() < len(motion.phase) - 1
+    system = sym.compile(sym.combine([*free, sym.OneSidedSpring(x, 5.0, gap=largest - depth)]))
+    (stop,) = (i for i, s in enumerate(system.surfaces) if s.kind == Kind.KINK)
+    events = [e for e in sym.simulate(system, settle=0, periods=2).events if e.surface == stop]
+    assert [e.after for e in events] == [PLUS, MINUS]
+    assert 0 < events[1].phase - events[0].phase < 0.05
