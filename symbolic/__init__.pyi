@@ -42,6 +42,7 @@ from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyTh
 from .parts.films.thirdorder import ThirdOrder
 from .parts.friction.coulomb import CoulombFriction
 from .parts.friction.jenkins import Iwan, Jenkins
+from .parts.friction.load import NormalLoad
 from .parts.friction.tanh import TanhFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
@@ -132,6 +133,7 @@ __all__ = [
     "Model",
     "Modes",
     "NoRestError",
+    "NormalLoad",
     "OneSidedSpring",
     "PalmgrenLaw",
     "Parameter",

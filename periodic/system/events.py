@@ -72,6 +72,25 @@ class Surface:
     place: tuple[int, tuple[float, ...]] | None = None
 
 
+class EventLike(Protocol):
+    """A change of mode along a motion in time: `events` of a trajectory has them in order.
+
+    surface: index among the surfaces. before, after: its modes, the same at an impact. phase: tau. modes:
+    those of all surfaces afterwards, 0 of those that have none.
+    """
+
+    @property
+    def surface(self) -> int: ...
+    @property
+    def before(self) -> int: ...
+    @property
+    def after(self) -> int: ...
+    @property
+    def phase(self) -> float: ...
+    @property
+    def modes(self) -> tuple[int, ...]: ...
+
+
 class Resetting(System, Protocol):
     """A system with impacts: the state is mapped, x+ = r(x-, tau, p), where some switches pass their level.
 

@@ -89,21 +89,25 @@ class Flow:
             return self._on_constraints(np.append(after, y[n:]), parameter, tau)
 
         given = reset if self.system.resets else None
-        tau, values = self._passages.follow(sweep, start, phase, parameter, given).with_impacts(phase)
-        return Trajectory(tau, values[:, :n], values[:, n:])
+        found = self._passages.follow(sweep, start, phase, parameter, given)
+        tau, values = found.with_impacts(phase)
+        passed = [(p.switch, p.before, p.rate) for p in found.passages]
+        switching = Switching(self.system, parameter, self.tolerance)
+        events = switching.along(float(phase[0]), start[:n], passed) if passed else ()
+        return Trajectory(tau, values[:, :n], values[:, n:], events, events[-1].modes if events else ())
 
     def _pieced(self, start: Array, parameter: Array, phase: Array, modes: Modes | None = None) -> Trajectory:
         """The motion from event to event, at each impact of which there are two points of one phase."""
         n = self.system.expressions.state.numel()
-        switching = Switching(self.system, parameter, self.tolerance)
+        switching, given = Switching(self.system, parameter, self.tolerance), ca.DM(parameter)
 
         def rates(modes: Modes) -> Rates:
-            side = switching.side(modes)
-            return lambda tau, y: np.array(self._beside[0](y, tau, parameter, side)).ravel()
+            side = ca.DM(switching.side(modes))
+            return lambda tau, y: np.array(self._beside[0](y, tau, given, side)).ravel()
 
         def slope(modes: Modes) -> Rates:
-            side = switching.side(modes)
-            return lambda tau, y: np.array(self._beside[1](y, tau, parameter, side))
+            side = ca.DM(switching.side(modes))
+            return lambda tau, y: np.array(self._beside[1](y, tau, given, side))
 
         def settle(y: Array, tau: float) -> Array:
             return self._on_constraints(y, parameter, tau)

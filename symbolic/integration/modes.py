@@ -230,6 +230,30 @@ class Switching:
         side = np.repeat(self.side(modes)[None], len(phase), axis=0)
         return self.system.switch(state, phase, self.parameter, side)
 
+    def along(
+        self, tau: float, state: Array, passages: Sequence[tuple[int, float, float]]
+    ) -> tuple[Event, ...]:
+        """Return the events of a motion through kinks and impacts alone.
+
+        Parameters
+        ----------
+        tau : float
+            Phase where it begins.
+        state : ndarray, shape (n,)
+            State there.
+        passages : sequence of tuple
+            Switch, phase, and the rate with which it passes.
+        """
+        modes, found = self.begin(tau, state)[1], []
+        places = {surface.switch: i for i, surface in enumerate(self.surfaces)}
+        for switch, phase, rate in passages:
+            i = places[switch]
+            impact = self.surfaces[i].kind == Kind.IMPACT
+            after = PLUS if impact or rate > 0 else MINUS
+            modes = (*modes[:i], after, *modes[i + 1 :])
+            found.append(Event(i, after if impact else -after, after, phase, modes))
+        return tuple(found)
+
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
         """Return what has happened to the surfaces: changes of mode, and impacts."""
         struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}

@@ -65,6 +65,7 @@ class Passage:
     An impact has one phase, and y is mapped between them.
     """
 
+    switch: int
     before: float
     after: float
     y_before: Array
@@ -253,7 +254,9 @@ class _Way:
             found = self._passage(values, phase, k)
             at, y = found.before, found.y_before
         rate = float(self._measured(y[None], np.array([at]))[1][0, k])
-        return Passage(at, at, y, self.reset(self.through.impacts[k - len(kinks)], at, y), rate)
+        return Passage(
+            self.through.switches[k], at, at, y, self.reset(self.through.impacts[k - len(kinks)], at, y), rate
+        )
 
     def _passage(self, values: Array, phase: Array, k: int) -> Passage:
         """Return where a switch passes its level between two phases, by Newton's method on either side."""
@@ -274,7 +277,7 @@ class _Way:
                 break
             aim = -side if near[True] else side
             guess = at + (aim * beyond / 2 - now) / slope if slope else low
-        return Passage(low, high, before, after, slope)
+        return Passage(self.through.switches[k], low, high, before, after, slope)
 
 
 def _filled(phase: Array) -> tuple[Array, NDArray[np.int_]]:

@@ -24,6 +24,14 @@ STEP = 0.05
 LOOKS = 4
 """At how many places of a step the guards are looked at."""
 
+CLOSER = 32
+"""At how many, where the polynomials through these fall below 0."""
+
+COARSE, FINE = np.linspace(0, 1, LOOKS + 1), np.linspace(0, 1, CLOSER + 1)
+
+BETWEEN = np.vander(FINE, LOOKS + 1) @ np.linalg.inv(np.vander(COARSE, LOOKS + 1))
+"""Values of such a polynomial at these places."""
+
 STIFF = 10.0
 """Modes that turn by so many rad within the longest step are not followed."""
 
@@ -156,8 +164,11 @@ class _Piece:
         self, guards: list[Guard], floor: Array, dense: Callable[..., Array], begin: float, end: float
     ) -> tuple[float, list[Guard]]:
         """Return the first phase of a step where guards fall below their floor, and these."""
-        phase = np.linspace(begin, end, LOOKS + 1)
+        phase = begin + (end - begin) * COARSE
         values = self._values(guards, phase, dense(phase).T) - floor
+        if (BETWEEN @ values < 0).any():
+            phase = begin + (end - begin) * FINE
+            values = self._values(guards, phase, dense(phase).T) - floor
         below = values[1:] < 0
         if not below.any():
             return end, []

@@ -10,9 +10,10 @@ import casadi as ca
 
 from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
+from symbolic.equations.interval import POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative, several
+from symbolic.equations.variables import Coordinate, Value, above_zero, several
+from symbolic.parts.friction.load import NormalLoad, check_limit, limit_of
 from symbolic.parts.mechanics.ends import deflection, resist
 
 CREEP = 1e-2
@@ -42,7 +43,7 @@ class Jenkins(Part):
         The coordinate.
     stiffness : float or Parameter
         k in N/m.
-    limit : float or Parameter
+    limit : float, Parameter or NormalLoad
         F in N: coefficient of friction times normal force.
     to : Coordinate, optional
         The coordinate r at the other end, u = q - r; the ground where there is none.
@@ -61,19 +62,19 @@ class Jenkins(Part):
 
     q: Coordinate
     stiffness: Value
-    limit: Value
+    limit: Value | NormalLoad
     to: Coordinate | None = None
     creep: Value | None = CREEP
 
     def __post_init__(self) -> None:
         above_zero("stiffness of a slider", self.stiffness)
-        not_negative("limit of a slider", self.limit)
+        check_limit("limit of a slider", self.limit)
         _creeping("creep of a slider", self.creep)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the slider."""
         k = assembly.parameter(self.stiffness, "k_slider", "N/m", POSITIVE)
-        slide(assembly, self, k, assembly.parameter(self.limit, "F_slider", "N", NOT_NEGATIVE), "z")
+        slide(assembly, self, k, limit_of(assembly, self.limit, "F_slider"), "z")
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class Iwan(Part):
         The coordinate.
     stiffness : float, Parameter or sequence of either
         k in N/m, of all together while they stick, each with the same part of it; or that of each.
-    limits : sequence of float or Parameter
+    limits : sequence of float, Parameter or NormalLoad
         F_1, ..., F_n in N.
     to : Coordinate, optional
         The coordinate r at the other end, u = q - r; the ground where there is none.
@@ -106,7 +107,7 @@ class Iwan(Part):
 
     q: Coordinate
     stiffness: Value | Sequence[Value]
-    limits: Sequence[Value]
+    limits: Sequence[Value | NormalLoad]
     to: Coordinate | None = None
     creep: Value | None = CREEP
 
@@ -120,15 +121,14 @@ class Iwan(Part):
         if not self.limits:
             raise refusal("limits", self.limits, "a sequence of at least one force in N")
         for limit in self.limits:
-            not_negative("limit of a slider", limit)
+            check_limit("limit of a slider", limit)
         if isinstance(self.stiffness, tuple) and len(self.stiffness) != len(self.limits):
             raise refusal("stiffness", self.stiffness, f"one for each of the {len(self.limits)} limits")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the sliders."""
         for count, (k, value) in enumerate(zip(self._each(assembly), self.limits, strict=True), 1):
-            limit = assembly.parameter(value, f"F_slider_{count}", "N", NOT_NEGATIVE)
-            slide(assembly, self, k, limit, f"z{count}")
+            slide(assembly, self, k, limit_of(assembly, value, f"F_slider_{count}"), f"z{count}")
 
     def _each(self, assembly: Assembly) -> list[ca.SX]:
         """The stiffnesses of all sliders."""

@@ -159,3 +159,34 @@ def test_interrupt() -> None:
     with pytest.raises(KeyboardInterrupt):
         sym.simulate(system, settle=100_000)
     assert time.monotonic() - begin < 10
+
+
+def test_events_of_kinks_and_impacts() -> None:
+    """Assert that motions without friction tell their events too: sides of a stop in turn, and impacts."""
+    x = sym.coordinate("x")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 0.1), sym.HarmonicForce(x, 1.0, OMEGA)]
+    wall = [sym.OneSidedSpring(x, 2.0, gap=0.2), sym.RigidStop(x, 0.5, 0.8, below=True)]
+    motion = sym.simulate(sym.compile(sym.combine([*parts, *wall])), settle=0, periods=2)
+    kinks, impacts = ([e for e in motion.events if e.surface == i] for i in (0, 1))
+    assert len(kinks) > 1 and len(impacts) == len(motion.phase) - len(np.unique(motion.phase)) > 0
+    assert all(a.after == b.before for a, b in zip(kinks, kinks[1:], strict=False))
+    assert {(e.before, e.after) for e in impacts} == {(PLUS, PLUS)}
+    assert [e.phase for e in motion.events] == sorted(e.phase for e in motion.events)
+    for event in kinks:
+        assert np.interp(event.phase, motion.phase, motion.state[:, 0]) == pytest.approx(0.2, abs=1e-3)
+
+
+@pytest.mark.parametrize("depth", [1e-4, 1e-6])
+def test_short_excursion(depth: float) -> None:
+    """Assert that a stop that is touched for a moment only is passed into and out of, beside friction."""
+    x = sym.coordinate("x")
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Damper(x, 0.1), sym.HarmonicForce(x, 1.0, 2.0)]
+    free = [*parts, sym.CoulombFriction(x, 0.1)]
+    motion = sym.simulate(sym.compile(sym.combine(free)), settle=0, periods=2, samples=10_000)
+    largest = motion["x"].max()
+    assert 0 < motion["x"].argmax() < len(motion.phase) - 1
+    system = sym.compile(sym.combine([*free, sym.OneSidedSpring(x, 5.0, gap=largest - depth)]))
+    (stop,) = (i for i, s in enumerate(system.surfaces) if s.kind == Kind.KINK)
+    events = [e for e in sym.simulate(system, settle=0, periods=2).events if e.surface == stop]
+    assert [e.after for e in events] == [PLUS, MINUS]
+    assert 0 < events[1].phase - events[0].phase < 0.05

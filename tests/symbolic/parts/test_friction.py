@@ -116,3 +116,43 @@ def test_two_frictions_of_one_speed() -> None:
     assert surface.kind == Kind.SLIDING and surface.releases is not None
     up, down = system.switch(np.zeros((1, 2)), np.array([np.pi / 2]), system.nominal)[0, [1, 2]]
     assert (up, down) == pytest.approx((-0.5 / 1.3**2, 0.5 / 1.3**2))
+
+
+def pressed(part: type[sym.CoulombFriction] | type[sym.Jenkins]) -> sym.CompiledSystem:
+    """Friction of x under a load that a second coordinate varies and takes away; the slider is exact."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    load = sym.NormalLoad(y, coefficient=0.9, stiffness=2.0, preload=0.3)
+    slider = sym.Jenkins(x, 4.0, load, creep=None)
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Mass(y, 1.0), sym.Spring(y, 2.0), sym.Damper(y, 0.1)]
+    parts += [slider if part is sym.Jenkins else sym.CoulombFriction(x, load), sym.Damper(x, 0.1)]
+    parts += [sym.HarmonicForce(x, 0.4, 0.9), sym.HarmonicForce(y, 1.0, 0.9, phase=1.0)]
+    return sym.compile(sym.combine(parts))
+
+
+def test_friction_under_a_load_that_moves() -> None:
+    """Assert where it sticks: up to mu max(N0 + k y, 0), and nowhere when it is lifted off."""
+    system = pressed(sym.CoulombFriction)
+    state, phase, p = np.array([[0.1, 0.0, 0.2, 0.3], [0.1, 0.0, -0.2, 0.3]]), np.zeros(2), system.nominal
+    (surface,) = (s for s in system.surfaces if s.kind == Kind.SLIDING)
+    up, down = system.switch(state, phase, p)[:, surface.releases].T * 0.9**2
+    limit = 0.9 * np.array([0.7, 0.0])
+    np.testing.assert_allclose([up, down], [0.3 - limit, 0.3 + limit], rtol=1e-14)
+
+
+@pytest.mark.parametrize("part", [sym.CoulombFriction, sym.Jenkins])
+def test_motion_under_a_load_that_moves(part: Any) -> None:
+    """Assert Coulomb's law along a motion: the force within the limit, and on it against what slips."""
+    system = pressed(part)
+    motion = sym.simulate(system, settle=3, samples=4000, tolerance=1e-9)
+    limit = 0.9 * np.maximum(0.3 + 2.0 * motion["y"], 0.0)
+    assert (limit == 0).any() and limit.max() > 0.5
+    if part is sym.Jenkins:
+        force = motion["force of z of x"]
+        assert (np.abs(force) <= limit + 1e-7).all() and (np.abs(force) < limit - 1e-3).any()
+        inside = np.abs(force) < limit - 1e-3
+        carried = np.abs(np.diff(motion["z of x"]))
+        assert carried[inside[1:] & inside[:-1]].max() < 1e-9 < carried.max()
+    else:
+        sliding = [e.after for e in motion.events if system.surfaces[e.surface].kind == Kind.SLIDING]
+        assert {*sliding} == {-1, 1, 2}
+        assert (np.abs(motion["x'"][limit == 0]) > 1e-9).mean() > 0.9
