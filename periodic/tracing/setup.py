@@ -53,7 +53,8 @@ class Method:
             isinstance(discretisation, type) or not isinstance(discretisation, Discretisation)
         ):
             raise ValueError(
-                f"method is {discretisation!r}; it must be Collocation(), Shooting() or HarmonicBalance()"
+                f"method is {discretisation!r}; it must be Collocation(), Shooting(), HarmonicBalance() or "
+                f"Equilibrium()"
             )
         for name, given, kind in (("control", control, ArclengthControl), ("watch", watch, Watch)):
             if given is not None and not isinstance(given, kind):
@@ -117,6 +118,7 @@ def setup(
     `start` is where, unless a guess has a place of its own. Raises ValueError, in one sentence, for what is
     not allowed.
     """
+    method.discretisation.check(problem)
     system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
     if low < 0 and parameter in layout_of(system).frequency:
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")

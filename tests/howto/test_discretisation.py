@@ -44,7 +44,7 @@ class Steps:
     residual: float
     compiled = None
 
-    def reduced(self, row: per.Row) -> per.Row:
+    def reduced(self, row: per.extend.Row) -> per.extend.Row:
         """Return the row: only mesh points occur in those met here."""
         assert row.stages is None
         return row
@@ -67,7 +67,7 @@ def between(mesh: Mesh, nodes: Array, rates: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Trapezoidal(per.Discretisation):
+class Trapezoidal(per.extend.Discretisation):
     """The trapezoidal rule on `ntst` equal intervals, as many as `tolerance` asks for up to `most`."""
 
     ntst: int = 64
@@ -107,7 +107,7 @@ class Trapezoidal(per.Discretisation):
         yield transfer(orbit, mesh, phases)
 
     def error(
-        self, problem: per.Problem, correction: Correction, tangent: per.Increment, spectrum: Spectrum
+        self, problem: per.Problem, correction: Correction, tangent: per.extend.Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh."""
         return deferred(self.linearise, problem, correction.orbit, tangent, spectrum)
