@@ -56,7 +56,7 @@ from .structures.matrices import Matrices
 from .structures.reduction import Reduction, craig_bampton, residual_modes
 from .structures.ross import ross_matrices
 from .structures.shaft import ShaftDisc, shaft
-from .system.compile import compile
+from .system.compile import compile as compile
 from .system.compiled import CompiledSystem
 from .system.split import condensed, structure_of
 
@@ -136,7 +136,6 @@ __all__ = [
     "beam",
     "campbell",
     "combine",
-    "compile",
     "condensed",
     "coordinate",
     "coordinates",
