@@ -81,6 +81,7 @@ def reference() -> None:
         file.parent.mkdir(exist_ok=True)
         if not file.exists() or file.read_text("utf-8") != text:
             file.write_text(text, "utf-8")
+        listed.update(f"{module}.{item}" for item in names)
 
     def front(package: ModuleType) -> list[str]:
         return [name for name in dir(package) if not isinstance(getattr(package, name), ModuleType)]
@@ -89,6 +90,7 @@ def reference() -> None:
         found = getattr(symbolic, name)
         return isinstance(found, type) and issubclass(found, symbolic.Part)
 
+    listed: set[str] = set()
     names = front(symbolic)
     page("parts", "Parts", "symbolic", [name for name in names if is_part(name)])
     page("symbolic", "symbolic: what the equations are", "symbolic", [n for n in names if not is_part(n)])
@@ -96,6 +98,9 @@ def reference() -> None:
     for door, title in DOORS.items():
         module = importlib.import_module(door)
         page(door.rpartition(".")[2], f"{door}: {title}", door, module.__all__)
+    for file in (HERE / "reference" / "generated").glob("*.rst"):
+        if file.stem not in listed:  # of a name that there was once
+            file.unlink()
 
 
 reference()

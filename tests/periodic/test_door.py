@@ -15,6 +15,10 @@ from support.equations import lorenz
 import periodic as per
 
 DOORS = ["extend", "maps", "plots"]
+PROTOCOLS = (
+    *("Condition", "Discretisation", "Increment", "Operator", "Row", "SideCondition"),
+    *("Solution", "System", "TestFunction", "Unknowns"),
+)
 MOVED = {
     "equilibria": "trace(..., method=periodic.Equilibrium())",
     "map": "design_map",
@@ -27,7 +31,7 @@ MOVED = {
     "plot_spectrum": "plots.spectrum",
     "plot_waterfall": "plots.waterfall",
     **{name: f"maps.{name}" for name in per.maps.__all__},
-    **{name: f"extend.{name}" for name in per.extend.__all__},
+    **{name: f"extend.{name}" for name in PROTOCOLS},
 }
 """Names of version 0.2, and where they are now."""
 
