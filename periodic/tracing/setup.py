@@ -118,12 +118,12 @@ def setup(
     `start` is where, unless a guess has a place of its own. Raises ValueError, in one sentence, for what is
     not allowed.
     """
-    method.discretisation.check(problem)
     system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
     if low < 0 and parameter in layout_of(system).frequency:
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
     for end in (low, high):
         _check_bound(system, parameter, end)
+    method.discretisation.check(problem)
     named("values", {} if values is None else values, "numbers")
     for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
