@@ -108,7 +108,7 @@ def hopf(
     return _oscillation(system, orbit, float(nearest.imag), frequency, parameter, determined, distance)
 
 
-def mode(
+def normal_mode(
     system: System,
     orbit: Orbit,
     damping: str,
@@ -159,7 +159,7 @@ def mode(
 def _pairs(system: System, orbit: Orbit, frequency: str) -> NDArray[np.complex128]:
     """The eigenvalues with positive imaginary part."""
     if not orbit.equilibrium:
-        raise ValueError("orbit is no equilibrium; it must be one, of a branch that `equilibria` traced")
+        raise ValueError("orbit is no equilibrium; it must be one, of a branch by method=Equilibrium()")
     found = eigenvalues(system, orbit, frequency)
     oscillating = found[found.imag > 0]
     if not len(oscillating):

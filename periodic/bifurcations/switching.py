@@ -156,7 +156,33 @@ def switched(
     determined: Mapping[str, Condition],
     distance: float | None,
 ) -> Orbit:
-    """Solve on the arclength constraint some way along a direction. Raises SwitchError."""
+    """Return the orbit some way along a direction, solved on the arclength constraint.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    origin : Orbit
+        Where another branch begins.
+    direction : Increment
+        The new branch's tangent there, of any length.
+    parameter : str
+        The parameter of the branch.
+    determined : mapping of str to Condition
+        Further free parameters with the conditions that determine them.
+    distance : float or None
+        From the origin, root mean square of the scaled states; None for FAR times the orbit's own size.
+
+    Returns
+    -------
+    Orbit
+        An orbit of the new branch: a guess for `trace`.
+
+    Raises
+    ------
+    SwitchError
+        Where none is found.
+    """
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     size = origin.span()
     length = FAR * (size if size > NO_SIZE else 1.0) if distance is None else distance
@@ -173,7 +199,20 @@ def switched(
 
 
 def repeated(orbit: Orbit, times: int) -> Orbit:
-    """Return the same orbit gone through several times."""
+    """Return the same orbit gone through several times.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit.
+    times : int
+        How many times.
+
+    Returns
+    -------
+    Orbit
+        The orbit over so many of its periods.
+    """
     mesh, ntst = orbit.mesh, len(orbit.nodes) - 1
     if mesh.events:
         breaks = mesh.breaks * times

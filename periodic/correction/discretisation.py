@@ -136,6 +136,21 @@ class Discretisation(Protocol):
             What to change of its mesh.
         """
 
+    def check(self, problem: Problem) -> None:
+        """Refuse a problem that the method is not for.
+
+        Parameters
+        ----------
+        problem : Problem
+            What is to be solved.
+
+        Raises
+        ------
+        ValueError
+            In one sentence.
+        """
+        return
+
     def corrected(
         self,
         system: System,

@@ -72,7 +72,20 @@ class ErrorEstimate:
         return SAFETY * max(self.orbit, self.parameter)
 
     def blur(self, value: float, scale: float) -> float:
-        """Return what a value of the parameter in a range of length `scale` is known to (SI)."""
+        """Return what a value of the parameter is known to.
+
+        Parameters
+        ----------
+        value : float
+            The value (SI).
+        scale : float
+            Length of the range that it is in.
+
+        Returns
+        -------
+        float
+            Its error (SI).
+        """
         return SAFETY * self.parameter * max(abs(value), SMALL * scale)
 
     @property
@@ -133,15 +146,39 @@ def deferred(
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
-    `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
-    multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit, at
-    the same parameter but about a fold; `kinked` says whether they do, by default whether the mesh has event
-    nodes. The states `only_at_points`, (N, n), count at the orbit's mesh points alone,
-    not between them. `solved` linearises and solves in one; by default
-    `periodic.correction.newton.linearised`, with `linearise`. `lengths` says whether the constraint holds the
-    lengths of brief excursions too, as it does in steps: at a fold beside a touch these change far more along
-    the branch than the states do. `digits` is to how much of itself the parameter is known of which the
-    effect on the multipliers is asked for: it is rounding.
+    Where the equations change at events, the multipliers depend on when these are, so on the orbit's own
+    error: they are those of the better orbit, at the same parameter but about a fold.
+
+    Parameters
+    ----------
+    linearise : callable
+        The equations that the orbit is held against on the halved mesh, as `Discretisation.linearise` has
+        them.
+    problem : Problem
+        What is solved.
+    orbit : Orbit
+        The converged orbit.
+    tangent : Increment
+        Tangent of the branch.
+    spectrum : Spectrum
+        The orbit's multipliers.
+    only_at_points : ndarray of bool, shape (N, n), optional
+        States that count at the orbit's mesh points alone, not between them.
+    solved : callable, optional
+        Linearises and solves in one; by default `periodic.correction.newton.linearised`, with `linearise`.
+    kinked : bool, optional
+        Whether the equations change at events; by default whether the mesh has event nodes.
+    lengths : bool
+        Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
+        beside a touch these change far more along the branch than the states do.
+    digits : float
+        To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
+        is rounding.
+
+    Returns
+    -------
+    ErrorEstimate
+        Relative errors; infinite ones where the halved mesh cannot be solved on.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)

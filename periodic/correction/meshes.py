@@ -30,7 +30,15 @@ UNEVEN = 0.4
 
 
 class Refinement:
-    """What is to be done to the mesh of an orbit: as it stands, nothing. Discretisations override it."""
+    """What is to be done to the mesh of an orbit: as it stands, nothing. Discretisations override it.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        A converged orbit.
+    error : ErrorEstimate
+        Its errors.
+    """
 
     def __init__(self, orbit: Orbit, error: ErrorEstimate) -> None:
         self.orbit, self.error = orbit, error
@@ -51,11 +59,25 @@ class Refinement:
         return f"error estimate {self.error.motion:.1e} with {self.orbit.mesh.ntst} intervals"
 
     def refined(self) -> Mesh:
-        """Return a mesh that suits the orbit, with the event nodes that it has."""
+        """Return a mesh that suits the orbit.
+
+        Returns
+        -------
+        Mesh
+            The mesh, with the event nodes that the orbit has.
+        """
         return self.orbit.mesh
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
-        """Yield meshes made for the orbit, with their event nodes' phases, the best first."""
+        """Yield meshes made for the orbit.
+
+        Yields
+        ------
+        Mesh
+            A mesh, the best first.
+        ndarray, shape (k,)
+            Phases of its event nodes, in rad.
+        """
         yield from ()
 
 

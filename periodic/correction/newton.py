@@ -76,9 +76,26 @@ USUAL = NewtonSettings()
 class Correction:
     """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
 
-    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). kernel: the tangent of the
-    branch, of any length; None where no side condition closes the equations. operator: that linearisation.
-    gentle: whether it is known that perturbations do not grow fast within an interval.
+    Parameters
+    ----------
+    orbit : Orbit
+        The last orbit.
+    outcome : Outcome
+        How the iteration ended.
+    iterations : int
+        How many there were.
+    increment : float
+        Size of the last increment, relative.
+    residual : float
+        The largest residual of the last linearisation.
+    fundamental : ndarray, shape (N+1, n, n)
+        Fundamental matrices at the mesh points.
+    kernel : Increment or None
+        The tangent of the branch, of any length; None where no side condition closes the equations.
+    operator : Operator, optional
+        The last linearisation.
+    gentle : bool
+        Whether it is known that perturbations do not grow fast within an interval.
     """
 
     orbit: Orbit

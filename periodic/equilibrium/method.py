@@ -48,6 +48,18 @@ class Equilibrium(Discretisation):
         """Eigenvalues."""
         return Stability.EIGENVALUES
 
+    def check(self, problem: Problem) -> None:
+        """Refuse a frequency that is no parameter, and a branch over the frequency. Raises ValueError."""
+        names = [p.name for p in problem.system.parameters]
+        if self.frequency not in names:
+            raise ValueError(
+                f"frequency is {self.frequency!r}; it must be one of the parameters {', '.join(names)}"
+            )
+        if self.frequency == problem.parameter:
+            raise ValueError(
+                f"parameter is {self.frequency!r}, the frequency; equilibria do not depend on it"
+            )
+
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
         """Return the system's rest values, or the state with which an orbit begins, as an equilibrium.
 

@@ -58,7 +58,7 @@ def first_lyapunov(system: System, orbit: Orbit, frequency: str = "omega") -> fl
     Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.62.
     """
     if not orbit.equilibrium:
-        raise ValueError("orbit is no equilibrium; it must be one, of a branch that `equilibria` traced")
+        raise ValueError("orbit is no equilibrium; it must be one, of a branch by method=Equilibrium()")
     orbit = as_read_by(system, orbit)
     omega = float(orbit.parameter[index_of(system, frequency)])
 

@@ -75,7 +75,12 @@ class Condensed(Protocol):
 class Chain:
     """Condensed equations as an operator, see `periodic.linear.operator.Operator`.
 
-    own: the rows of its event nodes, one for each phase of the orbit.
+    Parameters
+    ----------
+    condensed : Condensed
+        The equations between the mesh points, see `Condensed`.
+    own : sequence of Row
+        The rows of its event nodes, one for each phase of the orbit.
     """
 
     condensed: Condensed

@@ -203,14 +203,35 @@ class Spectrum:
         return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
-        """Distance from another spectrum, over the largest multiplier.
+        """Return the distance from another spectrum, over the largest multiplier.
 
-        operator: the equations that it belongs to, where these say more than their monodromy matrix.
+        Parameters
+        ----------
+        monodromy : ndarray, shape (n, n)
+            The monodromy matrix of the other.
+        operator : Operator, optional
+            The equations that it belongs to, where these say more than their monodromy matrix.
+
+        Returns
+        -------
+        float
+            The larger one of the differences of the sums of first and second powers.
         """
         return apart(self.monodromy / self.radius, monodromy / self.radius)
 
     def start(self, change: Increment) -> Array:
-        """Return the states' part of a change of the orbit at the beginning of the period, (n,)."""
+        """Return the states' part of a change of the orbit at the beginning of the period.
+
+        Parameters
+        ----------
+        change : Increment
+            The change.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Scaled states.
+        """
         return change.profile[0]
 
     @property

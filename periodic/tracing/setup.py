@@ -53,7 +53,8 @@ class Method:
             isinstance(discretisation, type) or not isinstance(discretisation, Discretisation)
         ):
             raise ValueError(
-                f"method is {discretisation!r}; it must be Collocation(), Shooting() or HarmonicBalance()"
+                f"method is {discretisation!r}; it must be Collocation(), Shooting(), HarmonicBalance() or "
+                f"Equilibrium()"
             )
         for name, given, kind in (("control", control, ArclengthControl), ("watch", watch, Watch)):
             if given is not None and not isinstance(given, kind):
@@ -122,6 +123,7 @@ def setup(
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
     for end in (low, high):
         _check_bound(system, parameter, end)
+    method.discretisation.check(problem)
     named("values", {} if values is None else values, "numbers")
     for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")

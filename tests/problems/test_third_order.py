@@ -115,7 +115,7 @@ def test_dry_contact_is_refused() -> None:
     pair = sym.ContactPair(x)
     dry = sym.Mass(x, 1.0) + sym.Preload(pair, 810.0) + sym.Hertz(pair, 28e9)
     with pytest.raises(ValueError, match="one contact with a squeeze film"):
-        sym.compile(sym.ThirdOrder(dry))
+        sym.compile(sym.films.ThirdOrder(dry))
 
 
 def test_support_is_refused() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import importlib.metadata
 from pathlib import Path
 from types import ModuleType
@@ -14,14 +15,27 @@ ROOT = Path(sym.__file__).parent
 
 
 def test_names_and_no_modules() -> None:
-    """Assert that dir() shows the public names, each of which is there, and no module but `functions`."""
-    assert dir(sym) == sorted(sym.__all__)
+    """Assert that dir() shows the public names, each of which is there, and no modules but the doors."""
+    assert dir(sym) == sorted([*sym.__all__, "compile"])
     found = {name: getattr(sym, name) for name in sym.__all__}
-    assert [name for name, value in found.items() if isinstance(value, ModuleType)] == ["functions"]
+    doors = [name for name, value in found.items() if isinstance(value, ModuleType)]
+    assert doors == ["films", "functions"]
     with pytest.raises(AttributeError, match="nothing"):
         sym.nothing  # type: ignore[attr-defined]  # noqa: B018
     assert sym.__version__ == importlib.metadata.version("orbitrace")
     assert (ROOT / "py.typed").is_file()
+
+
+def test_star_import_leaves_builtins_alone() -> None:
+    """Assert that no name which `from symbolic import *` brings is one of Python's."""
+    assert set(dir(builtins)).isdisjoint([*sym.__all__, *sym.films.__all__, *sym.functions.__all__])
+
+
+@pytest.mark.parametrize("name", sym.films.__all__)
+def test_old_names_say_where_they_are(name: str) -> None:
+    """Assert that a film law is found by its name of version 0.2, with a warning that says its place."""
+    with pytest.warns(DeprecationWarning, match=f"^symbolic.{name} is now symbolic.films.{name}; "):
+        assert getattr(sym, name) is getattr(sym.films, name)
 
 
 def test_scene_by_name_path_and_changes(tmp_path: Path) -> None:

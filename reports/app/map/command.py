@@ -97,7 +97,7 @@ def _run(
             warnings.showwarning = lambda message, *_, **__: say(str(message))
             show = None if update is None else lambda progress: update(f"mapping {name}: {progress}")
             data = run.computed(task, values, how, folder, show)
-    except per.MapInterrupted as interrupted:
+    except per.maps.MapInterrupted as interrupted:
         say(str(interrupted).partition(", which")[0] + "; --resume goes on")
         return INTERRUPTED
     _told(task, data, keys, folder)

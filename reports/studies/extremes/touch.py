@@ -37,7 +37,10 @@ def system(stiffness: float) -> sym.CompiledSystem:
 
 
 def traced(
-    begin: float, method: per.Discretisation, compiled: sym.CompiledSystem, control: per.ArclengthControl
+    begin: float,
+    method: per.extend.Discretisation,
+    compiled: sym.CompiledSystem,
+    control: per.ArclengthControl,
 ) -> per.Branch:
     """Return the branch from one end of the range."""
     return per.trace(compiled, "Omega", RANGE, start=begin, control=control, method=method)

@@ -47,7 +47,9 @@ def saddle(x: Any, p: Any) -> dict[str, Any]:
     return {"y": x.w, "w": -(p.F - CRITICAL) * x.w + 0.1 * x.y}
 
 
-def fold_curve(system: per.System, tol: float = 1e-8, start: float = 1.2, ds_max: float = 0.2) -> per.Branch:
+def fold_curve(
+    system: per.extend.System, tol: float = 1e-8, start: float = 1.2, ds_max: float = 0.2
+) -> per.Branch:
     """The curve of the first fold from a start in Omega, over Omega and F, between F = 0.2 and 0.5."""
     branch = per.trace(system, "Omega", (1.2, 3.0), start=start, watch=per.Watch(stop={"LP": 1}), tol=tol)
     assert branch[-1].label is per.Label.FOLD

@@ -67,7 +67,7 @@ def diffusing() -> sym.CompiledSystem:
 def test_two_tori_one_way_within_a_step() -> None:
     """Assert both NS of the Brusselator, known by independent shooting, where 1 -> 5 are unstable."""
     system = diffusing()
-    born = per.equilibria(system, "l", (0.5, 0.6)).labelled(Label.HOPF)[0]
+    born = per.trace(system, "l", (0.5, 0.6), method=per.Equilibrium()).labelled(Label.HOPF)[0]
     assert born.parameter == pytest.approx(0.5112781470, abs=1e-9)
     # Nearer by, rounding decides whether the first orbit is this one or another of the branch.
     guess = per.hopf(system, born.orbit, "l", distance=0.05)
@@ -98,9 +98,9 @@ def test_two_doublings_within_a_step() -> None:
 @pytest.mark.parametrize("label", ["BP", "HB"])
 def test_two_changes_of_equilibria_within_a_step(label: str, part: float) -> None:
     """Assert that stability that is regained within a step is seen, wherever in the step it is lost."""
-    steps = per.equilibria(window("BP", 2.0), "mu", (0, 1)).values
+    steps = per.trace(window("BP", 2.0), "mu", (0, 1), method=per.Equilibrium()).values
     centre = steps[5] + part * (steps[6] - steps[5])
-    branch = per.equilibria(window(label, centre), "mu", (0, 1))
+    branch = per.trace(window(label, centre), "mu", (0, 1), method=per.Equilibrium())
     assert places(branch, Label(label)) == pytest.approx([centre - 0.01, centre + 0.01], rel=1e-9)
 
 
@@ -134,7 +134,7 @@ def test_hopf_points_of_several_pairs(pairs: int, ds: float) -> None:
 
     system = equations(rates, {f"x{k}": 0.0 for k in range(2 * pairs + 2)}, mu=0.0)
     control = per.ArclengthControl(ds=ds, ds_max=1.0)
-    branch = per.equilibria(system, "mu", (0, 1), control=control)
+    branch = per.trace(system, "mu", (0, 1), control=control, method=per.Equilibrium())
     assert places(branch, Label.HOPF) == pytest.approx([0.2 * (k + 1) for k in range(pairs)], rel=1e-9)
     assert branch.labelled(Label.BRANCH) == ()
 

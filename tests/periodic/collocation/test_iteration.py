@@ -163,7 +163,9 @@ def test_who_is_left_to_numpy() -> None:
     orbit = duffing().points[20].orbit
     constraint, guess = beside(compiled("duffing"), orbit, "Omega")
 
-    def chosen(system: per.System, free: tuple[int, ...] = (constraint.index,), count: int = 1) -> bool:
+    def chosen(
+        system: per.extend.System, free: tuple[int, ...] = (constraint.index,), count: int = 1
+    ) -> bool:
         return iteration.corrected(system, guess, free, [constraint] * count, NEWTON) is not None
 
     assert chosen(compiled("duffing"))

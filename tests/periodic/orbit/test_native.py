@@ -18,7 +18,7 @@ if native.compiler() is None:
 
 
 @pytest.mark.parametrize("method", [per.Collocation(), per.HarmonicBalance()])
-def test_outputs_in_c_are_those_in_numpy(method: per.Discretisation) -> None:
+def test_outputs_in_c_are_those_in_numpy(method: per.extend.Discretisation) -> None:
     """Assert outputs between mesh points, of piecewise polynomials and of Fourier series, to rounding."""
     x = sym.coordinate("x")
     model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.1) + sym.CubicSpring(x, 1.0)

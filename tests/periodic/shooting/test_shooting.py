@@ -101,7 +101,7 @@ def collocated(speed: float) -> list[per.Point]:
     return user_points(by_collocation(), speed * RPM)
 
 
-def shot(guess: per.Orbit, rpm: tuple[float, float], method: per.Discretisation) -> per.Branch:
+def shot(guess: per.Orbit, rpm: tuple[float, float], method: per.extend.Discretisation) -> per.Branch:
     """The disc's branch from an orbit at one of two speeds in rev/min to the other, in few steps."""
     bounds = (rpm[0] * RPM, rpm[1] * RPM)
     return per.trace(disc_scene(), "speed", bounds, guess=guess, method=method, control=FEW_STEPS)

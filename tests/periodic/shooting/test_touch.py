@@ -74,7 +74,7 @@ def test_harmonics_beside_a_touch() -> None:
 
 
 @pytest.mark.parametrize("method", [per.Shooting(), per.HarmonicBalance()])
-def test_equations_that_jump_are_refused(method: per.Discretisation) -> None:
+def test_equations_that_jump_are_refused(method: per.extend.Discretisation) -> None:
     """Assert that friction by sign, whose multipliers these methods would miss, is refused; a wave is not."""
 
     def compiled(force: object) -> sym.CompiledSystem:

@@ -147,3 +147,26 @@ def test_what_nothing_holds_is_named() -> None:
     branch = per.trace(free, "Omega", (0.5, 2.0), tol=per.Accuracy.DRAFT, control=few)
     assert branch.stop.reason is per.Reason.NO_START
     assert "; nothing holds x and y; nor was one found from" in branch.stop.detail
+
+
+@pytest.mark.parametrize("method", [per.Collocation(), per.Shooting(), per.HarmonicBalance()])
+def test_well_by_name(method: per.extend.Discretisation) -> None:
+    """Assert that of two wells, -x + x^3, the orbit in the one named is found: about 1 or -1, mirrored."""
+    system = forced(
+        lambda x, p, wave: {"x": x.v, "v": -0.2 * x.v + x.x - x.x**3 + 0.05 * wave.cos}, Omega=0.6
+    )
+    left, right = (
+        per.trace(system, "Omega", (0.6, 0.8), guess={"x": well}, method=method, control=FEW, tol=1e-8)
+        for well in (-1.0, 1.0)
+    )
+    assert left[0].maximum["x"] < -0.9 and right[0].minimum["x"] > 0.9
+    assert left[0].minimum["x"] == pytest.approx(-right[0].maximum["x"], rel=1e-8)
+    returns(right, lambda x, v, wave: -0.2 * v + x - x**3 + 0.05 * wave)
+
+
+def test_well_that_is_no_state_is_refused() -> None:
+    """Assert that a guess by names takes states and unknowns with finite values alone."""
+    system = forced(lambda x, p, wave: {"x": x.v, "v": -x.v - x.x + wave.cos}, Omega=0.6)
+    for guess, said in (({"u": 1.0}, "guess has 'u'; it must be one of x, v"), ({"x": np.inf}, "finite")):
+        with pytest.raises(ValueError, match=said):
+            per.trace(system, "Omega", (0.6, 0.8), guess=guess)

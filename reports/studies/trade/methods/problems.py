@@ -95,7 +95,9 @@ def _explicit_disc() -> sym.CompiledSystem:
 
 def _without_unknown(part: sym.Part) -> sym.Part:
     if isinstance(part, sym.SqueezeFilm):
-        return sym.ExplicitSqueezeFilm(part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze)
+        return sym.films.ExplicitSqueezeFilm(
+            part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze
+        )
     return part
 
 

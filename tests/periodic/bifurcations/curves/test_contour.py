@@ -85,7 +85,7 @@ def test_curve_that_leaves_there() -> None:
 
 
 @pytest.mark.parametrize("method", [per.Collocation(), per.Shooting(), per.HarmonicBalance()])
-def test_branch_point_by_any_method(method: per.Discretisation) -> None:
+def test_branch_point_by_any_method(method: per.extend.Discretisation) -> None:
     """Assert the BP of a level curve at F = CRITICAL, to 1e-9."""
     system = beside()
     (start,) = per.trace(system, "F", (0.1, 0.25)).labelled("EP")[-1:]
@@ -117,14 +117,16 @@ def test_equilibria_at_a_level() -> None:
 
     names, level = dict.fromkeys("xy", 0.0), {"a": per.Level(per.mean("y"), 0.5)}
     system = sym.compile(sym.Equations(pitchfork, names, {"mu": -1.0, "a": 1.5}))
-    straight = per.equilibria(system, "mu", (-1, 1), guess={"y": 0.5}, determined=level)
+    straight = per.trace(system, "mu", (-1, 1), guess={"y": 0.5}, determined=level, method=per.Equilibrium())
     assert special(straight) == ["BP"] and straight.labelled("BP")[0].parameter == pytest.approx(0, abs=1e-9)
     guess = per.branched(system, straight.labelled("BP")[0].orbit, "mu", determined=level)
-    bent = per.equilibria(system, "mu", (-1, 1), guess=guess, determined=level)
+    bent = per.trace(system, "mu", (-1, 1), guess=guess, determined=level, method=per.Equilibrium())
     assert special(bent) == ["BP"]
     assert [bent[0].maximum["x"], bent[-1].maximum["x"]] == [pytest.approx(x, rel=1e-9) for x in (-1, 1)]
     system = sym.compile(sym.Equations(cusp, names, {"mu": 0.25, "a": -0.125}))
-    curve = per.equilibria(system, "mu", (-1, 1), guess={"x": 1.2, "y": 0.5}, determined=level)
+    curve = per.trace(
+        system, "mu", (-1, 1), guess={"x": 1.2, "y": 0.5}, determined=level, method=per.Equilibrium()
+    )
     assert special(curve) == ["LP", "LP"]  # 3 x^2 = mu = .5 - x^2
     places = sorted(point.maximum["x"] for point in curve.labelled("LP"))
     assert places == [pytest.approx(sign * 0.125**0.5, rel=1e-9) for sign in (-1, 1)]

@@ -33,14 +33,14 @@ def special(branch: per.Branch) -> list[str]:
 
 def start() -> per.Branch:
     """Equilibria over a at b = -1: a fold at a = .25, x = .5, a Hopf point at a = 0 = x."""
-    return per.equilibria(takens(), "a", (-0.5, 1.0), guess={"x": -0.36, "w": -0.0072})
+    return per.trace(takens(), "a", (-0.5, 1.0), guess={"x": -0.36, "w": -0.0072}, method=per.Equilibrium())
 
 
 def test_fold_curve_passes_takens() -> None:
     """Assert BT at the origin along the folds b^2 = 4 a, to 1e-9."""
     (fold,) = start().labelled("LP")
     held = {"a": per.FoldCondition()}
-    curve = per.equilibria(takens(), "b", (-1, 1), guess=fold.orbit, determined=held)
+    curve = per.trace(takens(), "b", (-1, 1), guess=fold.orbit, determined=held, method=per.Equilibrium())
     assert curve.column("a") == pytest.approx(curve.values**2 / 4, abs=1e-10)
     assert special(curve) == ["BT"]
     (point,) = curve.labelled("BT")
@@ -51,7 +51,7 @@ def test_hopf_curve_passes_takens() -> None:
     """Assert BT at the origin along the Hopf points a = 0, and neutral saddles beyond it, to 1e-9."""
     (hopf,) = start().labelled("HB")
     held = {"a": per.HopfCondition()}
-    curve = per.equilibria(takens(), "b", (-1, 1), guess=hopf.orbit, determined=held)
+    curve = per.trace(takens(), "b", (-1, 1), guess=hopf.orbit, determined=held, method=per.Equilibrium())
     assert special(curve) == ["BT"]
     (point,) = curve.labelled("BT")
     assert point.parameter == pytest.approx(0, abs=1e-9)
@@ -78,11 +78,15 @@ def test_predator_and_prey() -> None:
         return {"x": x.x - eaten - 0.01 * x.x**2, "y": -x.y + eaten - p.d * x.y**2}
 
     system = sym.compile(sym.Equations(rates, {"x": 1.0, "y": 1.0}, {"a": 0.3, "d": 0.1}))
-    branch = per.equilibria(system, "d", (0.0, 1.0), start=0.1, guess={"x": 70.0, "y": 6.0})
+    branch = per.trace(
+        system, "d", (0.0, 1.0), start=0.1, guess={"x": 70.0, "y": 6.0}, method=per.Equilibrium()
+    )
     found = []
     for label, condition in (("LP", per.FoldCondition()), ("HB", per.HopfCondition())):
         begin = branch.labelled(label)[0].orbit
-        curve = per.equilibria(system, "a", (0.05, 0.6), guess=begin, determined={"d": condition})
+        curve = per.trace(
+            system, "a", (0.05, 0.6), guess=begin, determined={"d": condition}, method=per.Equilibrium()
+        )
         found.append([(p.parameter, p.orbit.parameters["d"]) for p in curve.labelled("BT")])
         for point in curve.labelled("BT"):
             assert np.abs(np.poly(per.eigenvalues(system, point.orbit))[1:]).max() < 1e-9
@@ -98,9 +102,11 @@ def test_fold_curve_passes_a_pair() -> None:
         return {"x": p.a - x.x**2, "u": growth * x.u - 3 * x.v, "v": 3 * x.u + growth * x.v, **saddle}
 
     system = sym.compile(sym.Equations(rates, dict.fromkeys("xuvsr", 0.0), {"a": 1.0, "b": 0.0}))
-    (fold,) = per.equilibria(system, "a", (-1, 1), start=1.0, guess={"x": 1.0}).labelled("LP")
+    (fold,) = per.trace(system, "a", (-1, 1), start=1.0, guess={"x": 1.0}, method=per.Equilibrium()).labelled(
+        "LP"
+    )
     held = {"a": per.FoldCondition()}
-    curve = per.equilibria(system, "b", (0, 1), guess=fold.orbit, determined=held)
+    curve = per.trace(system, "b", (0, 1), guess=fold.orbit, determined=held, method=per.Equilibrium())
     assert [(p.label.value, p.parameter) for p in curve.special_points if p.label != "EP"] == [
         ("ZH", pytest.approx(0.6, abs=1e-9))
     ]

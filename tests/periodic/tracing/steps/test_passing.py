@@ -31,7 +31,7 @@ def parabola() -> sym.CompiledSystem:
 def test_both_passages_in_a_first_step(start: float, level: float) -> None:
     """Assert that a level which a branch goes below and comes back to in its first steps is met twice."""
     watch = per.Watch(events={"low": per.Level(per.mean("y"), level)})
-    branch = per.equilibria(parabola(), "mu", (0, 1), start=start, watch=watch)
+    branch = per.trace(parabola(), "mu", (0, 1), start=start, watch=watch, method=per.Equilibrium())
     places = [point.parameter for point in branch.labelled("UZ")]
     half = np.sqrt(level / 10)
     assert places == [pytest.approx(0.51 + side * half, abs=1e-8) for side in (-1, 1)]
