@@ -10,7 +10,7 @@ import numpy as np
 from periodic.collocation.multipliers.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.correction.error import LAST_DIGITS, STRAIGHT, TURNING, ErrorEstimate, Halved, relative
+from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP, Increment, size_of
@@ -24,8 +24,8 @@ _NUMBERS = (
     "along",
     "scale",
     "unit",
+    "reach",
     "straight",
-    "turning",
     "steep",
     "rounding",
     "digits",
@@ -38,10 +38,10 @@ _NUMBERS = (
 class Estimate(ctypes.Structure):
     """`struct estimate` of estimate.c.
 
-    Limits: `straight` is the part of the way to a fold for which the branch is straight, `turning` the part
-    of its direction that the parameter is at one, `steep` the rate beside kinks that counts half, `rounding`
-    what of a switch's terms it may be off by, `digits` to how much of itself the parameter is known, `fast`
-    the turn of a vibration in an interval.
+    Limits: `reach` is the arclength up to which the orbit of the same parameter is looked for, `straight` the
+    factor by which the rate of the parameter changes on the way at the most, `steep` the rate beside kinks
+    that counts half, `rounding` what of a switch's terms it may be off by, `digits` to how much of itself the
+    parameter is known, `fast` the turn of a vibration in an interval.
     """
 
     _fields_ = (
@@ -71,7 +71,7 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     monodromy: Array = np.empty((n, n))
     kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
-    own.straight, own.turning, own.steep, own.fast = STRAIGHT, TURNING, STEEP, FAST
+    own.reach, own.straight, own.steep, own.fast = REACH, STRAIGHT, STEEP, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
     code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept
