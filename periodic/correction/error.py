@@ -65,6 +65,12 @@ class ErrorEstimate:
         What of it the orbit's own error makes, where the equations change at events.
     shares : ndarray, shape (N,), optional
         What each interval adds to the rest of it, relative to each other.
+    peaks : float
+        Largest error of an output's minimum or maximum over its peak to peak, of outputs that are no states:
+        a steep function of these, as the load of a contact is, has more than they have. NaN where it is not
+        known. No mesh is refined for it.
+    better : callable, optional
+        Returns the orbit on the halved mesh, of whose outputs that is said.
     """
 
     orbit: float
@@ -73,6 +79,8 @@ class ErrorEstimate:
     rounding: float = field(default=0.0, compare=False)
     by_orbit: float = field(default=0.0, compare=False)
     shares: Array | None = field(default=None, compare=False, repr=False, kw_only=True)
+    peaks: float = field(default=np.nan, compare=False, kw_only=True)
+    better: Callable[[], Orbit] | None = field(default=None, compare=False, repr=False, kw_only=True)
 
     @property
     def motion(self) -> float:
@@ -179,7 +187,8 @@ def deferred(
     apart = float(max(at_nodes.max(), between.max()))
     monodromy = beside.fundamental[-1]
     halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)
-    error = relative(problem, orbit, spectrum, halved)
+    better = partial(moved, problem.system, problem.free, found.orbit, change)
+    error = relative(problem, orbit, spectrum, halved, None if problem.wider else better)
     if not unknown:
         return error
     rounding, by_orbit = error.rounding + unknown, error.by_orbit + unknown
@@ -198,7 +207,13 @@ class Halved:
     monodromy: Array
 
 
-def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) -> ErrorEstimate:
+def relative(
+    problem: Problem,
+    orbit: Orbit,
+    spectrum: Spectrum,
+    found: Halved,
+    better: Callable[[], Orbit] | None = None,
+) -> ErrorEstimate:
     """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
@@ -206,7 +221,7 @@ def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) 
     rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))
     sized = bool(problem.system.switches) and orbit.span() > LEAST_SPAN
     each = shares(spectrum.fundamental, found.fundamental) if sized else None
-    return ErrorEstimate(own, found.multiplier, parameter, rounding, by_orbit, shares=each)
+    return ErrorEstimate(own, found.multiplier, parameter, rounding, by_orbit, shares=each, better=better)
 
 
 @dataclass(frozen=True)

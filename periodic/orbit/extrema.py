@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,6 +115,38 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
         return Extremes(values, values, np.zeros_like(values), np.zeros_like(values))
     compiled = native.extremes(system, orbit)
     return _searched(system, orbit) if compiled is None else Extremes(*compiled)
+
+
+LEAST = 1e-6
+"""Peak to peak of an output, as a part of its size, with which errors are compared at the least."""
+
+
+def apart(system: System, one: Extremes, better: Callable[[], Orbit]) -> float:
+    """Return how far extremes are at the most from those of a better orbit, over the peak to peak.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    one : Extremes
+        Those of an orbit.
+    better : callable
+        Returns the same on a finer mesh.
+
+    Returns
+    -------
+    float
+        Of the outputs that are no states; 0 where all are.
+    """
+    states = {state.name for state in system.states}
+    own = [k for k, output in enumerate(system.outputs) if output.name not in states]
+    if not own:
+        return 0.0
+    other = extrema(system, better())
+    size = LEAST * np.maximum(np.abs(one.maximum), np.abs(one.minimum))
+    scale = np.maximum(one.maximum - one.minimum, size)[own]
+    error = np.maximum(np.abs(other.maximum - one.maximum), np.abs(other.minimum - one.minimum))[own]
+    return float(np.max(error / np.where(scale > 0, scale, 1.0)))
 
 
 def _searched(system: System, orbit: Orbit) -> Extremes:

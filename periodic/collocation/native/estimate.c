@@ -9,6 +9,7 @@ struct estimate {
     const double *stages_of, *unknowns_of, *middle;                /* the scheme's halves */
     double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
     double *monodromy;                                             /* that of the better orbit, (n, n) */
+    double *better_nodes, *better_stages, *better_algebraic, *better_phases, *better_parameter; /* that itself */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
     double reach, straight, steep, rounding, digits, fast;         /* limits: see estimate.py */
     double apart, shift;                                           /* errors of the states and of the parameter */
@@ -252,6 +253,17 @@ static int unresolved(const struct call *c, const struct estimate *e, const stru
     return 0;
 }
 
+/* Give the better orbit. */
+static void hand_over(const struct call *c, struct estimate *e)
+{
+    const whole points = c->count * c->ncol;
+    memcpy(e->better_nodes, c->nodes, (c->count + 1) * c->n * sizeof(double));
+    memcpy(e->better_stages, c->stages, points * c->n * sizeof(double));
+    memcpy(e->better_algebraic, c->algebraic, points * c->m * sizeof(double));
+    memcpy(e->better_phases, c->phases, c->k * sizeof(double));
+    memcpy(e->better_parameter, c->parameter, c->parameters * sizeof(double));
+}
+
 static int estimated(struct call *c, struct estimate *e, struct room *r, double *next)
 {
     const whole n = c->n, k = c->k, w = 1 + n + k + 1, last = n + k + 1;
@@ -274,7 +286,11 @@ static int estimated(struct call *c, struct estimate *e, struct room *r, double 
     if (c->exact) { /* multipliers depend on when the equations change: those of the better orbit */
         spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
         code = at_same_parameter(c, e, r, levels, beside, weights);
+    } else {
+        keep(c, r);
+        move(c, r, 1);
     }
+    hand_over(c, e);
     for (whole i = 0; i < n; i++)
         memcpy(e->monodromy + i * n, c->maps + (c->count * n + i) * w + 1, n * sizeof(double));
     return code;

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,7 +20,8 @@ from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Spectrum
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
-_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy")
+_BETTER = tuple(f"better_{name}" for name in FOUND)
+_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy", *_BETTER)
 _NUMBERS = (
     "along",
     "scale",
@@ -69,7 +71,8 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     parts = [orbit.nodes, orbit.stages, orbit.algebraic, orbit.phases, orbit.parameter, tangent.profile]
     fundamental: Array = np.empty((2 * orbit.mesh.ntst + 1, n, n))
     monodromy: Array = np.empty((n, n))
-    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
+    better = _room(orbit)
+    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy, *better])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
     own.reach, own.straight, own.steep, own.fast = REACH, STRAIGHT, STEEP, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
@@ -78,5 +81,26 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     if code:
         return None
     halved = Halved(own.apart, own.shift, spectrum.apart(monodromy), fundamental, monodromy)
-    error = relative(problem, orbit, spectrum, halved)
+    error = relative(problem, orbit, spectrum, halved, partial(_halved, orbit, better))
     return Estimated(error, bool(own.unresolved))
+
+
+def _room(orbit: Orbit) -> list[Array]:
+    """Arrays for the same orbit on the halved mesh."""
+    count, ncol, n = orbit.stages.shape
+    shapes = (2 * count + 1, n), (2 * count, ncol, n), (2 * count, ncol, orbit.algebraic.shape[2])
+    return [*map(np.empty, shapes), np.empty_like(orbit.phases), np.empty_like(orbit.parameter)]
+
+
+def _halved(orbit: Orbit, arrays: list[Array]) -> Orbit:
+    """The orbit on the halved mesh that C has found."""
+    nodes, stages, algebraic, phases, parameter = arrays
+    return replace(
+        orbit,
+        mesh=orbit.mesh.bisected(),
+        nodes=nodes,
+        stages=stages,
+        algebraic=algebraic,
+        phases=phases,
+        parameter=parameter,
+    )
