@@ -214,8 +214,9 @@ def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
     problem, other, better = solution.problem, solution.estimated, solution.error.better
     if better is None:
         return solution.error
-    own = found if other is solution else extrema(problem.shown, problem.seen(other.orbit))
-    return replace(solution.error, better=None, peaks=apart(problem.shown, own, better))
+    orbit = problem.seen(other.orbit)
+    own = found if other is solution else extrema(problem.shown, orbit)
+    return replace(solution.error, better=None, peaks=apart(problem.shown, orbit, own, better))
 
 
 def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:
