@@ -15,9 +15,11 @@ from periodic.bifurcations import codim2
 from periodic.bifurcations.across import crossing
 from periodic.bifurcations.fold import FOLD, moves, turns
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
+from periodic.bifurcations.ledger import entry, gaps
+from periodic.bifurcations.stretch import TRIALS, RejectedError, Stretch, second_change
 from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
-from periodic.bifurcations.turning import Found, is_one, named, shrinks
+from periodic.bifurcations.torus import TORUS
+from periodic.bifurcations.turning import Found, is_one, named, shrinks, unstable
 from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -67,10 +69,46 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     for test in (*codim2.sought(new, bool(folds) or from_turn), *sought.tests):
         met = _where(stretch, new, ds, test, sought.course)
         found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
-    found = found + _at_values(stretch, pieces, sought)
-    found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
+    found = _in_order(found + _at_values(stretch, pieces, sought))
+    found = _in_order(found + _behind_saddle(stretch, new, ds, found))
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
     return found[: final[0] + 1] if final else found
+
+
+def _in_order(found: list[Found]) -> list[Found]:
+    """Those that have a label, in order along the branch."""
+    return sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
+
+
+def _behind_saddle(stretch: Stretch, new: Solution, ds: float, found: list[Found]) -> list[Found]:
+    """Locate NS that the ledger lacks: a neutral saddle within the step hides them.
+
+    The product of all 1 - mu_i mu_j changes sign at both, as where real mu_i = 1/mu_j no multiplier passes.
+    """
+    if TORUS not in codim2.sought(new, False):
+        return []
+    named = [entry(point.solution, point.label) for point in found]
+    if not gaps([entry(stretch.base, Label.NONE), *named, entry(new, Label.NONE)], turns=False):
+        return []
+    between = _between_pair_and_saddle(stretch, new, ds)
+    if between is None:
+        return []
+    return [point for span in ((0.0, between), (between, ds)) for point in _located(stretch, span, ds, TORUS)]
+
+
+def _between_pair_and_saddle(stretch: Stretch, new: Solution, ds: float) -> float | None:
+    """Return a distance at which the test has another sign than at both ends, where their unstable
+    multipliers are not as many."""
+    (low, high), count, sign = (0.0, ds), unstable(stretch.base), stretch.base.once(TORUS.value)
+    if sign * new.once(TORUS.value) <= 0 or unstable(new) == count:
+        return None
+    for _ in range(TRIALS):
+        middle = (low + high) / 2
+        solution = stretch.at(middle)
+        if sign * solution.once(TORUS.value) < 0:
+            return middle
+        low, high = (middle, high) if unstable(solution) == count else (low, middle)
+    return None
 
 
 def _at_values(stretch: Stretch, pieces: list[Found], sought: Sought) -> list[Found]:

@@ -97,11 +97,12 @@ def at_once(before: Solution, after: Solution) -> list[Label]:
     tests = [test for test in every if test.label is not Label.TORUS]
     changed = [test for test in tests if test.value(before) * test.value(after) < 0]
     sure = [test for test in changed if test.genuine(before) or test.genuine(after)]
-    rest = abs(_unstable(after) - _unstable(before)) - turned - len(sure)
+    rest = abs(unstable(after) - unstable(before)) - turned - len(sure)
     alone = [test for test in changed if test not in sure][: max(rest, 0) % 2]
     labels = [test.label for test in (*sure, *alone)]
     return [Label.FOLD] * turned + labels + [Label.TORUS] * (max(rest, 0) // 2)
 
 
-def _unstable(solution: Solution) -> int:
+def unstable(solution: Solution) -> int:
+    """Return how many multipliers lie outside the unit circle."""
     return int((np.abs(solution.spectrum.nontrivial) > 1).sum())

@@ -101,6 +101,11 @@ class Solution:
         """The Floquet multipliers."""
         return self.discretisation.spectrum(self.correction, self.problem.trivial)
 
+    @property
+    def estimated(self) -> Solution:
+        """The one whose errors it is given."""
+        return self
+
     @cached_property
     def error(self) -> ErrorEstimate:
         """The errors of orbit and multipliers."""
@@ -125,6 +130,11 @@ class Between(Solution):
     """
 
     beside: Solution = field(repr=False)
+
+    @property
+    def estimated(self) -> Solution:
+        """The one beside it."""
+        return self.beside
 
     @property
     def error(self) -> ErrorEstimate:

@@ -165,12 +165,17 @@ class Increment:
         return float(states) / size**2 + outer(self, other, scale) + float(lengths)
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
-        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
+        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points.
+
+        With the event nodes where these are the same: beside a touch excursions' lengths alone tell how far
+        along a branch an orbit is.
+        """
         at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later
         wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
         profile = np.stack([np.interp(wrapped, at, column) for column in self.profile.T], axis=1)
-        blank = parameter_only(new, self.parameter)
-        return type(self)(blank.nodes, blank.stages, blank.algebraic, blank.phases, self.parameters, profile)
+        blank, same = parameter_only(new, self.parameter), new.mesh.events == old.mesh.events and not later
+        phases = self.phases if same else blank.phases
+        return type(self)(blank.nodes, blank.stages, blank.algebraic, phases, self.parameters, profile)
 
     def save(self) -> dict[str, Array]:
         """Return the arrays by name."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from periodic.checks import ByName
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
-from periodic.orbit.extrema import extrema
+from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
 from periodic.stability.spectrum import CONSERVED, LOST, ROUNDING, without_trivial
 
@@ -197,7 +197,7 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         multipliers=multipliers[np.argsort(order, kind="stable")],
         minimum=dict(zip(names, map(float, found.minimum), strict=True)),
         maximum=dict(zip(names, map(float, found.maximum), strict=True)),
-        error=solution.error,
+        error=_with_peaks(solution, found),
         residual=solution.correction.residual,
         iterations=solution.correction.iterations,
         slope=solution.tangent.parameter,
@@ -207,6 +207,16 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         event=event,
         columns=columns,
     )
+
+
+def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
+    """The errors with that of the outputs' extremes."""
+    problem, other, better = solution.problem, solution.estimated, solution.error.better
+    if better is None:
+        return solution.error
+    orbit = problem.seen(other.orbit)
+    own = found if other is solution else extrema(problem.shown, orbit)
+    return replace(solution.error, better=None, peaks=apart(problem.shown, orbit, own, better))
 
 
 def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:

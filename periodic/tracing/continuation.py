@@ -15,7 +15,7 @@ import numpy as np
 
 from periodic.bifurcations import codim2
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.ledger import entry, gaps
+from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
 from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
@@ -269,7 +269,7 @@ class Continuation:
     def _taken(self, base: Solution) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
         assert self.state is not None
-        ds, begin = self.state.ds, self.state.begun.value
+        ds, begin, origin = self.state.ds, self.state.begun.value, base
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
         sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
@@ -283,7 +283,7 @@ class Continuation:
                 base, new, length = tried.base, tried.new, tried.ds
                 final = tried.change is not None and tried.change.change.final
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
-                self._check_balance(base, new, found, length)
+                self._check_balance(origin, new, found, length)
                 further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
@@ -295,15 +295,21 @@ class Continuation:
                     return None
 
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
-        """Reject a step of which not every change is accounted for, unless it is short already."""
+        """Reject a step of which not every change is accounted for, unless it is short already.
+
+        From the base as it was, not as it is on the mesh of the step's end.
+        """
         ends = any(point.label is Label.END or point.shrunk for point in found)
         if ends or ds <= NEARLY * self.control.ds:
             return
         points = [entry(point.solution, point.label) for point in found]
-        ledger = [entry(base, Label.NONE), *points, entry(new, Label.NONE)]
-        unaccounted = gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        unaccounted = self._unaccounted([entry(base, Label.NONE), *points, entry(new, Label.NONE)])
         if unaccounted:
             raise RejectedError(unaccounted[0].why)
+
+    def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
+        """What no labelled point accounts for between points in order along the branch."""
+        return gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -414,8 +420,9 @@ class Continuation:
         if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
             return new
         better = self._stepper.remeshed(new, self._since_remesh >= self.control.remesh_every)
-        if better is not new:
-            self._since_remesh = 0
+        if better is new or self._unaccounted([entry(found, Label.NONE) for found in (new, better)]):
+            return new  # on another mesh it may have passed a special point that lies as near
+        self._since_remesh = 0
         return better
 
     @cached_property
