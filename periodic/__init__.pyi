@@ -4,7 +4,6 @@ from . import extend, maps, plots
 from .bifurcations.hopf import eigenvalues, hopf, normal_mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
-from .events.tying import KinkSettings
 from .collocation.method import Collocation
 from .condensed.whole.motion import motion
 from .condensed.whole.recovery import recovery
