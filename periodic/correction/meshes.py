@@ -21,6 +21,12 @@ CLOSER = 0.03
 SHARED = 0.1
 """The same for the multipliers, to whose error each interval adds its share."""
 
+ROUNDING = 1e4 * float(np.finfo(float).eps)
+"""What all shares may add up to by rounding, over the largest multiplier: as small ones ask for nothing,"""
+
+FAINT = 1e-3
+"""... if they are also below this part of their goal."""
+
 FINEST = 3.0
 """Into how many pieces an interval is divided at the most."""
 
@@ -86,7 +92,7 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
 
     None where it is not known from which intervals their error comes. An interval is divided as its share of
     the error asks for, but joined with others no faster than on a smooth motion, where errors at mesh points
-    go with twice the power.
+    go with twice the power. Where a share may be rounding the orbit's own density says what is needed.
     """
     if error.shares is None or not np.isfinite(error.worst):
         return None
@@ -95,6 +101,7 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     part = error.shares / total * max(largest, 0.0) / goal * len(error.shares) if total > 0 else error.shares
     ncol = orbit.mesh.scheme.ncol
     pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))
+    pieces[part < min(ROUNDING / goal, FAINT)] = 0.0
     wanted: Array = np.minimum(pieces, FINEST) / orbit.grid.width
     intervals = float(wanted @ orbit.grid.width)
     return wanted * min(1.0, most / intervals) if intervals > 0 else None

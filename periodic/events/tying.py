@@ -145,6 +145,7 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
     values = system.switch(state, tau, orbit.parameter)
     d_state, d_phase, _ = system.switch_gradient(state, tau, orbit.parameter)
     slopes = np.abs(d_phase + np.einsum("tkn,tn->tk", d_state, orbit.knot_rates[:, 1:].reshape(flat)))
+    _tied(orbit, values)
     tau = np.append(tau, tau[0] + orbit.mesh.period)
     values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
     found = []
@@ -160,6 +161,14 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
             event = EventNode(k, 1 if end > begin else -1, level)
             found.append(Crossing(event, float(phase), float(slopes[i : i + 2, k].min())))
     return found
+
+
+def _tied(orbit: Orbit, values: Array) -> None:
+    """Set switches (N ncol, s) to their levels at event nodes: no rounding says on which side they are."""
+    mesh = orbit.mesh
+    if mesh.events and mesh.scheme.points[-1] == 1.0:
+        last = mesh.starts * mesh.scheme.ncol - 1  # the first one's is the period's last
+        values[last, [event.switch for event in mesh.events]] = [event.level for event in mesh.events]
 
 
 def _elsewhere(system: System) -> set[int]:

@@ -35,6 +35,7 @@ from periodic.harmonic.series import (
     series,
     transform,
 )
+from periodic.linear import bordered
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
@@ -156,16 +157,8 @@ class SplitBalance:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         orbit = self.orbit
         matrix, full = self._assembled
-        size, outer = len(matrix), full[:, 1:]
-        border = [on_coefficients(orbit, row) for row in rows]
-        lower = np.array([np.append(row.nodes, row.outer) for row in border])
-        lower = lower.reshape(len(rows), size + outer.shape[1])
-        constant = np.append(full[:, 0], [row.value for row in border])
-        aim = -constant[:, None] * right[:1]
-        aim[size:] += right[1:]
-        found = np.linalg.solve(np.vstack([np.hstack([matrix, outer]), lower]), aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        own = np.hstack([full[:, :1], matrix, full[:, 1:]])
+        found = bordered.solve(np.vstack([own, *(on_coefficients(orbit, row) for row in rows)]), right)
         return tuple(self._recovered(*pair) for pair in zip(right[0], found.T, strict=True))
 
     def _recovered(self, constant: float, solution: Array) -> Increment:

@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.linear import bordered
 from periodic.linear.reduction import reduce
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
@@ -150,7 +151,7 @@ class Chain:
 
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
-        orbit, n, count = self.orbit, self.maps.shape[1], len(self.own)
+        orbit, n = self.orbit, self.maps.shape[1]
         if self.growth > GROWTH:
             maps, top = self._from_both_ends()
         else:
@@ -159,12 +160,7 @@ class Chain:
             top[:, 0] += orbit.nodes[-1] - orbit.nodes[0]
         every = [self.condensed.reduced(row) for row in (*self.own, *rows)]
         border = np.array([onto_start(row, maps) for row in every]).reshape(len(every), maps.shape[2])
-        matrix = np.concatenate([top, border])
-        aim = -matrix[:, :1] * right[:1]
-        aim[len(top) + count :] += right[1:]
-        found = np.linalg.solve(matrix[:, 1:], aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        found = bordered.solve(np.concatenate([top, border]), right)
         return tuple(self._recovered(maps, *pair) for pair in zip(right[0], found.T, strict=True))
 
     def _from_both_ends(self) -> tuple[Array, Array]:
