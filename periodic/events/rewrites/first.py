@@ -31,6 +31,9 @@ from periodic.system import System
 VANISHING = 0.5
 """What a step would leave this part of, by its tangent, may end within the step."""
 
+ENDS_BELOW = SHORT[-1]
+"""Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
+
 LAST = 1e-2
 """Length (rad) of the last slips of a motion that will not slip any more."""
 
@@ -64,7 +67,7 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> 
     assert isinstance(at, Extremum)
     now, then = (o.mesh.segment_lengths(o.phases)[i] for o in (before, after))
     inside = np.mod(at.phase - after.phases[i], after.mesh.period) <= then
-    return replace(begins, otherwise=end) if inside and now < SHORT[-1] else begins
+    return replace(begins, otherwise=end) if inside and now < ENDS_BELOW else begins
 
 
 def _onsets(

@@ -93,10 +93,9 @@ def test_guards_where_the_state_decides() -> None:
     )
     np.testing.assert_allclose(by_phase, slope, atol=1e-8)
     for k, value in enumerate(p):
-        more, less = (p + way * step * value * np.eye(len(p))[k] for way in (1, -1))
-        slope = (system.switch(state, phase, more, side) - system.switch(state, phase, less, side)) / (
-            2 * step * value
-        )
+        by = step * (value or 1.0)
+        more, less = (p + way * by * np.eye(len(p))[k] for way in (1, -1))
+        slope = (system.switch(state, phase, more, side) - system.switch(state, phase, less, side)) / (2 * by)
         np.testing.assert_allclose(by_parameter[:, :, k], slope, atol=1e-7)
 
 

@@ -43,7 +43,10 @@ def test_jump_and_markers() -> None:
 
 @pytest.mark.parametrize("name", ["machine", *PARTS])
 def test_every_switch_has_one_surface(name: str) -> None:
-    """Assert that guards and releases are all switches; a system that stores no surfaces has the same."""
+    """Assert that guards and releases are all switches; a system that stores no surfaces has the same.
+
+    But for where they may be held, which the system alone knows.
+    """
     system = machine() if name == "machine" else scene(name)
     used = [k for s in system.surfaces for k in (s.switch, *(s.releases or ()))]
     assert sorted(used) == list(range(len(system.switches)))
@@ -51,7 +54,7 @@ def test_every_switch_has_one_surface(name: str) -> None:
         switches=system.switches, jumps=system.jumps, slides=system.slides, resets=system.resets
     )
     for one, other in zip(system.surfaces, surfaces_of(cast(System, plain)), strict=True):
-        mine, theirs = vars(one), vars(other)
+        mine, theirs = ({**vars(each), "place": None} for each in (one, other))
         assert mine == theirs and str(one.kind) == str(other.kind)
 
 
