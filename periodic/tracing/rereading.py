@@ -23,7 +23,7 @@ from periodic.tracing.steps.passage import Crossed
 ROUNDS = 5
 """How often the word of an orbit is read again."""
 
-AHEAD = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+AHEAD = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
 NEAR = 1.0
