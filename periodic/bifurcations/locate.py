@@ -113,11 +113,11 @@ def _between_pair_and_saddle(stretch: Stretch, new: Solution, ds: float) -> floa
 
 def _at_values(stretch: Stretch, pieces: list[Found], sought: Sought) -> list[Found]:
     """The points at values of the parameter that were asked for, and at a bound."""
-    bounds, found = stretch.solver.problem.bounds, []
+    problem, found = stretch.solver.problem, []
     starts = [sought.since, *(turn.solution.value for turn in pieces[1:-1])]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = end.solution.value
-        bound = bounds[1] if last > first else bounds[0]
+        bound = problem.high if last > first else problem.low
         for value, label in [*((v, Label.USER) for v in sought.values), (bound, Label.END)]:
             if first < value <= last or last <= value < first:
                 found.append(_at_value(stretch, begin, end, value, label))

@@ -322,7 +322,7 @@ class Continuation:
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
-            bounds = self.solver.problem.bounds
+            bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
                 Stop.limit(special.name)
                 if own
@@ -411,8 +411,8 @@ class Continuation:
 
     def _values(self, begin: float) -> Sequence[float]:
         """Values at which the branch gets a point: the user's, and where it may meet its own start."""
-        low, high = self.solver.problem.bounds
-        return sorted({*self.user, begin}) if low < begin < high else self.user
+        problem = self.solver.problem
+        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
 
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""

@@ -159,8 +159,8 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
         if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
-        apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
-        if apart <= NEAR and low <= new.value <= high:
+        apart = distance(problem, old, new.orbit) / size_of(old)
+        if apart <= NEAR and problem.low <= new.value <= problem.high:
             return Crossed(new, apart, way.touches)
     return None
 
