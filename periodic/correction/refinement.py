@@ -14,7 +14,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
-ROUNDS = 8
+MOST_MESHES = 8
 """How often the mesh is made anew for one orbit."""
 
 
@@ -28,7 +28,7 @@ def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solut
     `fixed` keeps the parameter; else the solution stays on the arclength constraint across its tangent. The
     error estimate may still exceed the tolerance.
     """
-    for _ in range(ROUNDS):
+    for _ in range(MOST_MESHES):
         if not solution.ok or is_refined(solver, solution):
             return solution
         new = remeshed(solver, solution, fixed=fixed)

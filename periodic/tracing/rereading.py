@@ -20,20 +20,20 @@ from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.tracing.steps.passage import Crossed
 
-ROUNDS = 5
+MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
 AHEAD = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
-NEAR = 1.0
+FARTHEST = 1.0
 """How far from where the tangent leads it may be, in the length of the step."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
     """Return the orbit near a motion at its parameters; while it violates its word, that is read again."""
     found = _fixed(solver, guess, sign)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):
             break
         told = solver.discretisation.reworded(solver.problem.system, found.orbit)
@@ -63,7 +63,7 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         found = worded(solver, told, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > NEAR * distance(problem, base.orbit, ahead):
+        if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):
             continue
         if found.tangent.parameter * sign > 0:
             apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)

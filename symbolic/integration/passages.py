@@ -45,7 +45,7 @@ RESOLVED = 1e-15
 SAFE = 4.0
 """How many times its estimate the error of a cubic may be."""
 
-MOST = 1000
+MOST_PASSAGES = 1000
 """Most passages in a period of the excitation, 2 pi in tau."""
 
 ROOT = 50
@@ -239,7 +239,7 @@ class _Way:
 
     def _met(self, passage: Passage) -> None:
         self.passages.append(passage)
-        if len(self.passages) > MOST * math.ceil((self.end - self.begin) / (2 * math.pi)):
+        if len(self.passages) > MOST_PASSAGES * math.ceil((self.end - self.begin) / (2 * math.pi)):
             what = "impacts pile up" if self.reset is not None else "the equations have too many kinks"
             raise IntegrationError(f"{what} at tau = {passage.after:.6g}", passage.after)
 

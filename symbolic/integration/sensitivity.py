@@ -34,8 +34,8 @@ TIGHTER = (1.0, 0.1, 0.01)
 ASIDE = 1e3
 """How far before a kink, in tolerances, the derivatives are integrated: past it they have none."""
 
-ITERATIONS = 60
-CLOSE = 1e-13
+UNKNOWN_ITERATIONS = 60
+UNKNOWN_INCREMENT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -160,12 +160,14 @@ class SensitiveFlow:
         """The first y and its derivatives, column by column; the unknowns fulfil the constraints."""
         n, m, q = len(state), len(algebraic), len(free)
         rows, unknown = self._constraints(free), algebraic
-        for _ in range(ITERATIONS):
+        for _ in range(UNKNOWN_ITERATIONS):
             g, by_state, by_unknown, by_free = (np.array(a) for a in rows(state, unknown, phase, parameter))
             if not np.isfinite(by_unknown).all() or not np.isfinite(g).all():
                 break
             change: Array = np.linalg.solve(by_unknown, -g.ravel()).astype(float)
-            if (np.abs(change) <= CLOSE * (1 + np.abs(unknown))).all() or (np.abs(g) <= CLOSE).all():
+            if (np.abs(change) <= UNKNOWN_INCREMENT * (1 + np.abs(unknown))).all() or (
+                np.abs(g) <= UNKNOWN_INCREMENT
+            ).all():
                 gradient = -np.linalg.solve(by_unknown, np.hstack([by_state, by_free]))
                 first = np.hstack([np.eye(n), np.zeros((n, q))])
                 y = np.append(state, unknown)[:, None]

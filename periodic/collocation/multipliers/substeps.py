@@ -34,7 +34,7 @@ EACH, FASTEST = 0.7, 2.0
 ROUNDING = float(np.finfo(float).eps)
 """Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""
 
-MOST = 64
+MOST_SUBSTEPS = 64
 """Most substeps of an interval."""
 
 Equations = Callable[[System, Orbit, tuple[int, ...]], Operator]
@@ -81,7 +81,7 @@ def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int
     if growth.max() <= GROWING:
         return one
     needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)
-    return np.clip(np.ceil(needed), 1, MOST).astype(int)
+    return np.clip(np.ceil(needed), 1, MOST_SUBSTEPS).astype(int)
 
 
 def divided(orbit: Orbit, counts: NDArray[np.int_]) -> Orbit:

@@ -18,22 +18,22 @@ from periodic.orbit.orbit import Orbit
 LONGER = 1.2
 """A change of pattern that lies within so many steps is where the step ends."""
 
-CLOSE = 1e-8
+LAST_INCREMENT = 1e-8
 """Newton's last increment there, before one more step."""
 
-ITERATIONS = 8
+CHANGE_ITERATIONS = 8
 """Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
-NEAR = 0.02
+FARTHEST_BEYOND = 0.02
 """Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
 
 STANDING = 1e-8
 """A change that is no farther than this part of a step is at its base."""
 
-ROUNDS = 4
+MESHES_BEYOND = 4
 """How often the mesh of the orbit beyond a change is made anew."""
 
-TOUCHES = 8
+CHANGES_IN_A_STEP = 8
 """Most switches that touch within one step."""
 
 
@@ -58,9 +58,9 @@ def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
 def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, change: Change) -> Reached | None:
     """Return the orbit at a change of pattern within a step, if one is found; `near` is a guess of it."""
     method, system = solver.discretisation, solver.problem.system
-    for _ in range(TOUCHES):
+    for _ in range(CHANGES_IN_A_STEP):
         guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
-        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), ITERATIONS)
+        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), CHANGE_ITERATIONS)
         if not found.ok and change.otherwise is not None:
             change, near = change.otherwise, None
             continue
@@ -98,7 +98,7 @@ def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> 
     """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
     newton = solver.tolerance.newton
     most = min(most or newton.max_iterations, newton.max_iterations)
-    close = replace(newton, tolerance=min(CLOSE, newton.tolerance), close=0.0, max_iterations=most)
+    close = replace(newton, tolerance=min(LAST_INCREMENT, newton.tolerance), close=0.0, max_iterations=most)
     return solver.on(guess, held, close)
 
 
@@ -160,7 +160,7 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
-        if apart <= NEAR and low <= new.value <= high:
+        if apart <= FARTHEST_BEYOND and low <= new.value <= high:
             return Crossed(new, apart, way.touches)
     return None
 
@@ -170,7 +170,7 @@ def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solu
 
     Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
     """
-    for _ in range(ROUNDS):
+    for _ in range(MESHES_BEYOND):
         if not found.ok or found.error.curable <= solver.tolerance.orbit:
             break
         mesh = found.refinement.refined()

@@ -15,7 +15,7 @@ NEIGHBOURS = 3
 
 REPEATS = 5
 
-ENOUGH = 10.0
+TIMING_SECONDS = 10.0
 """s after which a branch is not traced again."""
 
 
@@ -28,7 +28,7 @@ def spent() -> float:
 def median(work: Callable[[], object], repeats: int = REPEATS) -> float:
     """Return the median processor time of some work in s."""
     times: list[float] = []
-    while len(times) < repeats and sum(times) < ENOUGH:
+    while len(times) < repeats and sum(times) < TIMING_SECONDS:
         begun = spent()
         work()
         times.append(spent() - begun)
