@@ -75,7 +75,7 @@ class Motion:
 class Turn:
     """How far multipliers turn in a step and would in the next one as long, where 1 is the most."""
 
-    strain: float
+    ratio: float
     ahead: float
 
 
@@ -96,8 +96,8 @@ def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
     if not ways:
         return Turn(0.0, 0.0)
     unseen = np.array(excited) * _unseen(np.array(begins), np.array(ways)) / limits.visible
-    strain, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
-    return Turn(strain, ahead)
+    ratio, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
+    return Turn(ratio, ahead)
 
 
 def _excitation(pair: Pair, way: complex, change: Array) -> float:

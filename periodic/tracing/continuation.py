@@ -31,7 +31,7 @@ from periodic.tracing.ends import ending
 from periodic.tracing.rereading import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.steps.passage import Reached, crossed, standing
+from periodic.tracing.steps.patternchange import Reached, crossed, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
@@ -284,7 +284,9 @@ class Continuation:
                 final = tried.change is not None and tried.change.change.final
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
                 self._check_balance(origin, new, found, length)
-                further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
+                further = min(
+                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
+                )
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:

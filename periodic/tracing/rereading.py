@@ -18,7 +18,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
-from periodic.tracing.steps.passage import Crossed
+from periodic.tracing.steps.patternchange import Crossed
 
 MOST_READINGS = 5
 """How often the word of an orbit is read again."""

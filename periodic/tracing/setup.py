@@ -20,8 +20,8 @@ from periodic.orbit.scheme import Array
 from periodic.results.frames import reserved
 from periodic.system import System, check_value, index_of
 from periodic.tracing.continuation import Continuation
+from periodic.tracing.methodchoice import chosen_method
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.suited import suited
 from periodic.tracing.watch import Watch
 
 
@@ -60,9 +60,9 @@ class Method:
             if given is not None and not isinstance(given, kind):
                 raise ValueError(f"{name} is {given!r}; it must be {kind.__name__}(...)")
         tolerance = Tolerance.of(tol)
-        problem, suiting = suited(discretisation or Collocation(), problem)
+        problem, chosen = chosen_method(discretisation or Collocation(), problem)
         return problem, cls(
-            discretisation=suiting.at(tolerance.orbit),
+            discretisation=chosen.at(tolerance.orbit),
             tolerance=tolerance,
             control=control or ArclengthControl(),
             watch=watch or Watch(),

@@ -10,7 +10,7 @@ import symbolic as sym
 from reports.benchmarks.work import AUTO, calibration, chain_model, fold_error, stopped_model
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 
 def at_each_accuracy(what: str) -> pytest.MarkDecorator:

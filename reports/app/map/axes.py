@@ -10,7 +10,7 @@ import numpy as np
 from symbolic import CompiledSystem
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError, refused
-from symbolic.scenes.files import Override, load
+from symbolic.scenes.reading import Override, load
 
 FORM = "KEY=FROM:TO:COUNT or KEY=VALUE,VALUE,..., as in preload=100:2000:40"
 

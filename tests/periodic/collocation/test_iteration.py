@@ -25,7 +25,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 Array = NDArray[np.float64]
 NEWTON = NewtonSettings()

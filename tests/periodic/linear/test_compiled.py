@@ -30,8 +30,8 @@ from periodic.orbit.scheme import Family, Scheme
 from periodic.system import linear_of
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
 from symbolic.scenes.names import scene_names
+from symbolic.scenes.reading import load
 
 Array = NDArray[np.float64]
 FREE = (0,)

@@ -1,4 +1,4 @@
-"""Events and limits as test functions: where a functional of the orbit passes a level, or touches it.
+"""Level tests: test functions of where a functional of the orbit crosses a level, or grazes it.
 
 A functional that has a derivative is about a cubic of the way within a step, by its values and its rates
 along the branch at both ends: so one that comes to its level and goes back is seen, in a first step too.
@@ -24,7 +24,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.system import System
 
 
-def passing(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
+def level_test(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
     """Return the test function of a level that is passed, or touched within a step."""
 
     def value(solution: Solution) -> float:

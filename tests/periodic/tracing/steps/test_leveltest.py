@@ -10,7 +10,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.tracing.steps.passing import comes_back
+from periodic.tracing.steps.leveltest import comes_back
 
 DAMPING = 0.02
 HEIGHT = per.PeakToPeak("x")

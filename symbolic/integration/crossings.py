@@ -1,4 +1,4 @@
-"""A motion followed through kinks and impacts: it is begun anew wherever a switch passes its level.
+"""A motion integrated through kinks and impacts: it is begun anew where a switch crosses its level.
 
 The step control of an integrator sees a kink where it evaluates the rates beside it. A short excursion past
 a level - a stop that is just touched - lies between two evaluations, and the motion goes on as if there were
@@ -45,11 +45,11 @@ RESOLVED = 1e-15
 SAFE = 4.0
 """How many times its estimate the error of a cubic may be."""
 
-MOST_PASSAGES = 1000
-"""Most passages in a period of the excitation, 2 pi in tau."""
+MOST_CROSSINGS = 1000
+"""Most crossings in a period of the excitation, 2 pi in tau."""
 
 ROOT = 50
-"""Most iterations for the phase of a passage."""
+"""Most iterations for the phase of a crossing."""
 
 Reset = Callable[[int, float, Array], Array]
 """Maps y at the impact of a switch: (switch, phase, y) to y."""
@@ -59,7 +59,7 @@ Sweep = Callable[[Array, Array], Array]
 
 
 @dataclass(frozen=True)
-class Passage:
+class SwitchCrossing:
     """Where a switch passes its level: the phases just before and after it, y at both, and the switch's rate.
 
     An impact has one phase, and y is mapped between them.
@@ -75,14 +75,14 @@ class Passage:
 
 @dataclass(frozen=True)
 class Followed:
-    """A motion at the phases asked for, (K, w), and the passages on its way."""
+    """A motion at the phases asked for, (K, w), and the crossings on its way."""
 
     values: Array
-    passages: list[Passage]
+    crossings: list[SwitchCrossing]
 
     def with_impacts(self, phase: Array) -> tuple[Array, Array]:
         """Return phases and values with each impact twice, before and after it."""
-        impacts = [p for p in self.passages if p.before == p.after]
+        impacts = [p for p in self.crossings if p.before == p.after]
         places = np.repeat(np.searchsorted(phase, [p.before for p in impacts]), 2)
         tau = np.insert(phase, places, np.repeat([p.before for p in impacts], 2))
         each = np.reshape([y for p in impacts for y in (p.y_before, p.y)], (-1, self.values.shape[1]))
@@ -90,7 +90,7 @@ class Followed:
 
 
 @dataclass(frozen=True, eq=False)
-class Passages:
+class SwitchCrossings:
     """Follows motions of y = (x, z) through the levels 0 of some switches.
 
     Parameters
@@ -120,7 +120,7 @@ class Passages:
     ) -> Followed:
         """Integrate from y at phase[0] to all of `phase`, which rises.
 
-        Raises IntegrationError where there are too many passages.
+        Raises IntegrationError where there are too many crossings.
         """
         if not self.switches:
             return Followed(sweep(y, phase), [])
@@ -151,7 +151,7 @@ class Passages:
             i += at.interval
             found.append(way.across(values[at.interval], every[i], every[i + 1])[None])
             i += 1
-        return Followed(np.concatenate(found)[wanted], way.passages)
+        return Followed(np.concatenate(found)[wanted], way.crossings)
 
     @cached_property
     def _measure(self) -> ca.Function:
@@ -185,14 +185,14 @@ class _Doubt:
 class _Way:
     """One motion on its way, from one phase to another."""
 
-    through: Passages
+    through: SwitchCrossings
     sweep: Sweep
     reset: Reset | None
     parameter: Array
     begin: float
     end: float
     size: Array
-    passages: list[Passage] = field(default_factory=list)
+    crossings: list[SwitchCrossing] = field(default_factory=list)
 
     def _measured(self, values: Array, phase: Array) -> tuple[Array, Array]:
         return self.through.measured(values, phase, self.parameter)
@@ -204,7 +204,7 @@ class _Way:
         noise = NOISE * self.size
         width = np.diff(phase)[:, None]
         inner = [s[:-1] + width * rate[:-1] / 3, s[1:] - width * rate[1:] / 3]
-        begin = np.where(np.abs(s[:-1]) <= noise, inner[0], s[:-1])  # it has passed there, or touches
+        begin = np.where(np.abs(s[:-1]) <= noise, inner[0], s[:-1])  # it has crossed there, or touches
         falls = len(self.through.kinks)  # the impacts: none of them has happened yet
         begin[:, falls:] = np.where(np.abs(s[:-1, falls:]) <= noise[falls:], noise[falls:], begin[:, falls:])
         end = np.where(np.abs(s[1:]) <= noise, inner[1], s[1:])
@@ -217,7 +217,7 @@ class _Way:
         return _Doubt(j, np.flatnonzero(passing), bool((passing == mixed[j]).all()))
 
     def across(self, y: Array, begin: float, end: float) -> Array:
-        """Return y at the end of an interval, through all passages in it. Raises IntegrationError."""
+        """Return y at the end of an interval, through all crossings in it. Raises IntegrationError."""
         while True:
             phase = np.linspace(begin, end, PARTS + 1)
             values = self.sweep(y, phase)
@@ -230,35 +230,35 @@ class _Way:
             elif len(at.passing):
                 ends = slice(j, j + 2)
                 each = [self._event(values[ends], phase[ends], int(k)) for k in at.passing]
-                self._met(min(each, key=lambda passage: passage.after))
-                y, begin = self.passages[-1].y, self.passages[-1].after
+                self._met(min(each, key=lambda crossing: crossing.after))
+                y, begin = self.crossings[-1].y, self.crossings[-1].after
             else:
                 y, begin = values[j + 1], right
             if not begin < end:
                 return y
 
-    def _met(self, passage: Passage) -> None:
-        self.passages.append(passage)
-        if len(self.passages) > MOST_PASSAGES * math.ceil((self.end - self.begin) / (2 * math.pi)):
+    def _met(self, crossing: SwitchCrossing) -> None:
+        self.crossings.append(crossing)
+        if len(self.crossings) > MOST_CROSSINGS * math.ceil((self.end - self.begin) / (2 * math.pi)):
             what = "impacts pile up" if self.reset is not None else "the equations have too many kinks"
-            raise IntegrationError(f"{what} at tau = {passage.after:.6g}", passage.after)
+            raise IntegrationError(f"{what} at tau = {crossing.after:.6g}", crossing.after)
 
-    def _event(self, values: Array, phase: Array, k: int) -> Passage:
-        """Return the passage of a switch between two phases, or its impact."""
+    def _event(self, values: Array, phase: Array, k: int) -> SwitchCrossing:
+        """Return the crossing of a switch between two phases, or its impact."""
         kinks = self.through.kinks
         if k < len(kinks):
-            return self._passage(values, phase, k)
+            return self._crossing(values, phase, k)
         assert self.reset is not None
         at, y = float(phase[0]), values[0]
         if self._measured(values[:1], phase[:1])[0][0, k] > NOISE * self.size[k]:
-            found = self._passage(values, phase, k)
+            found = self._crossing(values, phase, k)
             at, y = found.before, found.y_before
         rate = float(self._measured(y[None], np.array([at]))[1][0, k])
-        return Passage(
+        return SwitchCrossing(
             self.through.switches[k], at, at, y, self.reset(self.through.impacts[k - len(kinks)], at, y), rate
         )
 
-    def _passage(self, values: Array, phase: Array, k: int) -> Passage:
+    def _crossing(self, values: Array, phase: Array, k: int) -> SwitchCrossing:
         """Return where a switch passes its level between two phases, by Newton's method on either side."""
         (low, high), (before, after) = (float(tau) for tau in phase), values
         beyond = BEYOND * float(self.size[k])
@@ -277,7 +277,7 @@ class _Way:
                 break
             aim = -side if near[True] else side
             guess = at + (aim * beyond / 2 - now) / slope if slope else low
-        return Passage(self.through.switches[k], low, high, before, after, slope)
+        return SwitchCrossing(self.through.switches[k], low, high, before, after, slope)
 
 
 def _filled(phase: Array) -> tuple[Array, NDArray[np.int_]]:

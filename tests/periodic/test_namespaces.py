@@ -1,4 +1,4 @@
-"""The one door: what `import periodic` offers, and the doors behind it."""
+"""The public names: what `import periodic` offers, and its namespaces."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from support.equations import lorenz
 
 import periodic as per
 
-DOORS = ["extend", "maps", "plots"]
+NAMESPACES = ["extend", "maps", "plots"]
 PROTOCOLS = (
     *("Condition", "Discretisation", "Increment", "Operator", "Row", "SideCondition"),
     *("Solution", "System", "TestFunction", "Unknowns"),
@@ -45,27 +45,27 @@ def behind(place: str) -> Any:
 
 
 def test_names_and_no_modules() -> None:
-    """Assert that dir() shows the public names, each of which is there, and no modules but the doors."""
+    """Assert that dir() shows the public names, each of which is there, and no modules but the namespaces."""
     assert dir(per) == sorted(per.__all__)
     found = {name: getattr(per, name) for name in per.__all__}
-    assert [name for name, value in found.items() if isinstance(value, ModuleType)] == DOORS
+    assert [name for name, value in found.items() if isinstance(value, ModuleType)] == NAMESPACES
     with pytest.raises(AttributeError, match="nothing"):
         behind("nothing")
     assert (Path(per.__file__).parent / "py.typed").is_file()
 
 
 def test_each_name_stands_in_one_place() -> None:
-    """Assert that nothing is behind two doors, and that what a door names is there."""
-    names = [*per.__all__, *(name for door in DOORS for name in behind(door).__all__)]
+    """Assert that nothing is in two namespaces, and that what a namespace names is there."""
+    names = [*per.__all__, *(name for namespace in NAMESPACES for name in behind(namespace).__all__)]
     assert len(names) == len(set(names))
-    for door in DOORS:
-        assert all(hasattr(behind(door), name) for name in behind(door).__all__)
+    for namespace in NAMESPACES:
+        assert all(hasattr(behind(namespace), name) for name in behind(namespace).__all__)
 
 
 def test_star_import_leaves_builtins_alone() -> None:
     """Assert that no name which `from periodic import *` brings is one of Python's."""
-    for door in (per, *map(behind, DOORS)):
-        assert set(dir(builtins)).isdisjoint(door.__all__)
+    for namespace in (per, *map(behind, NAMESPACES)):
+        assert set(dir(builtins)).isdisjoint(namespace.__all__)
 
 
 @pytest.mark.parametrize("name", sorted(set(MOVED) - {"equilibria"}))
@@ -87,7 +87,7 @@ def test_equilibria_is_trace_with_a_method() -> None:
     assert [point.label for point in old] == [point.label for point in new]
 
 
-def test_door_opens_nothing_by_itself() -> None:
+def test_namespace_opens_nothing_by_itself() -> None:
     """Assert that to import the package, or ask for what there is, loads neither NumPy nor matplotlib."""
     code = "import sys, periodic; dir(periodic); print({'numpy', 'matplotlib'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -1,4 +1,4 @@
-"""Scenes as users ask for them: by name or file, with some entries changed, compiled."""
+"""Loading of scenes: by name or file, with some entries changed, compiled."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def scene(source: str | Path, changes: Mapping[str, str | float | None] | None =
     """
     # Not above: the schema's library takes longer to import than all the rest.
     from symbolic.scenes.building import build
-    from symbolic.scenes.files import load
+    from symbolic.scenes.reading import load
 
     if not isinstance(source, str | Path):
         raise refused("scene", source, f"one of {', '.join(scene_names())} or the path of a TOML file")

@@ -1,4 +1,4 @@
-"""How the angular frequency of the phase follows from a model's parameters."""
+"""The angular frequency omega = dtau/dt of the phase, as a function of a model's parameters."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from symbolic.equations.variables import Variable
 
 
 @dataclass(frozen=True, eq=False)
-class Turning:
+class AngularFrequency:
     """omega(p) in rad/s, d/dt = omega d/dtau, and the parameters that it is proportional to.
 
     Parameters

@@ -1,4 +1,4 @@
-"""How far a step strains what makes it trustworthy: turning, bending, winding of multipliers."""
+"""What bounds a step: how far the branch may turn and bend within it, and multipliers wind."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ from periodic.tracing.steps.stepsize import ArclengthControl
 
 
 @dataclass(frozen=True)
-class Strain:
-    """How far a step goes in one respect, where 1 is the most; about linear in its length.
+class BoundRatio:
+    """Turning, bending or winding of a step as a part of its bound; about linear in the length of the step.
 
-    ahead: how far one as long would go next. why: what is wrong with a step beyond 1.
+    size: of the step. ahead: expected of the next one, if it is as long. why: what is wrong with a step whose
+    ratio exceeds 1.
     """
 
     size: float
@@ -31,22 +32,22 @@ class Strain:
     why: str
 
 
-def strains(
+def bound_ratios(
     base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
-) -> Iterator[Strain]:
-    """Yield the strains of a step between two solutions on one mesh, the cheapest first."""
+) -> Iterator[BoundRatio]:
+    """Yield what a step between two solutions on one mesh makes of each of its bounds, the cheapest first."""
     metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
     onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
     angle = _angle(base.tangent.dot(onward, *metric), control.turn)
-    yield Strain(angle, angle, "the branch turns too sharply for the step")
+    yield BoundRatio(angle, angle, "the branch turns too sharply for the step")
     noise = control.noise * tolerance * base.orbit.span() / size_of(base.orbit)
     bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
-    yield Strain(bend, bend, "the step does not follow its tangents")
+    yield BoundRatio(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
         turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
-        yield Strain(turn.strain, turn.ahead, "a resonance may pass unseen in the step")
+        yield BoundRatio(turn.ratio, turn.ahead, "a resonance may pass unseen in the step")
     angle = _angle(codim2.alignment(base, new), control.turn)
-    yield Strain(angle, angle, "the critical motion turns too far for the step")
+    yield BoundRatio(angle, angle, "the critical motion turns too far for the step")
 
 
 def _motion(solution: Solution, ds: float) -> Motion:

@@ -1,4 +1,4 @@
-"""Scenes by name or file: reading, overriding and validating them."""
+"""Reading of scene files: found by name or path, entries overridden, validated."""
 
 from __future__ import annotations
 

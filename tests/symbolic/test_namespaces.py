@@ -1,4 +1,4 @@
-"""The one door: what `import symbolic` offers."""
+"""The public names: what `import symbolic` offers."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ ROOT = Path(sym.__file__).parent
 
 
 def test_names_and_no_modules() -> None:
-    """Assert that dir() shows the public names, each of which is there, and no modules but the doors."""
+    """Assert that dir() shows the public names, each of which is there, and no modules but the namespaces."""
     assert dir(sym) == sorted([*sym.__all__, "compile"])
     found = {name: getattr(sym, name) for name in sym.__all__}
-    doors = [name for name, value in found.items() if isinstance(value, ModuleType)]
-    assert doors == ["films", "functions"]
+    namespaces = [name for name, value in found.items() if isinstance(value, ModuleType)]
+    assert namespaces == ["films", "functions"]
     with pytest.raises(AttributeError, match="nothing"):
         sym.nothing  # type: ignore[attr-defined]  # noqa: B018
     assert sym.__version__ == importlib.metadata.version("orbitrace")

@@ -1,4 +1,4 @@
-"""The method as it suits a system: condensed where the system's linear part is given by its modes."""
+"""Choice of method: condensed where the system's linear part is given by its modes, else as asked."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ SPLIT: dict[type[Discretisation], type[Discretisation]] = {
 """Methods with one for split systems, whose rows are not all of their equations."""
 
 
-def suited(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
-    """Return a problem and a method as they suit each other. Raises ValueError where they do not."""
+def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
+    """Return the problem that is solved and the method for it. Raises ValueError where none fits."""
     system = problem.system
     asked = method.condense if isinstance(method, Collocation) else None
     if linear_of(system) is not None:
