@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.method import Collocation, scheme_for
+from periodic.collocation.meshed import MeshMethod, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import Linearised, unheard
@@ -30,7 +30,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.spectrum import Spectrum
-from periodic.system import System, jumps_of
+from periodic.system import System, jumps_of, slides_of
 
 SHORT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
@@ -40,11 +40,11 @@ FELT = 0.1
 
 
 @dataclass(frozen=True)
-class CondensedCollocation(Collocation):
+class CondensedCollocation(MeshMethod):
     """Collocation for a system with a linear part (`periodic.system.Split`).
 
     Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
-    fast its modes; event nodes, error estimate and meshes are those of `Collocation`, whose settings it has.
+    fast its modes; event nodes are those of `Collocation`, whose settings it has.
     """
 
     ntst: int = 12
@@ -52,14 +52,12 @@ class CondensedCollocation(Collocation):
 
     ends_below: ClassVar[float] = 0.1
 
-    def at(self, tolerance: float) -> CondensedCollocation:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance.
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance.
 
         Unknowns are few and forces smooth: one point more in an interval than where all states are unknown.
         """
-        more = Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
-        chosen = super().at(tolerance)
-        return replace(self, scheme=self.scheme or more, kinks=chosen.kinks, tolerance=tolerance)
+        return Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the equations of the places, and those of the event nodes."""
@@ -112,6 +110,10 @@ class CondensedCollocation(Collocation):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
         return ContactError(**named, variation=variation)
+
+    def settles(self, system: System) -> bool:
+        """Return whether motion may stick: settling is cheap in modes, and sticks."""
+        return bool(slides_of(system))
 
     @staticmethod
     def _quiet(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from periodic.condensed.circle import Circle
 from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.modal.moments import Complex
@@ -61,6 +62,10 @@ class CondensedVariations:
     def multipliers(self) -> Complex:
         """The leading multipliers."""
         return np.linalg.eigvals(Leading(Floquet(self.given)).fundamental[-1]).astype(np.complex128)
+
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`, of all modes."""
+        return Circle(self, radius).outside()
 
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu), dmu = -w' dK v / w' K_mu v with w' K = 0, K v = 0."""

@@ -90,6 +90,10 @@ class Linear:
         """All multipliers."""
         return self._eigen[0]
 
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`."""
+        return int((np.abs(self.multipliers) > radius).sum())
+
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu), d mu = w' dM v / w' v."""
         value, right = self._eigen[0][which], self._eigen[1][:, which]

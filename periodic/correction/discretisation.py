@@ -215,6 +215,21 @@ class Discretisation(Protocol):
         """
         return ()
 
+    def settles(self, system: System) -> bool:
+        """Return whether a motion that is left to settle is the first to be tried where Newton fails.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+
+        Returns
+        -------
+        bool
+            True where it is cheap, and finds what Newton does not.
+        """
+        return False
+
     @property
     def stability(self) -> Stability:
         """What decides stability, and so which special points there are."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.bifurcations.codim2 import marginal
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
+from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution

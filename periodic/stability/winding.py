@@ -132,7 +132,7 @@ def _nearest(argument: Array, turn: Array) -> Array:
     return np.asarray(np.where(past < last, (math.tau * past - argument) / turn, 0.0))
 
 
-def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
+def pair_crossings(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
     """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli.
 
     Of a pair that seems to turn by more than half a turn it is not sure which way it goes: both are taken.

@@ -13,13 +13,13 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
-from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
-from periodic.bifurcations.turning import Found, at_once
+from periodic.bifurcations.turningpoint import Found, at_once
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -324,7 +324,7 @@ class Continuation:
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
-            bounds = self.solver.problem.bounds
+            bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
                 Stop.limit(special.name)
                 if own
@@ -413,8 +413,8 @@ class Continuation:
 
     def _values(self, begin: float) -> Sequence[float]:
         """Values at which the branch gets a point: the user's, and where it may meet its own start."""
-        low, high = self.solver.problem.bounds
-        return sorted({*self.user, begin}) if low < begin < high else self.user
+        problem = self.solver.problem
+        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
 
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""

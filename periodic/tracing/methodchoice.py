@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.collocation.meshed import MeshMethod
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.whole.wider import WholeSystem
@@ -18,17 +19,17 @@ from periodic.harmonic.split import SplitHarmonicBalance
 from periodic.orbit.scheme import Family
 from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of, slides_of
 
-SPLIT: dict[type[Discretisation], type[Discretisation]] = {
-    Collocation: CondensedCollocation,
-    HarmonicBalance: SplitHarmonicBalance,
-}
+SPLIT: tuple[tuple[type[Discretisation], type[Discretisation]], ...] = (
+    (Collocation, CondensedCollocation),
+    (HarmonicBalance, SplitHarmonicBalance),
+)
 """Methods with one for split systems, whose rows are not all of their equations."""
 
 
 def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
     """Return the problem that is solved and the method for it. Raises ValueError where none fits."""
     system = problem.system
-    asked = method.condense if isinstance(method, Collocation) else None
+    asked = method.condense if isinstance(method, MeshMethod) else None
     if linear_of(system) is not None:
         if asked is False:
             raise ValueError(
@@ -36,14 +37,12 @@ def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Di
                 "condense=False"
             )
         return problem, _split(method, system)
-    if type(method) is not Collocation or asked is False:
+    if not isinstance(method, Collocation) or asked is False:
         return problem, method
     found = _found(system, problem, always=bool(asked))
     if found is None:
         return problem, method
-    low, high = problem.bounds
-    ends = (low, high) if problem.begin == low else (high, low)
-    solved = replace(problem, system=found, bounds=ends, wider=WholeSystem(found))
+    solved = replace(problem, system=found, wider=WholeSystem(found))
     return solved, _split(method, found)
 
 
@@ -75,9 +74,10 @@ def _output(condition: Condition) -> str | None:
 
 def _split(method: Discretisation, system: System) -> Discretisation:
     """The method for a system whose linear part is given by its modes."""
-    if type(method) in SPLIT.values():
+    if isinstance(method, tuple(condensed for _, condensed in SPLIT)):
         return method
-    if type(method) not in SPLIT:
+    found = next((condensed for whole, condensed in SPLIT if isinstance(method, whole)), None)
+    if found is None:
         raise ValueError(
             f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
             f"compiled with condense=False for it"
@@ -88,7 +88,7 @@ def _split(method: Discretisation, system: System) -> Discretisation:
         raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
     chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
     usual = type(method)()
-    return SPLIT[type(method)](**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
+    return found(**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
 
 
 def _check_events(system: System) -> None:

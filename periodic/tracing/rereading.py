@@ -23,7 +23,7 @@ from periodic.tracing.steps.patternchange import Crossed
 MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
-AHEAD = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+AHEAD = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
 FARTHEST = 1.0

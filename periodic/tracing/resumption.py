@@ -48,7 +48,7 @@ def made_with(setup: Setup) -> dict[str, Any]:
         if k not in problem.free
     }
     return {
-        "bounds": described(problem.bounds),
+        "bounds": described((problem.low, problem.high)),
         "at": described(setup.user),
         "tolerance": described(method.tolerance),
         "method": described(method.discretisation),

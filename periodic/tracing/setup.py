@@ -89,8 +89,8 @@ class Setup:
     @property
     def signs(self) -> list[int]:
         """The ways that lead from the start into the bounds."""
-        low, high = self.problem.bounds
-        return [sign for sign, end in ((-1, low), (1, high)) if self.begin != end]
+        ends = ((-1, self.problem.low), (1, self.problem.high))
+        return [sign for sign, end in ends if self.begin != end]
 
     def first(self) -> Orbit:
         """Return the first guess in the method's representation: at rest, or the one given."""
@@ -118,7 +118,7 @@ def setup(
     `start` is where, unless a guess has a place of its own. Raises ValueError, in one sentence, for what is
     not allowed.
     """
-    system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
+    system, parameter, low, high = problem.system, problem.parameter, problem.low, problem.high
     if low < 0 and parameter in layout_of(system).frequency:
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
     for end in (low, high):

@@ -16,7 +16,6 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.stop import Reason, Stop
 from periodic.stability.spectrum import Stability
-from periodic.system import linear_of, slides_of
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
 from periodic.tracing.rereading import worded
@@ -86,7 +85,7 @@ class Start:
         if not self.search:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
-        if linear_of(solver.problem.system) and slides_of(solver.problem.system):  # it is cheap, and sticks
+        if solver.discretisation.settles(solver.problem.system):
             motion = next(others, None)
             if motion is not None and (last := self._fixed(motion, sign)).ok:
                 return last
@@ -204,8 +203,8 @@ class Start:
         except FAILURES:
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        low, high = problem.bounds
-        within = low - ASIDE * problem.scale <= found.value <= high + ASIDE * problem.scale
+        aside = ASIDE * problem.scale
+        within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 
     def _approached(self, guess: Orbit, factor: float) -> Orbit | None:

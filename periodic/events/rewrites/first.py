@@ -38,7 +38,9 @@ LAST = 1e-2
 """Length (rad) of the last slips of a motion that will not slip any more."""
 
 
-def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -> Change | None:
+def first_change(
+    system: System, before: Orbit, after: Orbit, shortest: float, ends_below: float = ENDS_BELOW
+) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
     `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
@@ -50,11 +52,11 @@ def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -
     found = [*ending, *_onsets(system, before, after, ending, shortest)]
     first = min(found, key=lambda change: (not change.strict, change.part), default=None)
     if isinstance(first, Begins) and first.site.row is GRAZING:
-        return _or_end(first, before, after, ending)
+        return _or_end(first, before, after, ending, ends_below)
     return first
 
 
-def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> Begins:
+def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], ends_below: float) -> Begins:
     """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
 
     In a guess depth goes before length.
@@ -67,7 +69,7 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> 
     assert isinstance(at, Extremum)
     now, then = (o.mesh.segment_lengths(o.phases)[i] for o in (before, after))
     inside = np.mod(at.phase - after.phases[i], after.mesh.period) <= then
-    return replace(begins, otherwise=end) if inside and now < ENDS_BELOW else begins
+    return replace(begins, otherwise=end) if inside and now < ends_below else begins
 
 
 def _onsets(

@@ -1,4 +1,4 @@
-"""Steps that end where the pattern of an orbit's events changes, and how the branch goes on from there."""
+"""Steps that end at a change of the pattern of an orbit's events, and how the branch goes on beyond it."""
 
 from __future__ import annotations
 
@@ -159,8 +159,8 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
         if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
-        apart, (low, high) = distance(problem, old, new.orbit) / size_of(old), problem.bounds
-        if apart <= FARTHEST_BEYOND and low <= new.value <= high:
+        apart = distance(problem, old, new.orbit) / size_of(old)
+        if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
             return Crossed(new, apart, way.touches)
     return None
 

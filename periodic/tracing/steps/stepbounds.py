@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.bifurcations import codim2
+from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from periodic.bifurcations.stretch import RejectedError
+from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import distance
 from periodic.correction.newton import NewtonSettings
 from periodic.correction.predictor import cubic, tangent

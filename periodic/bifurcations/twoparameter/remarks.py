@@ -1,4 +1,4 @@
-"""What whoever reads a curve of special points in two parameters should know, in sentences."""
+"""Remarks on a curve of special points in two parameters: sentences for whoever reads it."""
 
 from __future__ import annotations
 

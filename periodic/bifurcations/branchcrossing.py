@@ -1,16 +1,16 @@
-"""Where two branches cross: located from both sides, never at the place itself.
+"""The crossing of two branches: located from both sides, never at the point itself.
 
 There the equations are singular and Newton's iteration fails, or leads to the other branch; but each branch
-is smooth. So orbits are solved for on either side, nearer in each round and at a distance in all, and the one
-between them follows from the cubic through the nearest two and their tangents.
+is smooth. So orbits are solved for on either side, nearer in each round but never at the crossing, and the
+one between them follows from the cubic through the nearest two and their tangents.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from periodic.bifurcations.stretch import RejectedError, Stretch
 from periodic.bifurcations.testfunction import TestFunction
+from periodic.bifurcations.withinstep import RejectedError, WithinStep
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.predictor import cubic
@@ -21,29 +21,29 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
 NEARER = (1 / 8, 1 / 64, 1 / 256, 1 / 512)
-"""How far from it orbits are solved for in each round, as parts of the stretch."""
+"""Distance from the crossing at which orbits are solved for in each round, as parts of the interval."""
 
 
 def crossing(
-    stretch: Stretch, ends: tuple[float, float], test: TestFunction
+    within: WithinStep, ends: tuple[float, float], test: TestFunction
 ) -> tuple[float, Solution] | None:
     """Return distance and solution where a test function changes sign between two distances from the base.
 
     None where it cannot be followed to there.
     """
-    known = {end: stretch.at(end).once(test.value) for end in ends}
+    known = {end: within.at(end).once(test.value) for end in ends}
     place, length = _root(known, *ends), ends[1] - ends[0]
     for part in NEARER:
         sides = place - part * length, place + part * length
         try:
-            known |= {side: stretch.at(side, nearest=True).once(test.value) for side in sides}
+            known |= {side: within.at(side, nearest=True).once(test.value) for side in sides}
         except RejectedError:
             return None
         if known[sides[0]] * known[sides[1]] >= 0:
             return None
         place = _root(known, *sides)
     try:
-        found = _between(stretch, sides, place, ends)
+        found = _between(within, sides, place, ends)
     except FAILURES:
         return None
     return (place, found) if found.ok else None
@@ -59,13 +59,13 @@ def _root(known: dict[float, float], low: float, high: float) -> float:
 
 
 def _between(
-    stretch: Stretch, sides: tuple[float, float], place: float, ends: tuple[float, float]
+    within: WithinStep, sides: tuple[float, float], place: float, ends: tuple[float, float]
 ) -> Solution:
-    """The solution between two of a stretch, as it stands, with the errors at its ends. Raises FAILURES."""
-    solver = stretch.solver
+    """The cubic between two solutions, without a correction, with the errors at its ends. Raises FAILURES."""
+    solver = within.solver
     problem, method = solver.problem, solver.discretisation
-    (low, high), (a, b) = sides, (stretch.at(side) for side in sides)
-    orbit = cubic(solver, a, b, high - low, place - low, stretch.base)
+    (low, high), (a, b) = sides, (within.at(side) for side in sides)
+    orbit = cubic(solver, a, b, high - low, place - low, within.base)
     part = (place - low) / (high - low)
     direction = a.tangent.scaled(1 - part) + b.tangent.scaled(part)
     operator = method.linearise(problem.system, orbit, problem.free)
@@ -74,7 +74,7 @@ def _between(
     ended = (outcome, 0, 0.0, operator.residual, operator.fundamental, direction, operator)
     found = Correction(orbit, *ended)
     accepted = method.accepted(problem.system, found) if found.ok else found
-    beside = max((stretch.at(end) for end in ends), key=lambda solution: solution.error.worst)
+    beside = max((within.at(end) for end in ends), key=lambda solution: solution.error.worst)
     return Between(problem, method, accepted, _unit(direction, orbit, problem.units(orbit)), beside)
 
 

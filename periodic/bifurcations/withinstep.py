@@ -17,10 +17,11 @@ from periodic.linear.root import root
 from periodic.orbit.orbit import Orbit
 
 ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
-"""Where an orbit stands for a root at which Newton fails, as parts of the stretch: branches cross there."""
+"""Distances, as parts of the interval, at which an orbit stands for a root where Newton fails: branches cross
+there."""
 
 ORBITS = 1e1
-"""How many times as far that is of orbits, which have errors of their own."""
+"""Factor on these distances for orbits, which have errors of their own, over those for equilibria."""
 
 
 class RejectedError(Exception):
@@ -44,7 +45,7 @@ class _NoOrbitError(RejectedError):
 
 
 @dataclass(frozen=True)
-class Stretch:
+class WithinStep:
     """Orbits on arclength constraints at given distances from a step's base, each solved for once.
 
     The guess is the cubic to the step's end, where there is one, then the base's tangent: orbits solved for

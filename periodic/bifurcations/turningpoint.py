@@ -1,4 +1,4 @@
-"""What a turn of a branch is: a fold, or another special point at which branches turn as well.
+"""Turning points of a branch by their kinds: folds, and other special points at which branches turn as well.
 
 A branch of doubled orbits turns where it meets the orbits that it came from, at their PD, and one of lopsided
 orbits where it leaves a symmetric branch: from there these are branch points (BP).
@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.bifurcations import codim2
-from periodic.bifurcations.branch import branching
+from periodic.bifurcations.branchpoint import branching
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.stretch import RejectedError, Stretch
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError, WithinStep
 from periodic.correction.identity import from_itself
 from periodic.correction.solution import Solution
 
@@ -21,7 +21,8 @@ MERGED = 0.05
 """What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
 
 BESIDE = 1e-3
-"""How far from a turn its multipliers are looked at, and what else is not it, as a part of the step."""
+"""Distance from a turn, as a part of the step, at which its multipliers are looked at on either side, and
+beyond which another special point is not the turn itself."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Found:
         return self.label is Label.HOPF and not self.solution.orbit.equilibrium
 
 
-def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
+def named(within: WithinStep, turn: Found, new: Solution, ds: float) -> Found:
     """Return a turn of the branch by its name.
 
     BP where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
@@ -49,7 +50,7 @@ def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
     parameters it is at most a cusp. Raises RejectedError where a multiplier passes 1 and comes back within
     the step: a fold and a branch point.
     """
-    base, problem = stretch.base, stretch.solver.problem
+    base, problem = within.base, within.solver.problem
     if codim2.picked(problem) is not None:
         return replace(turn, label=codim2.turn(turn.solution, base, new))
     if shrinks(turn.solution, base, new):
@@ -58,16 +59,16 @@ def named(stretch: Stretch, turn: Found, new: Solution, ds: float) -> Found:
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
         return replace(turn, label=Label.BRANCH)
     decides = new.discretisation.stability
-    tests = (*codim2.PASSAGES[decides], *codim2.BESIDE_TURNS[decides])
+    tests = (*codim2.TESTS[decides], *codim2.BESIDE_FOLDS[decides])
     labels = [test.label for test in tests if test.touches(turn.solution, base, new)]
-    if labels and codim2.BESIDE_TURNS[decides] and problem.trivial < 2 and _passes(stretch, turn, ds):
+    if labels and codim2.BESIDE_FOLDS[decides] and problem.trivial < 2 and _passes(within, turn, ds):
         raise RejectedError("the branch turns beside a branch point")
     return replace(turn, label=labels[0]) if labels else turn
 
 
-def _passes(stretch: Stretch, turn: Found, ds: float) -> bool:
+def _passes(within: WithinStep, turn: Found, ds: float) -> bool:
     """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
-    before, after = (branching(stretch.at(turn.distance + side * BESIDE * ds)) for side in (-1, 1))
+    before, after = (branching(within.at(turn.distance + side * BESIDE * ds)) for side in (-1, 1))
     return before * after < 0
 
 
@@ -82,18 +83,18 @@ def is_one(point: Found, turn: Found, ds: float) -> bool:
 
 
 def at_once(before: Solution, after: Solution) -> list[Label]:
-    """Return the special points that sit on a touch, by the orbits just before and beyond it.
+    """Return the special points that coincide with a grazing, by the orbits just before and beyond it.
 
-    There multipliers jump, or change within a distance that tells them no more apart, and only their numbers
-    say what has passed: one through 1 where the branch turns, one through 1 or -1 where those beyond it
-    change from even to odd (Feigin; di Bernardo et al., Piecewise-smooth Dynamical Systems, 3.1), pairs
-    otherwise.
+    There multipliers jump, or change too fast to be followed, and only the numbers of unstable ones before
+    and beyond say what has crossed: one through 1 where the branch turns, one through 1 or -1 where their
+    number changes from even to odd (Feigin; di Bernardo et al., Piecewise-smooth Dynamical Systems, 3.1),
+    pairs otherwise.
     """
     if codim2.picked(before.problem) is not None:
         return []
     turned = before.tangent.parameter * after.tangent.parameter < 0
     decides = before.discretisation.stability
-    every = codim2.PASSAGES[decides] + (() if turned else codim2.BESIDE_TURNS[decides])
+    every = codim2.TESTS[decides] + (() if turned else codim2.BESIDE_FOLDS[decides])
     tests = [test for test in every if test.label is not Label.TORUS]
     changed = [test for test in tests if test.value(before) * test.value(after) < 0]
     sure = [test for test in changed if test.genuine(before) or test.genuine(after)]

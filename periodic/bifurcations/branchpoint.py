@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.bifurcations.doubling import dips, known, nearest, passing
+from periodic.bifurcations.doubling import dips, known, nearest, product_test
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import noise
 from periodic.correction.solution import Solution
-from periodic.stability.winding import passages
+from periodic.stability.winding import pair_crossings
 
 TOUCHED = 0.01
 """What a touch leaves of prod (1 - mu), as a part of that at the step's ends."""
@@ -18,7 +18,7 @@ TOUCHED = 0.01
 def branching(solution: Solution) -> float:
     """prod (1 - mu) / (1 + |mu|); 0 where it is not known."""
     spectrum = solution.spectrum
-    return passing(spectrum.nontrivial, 1) if spectrum.known else 0.0
+    return product_test(spectrum.nontrivial, 1) if spectrum.known else 0.0
 
 
 def touches(turn: Solution, base: Solution, new: Solution) -> bool:
@@ -33,7 +33,7 @@ def touches(turn: Solution, base: Solution, new: Solution) -> bool:
 
 def branches_twice(base: Solution, new: Solution) -> bool:
     """Whether a pair of multipliers turns past +1 between two orbits."""
-    return bool(passages(base.spectrum, new.spectrum, 1))
+    return bool(pair_crossings(base.spectrum, new.spectrum, 1))
 
 
 BRANCHING = TestFunction(

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.bifurcations import stationary
-from periodic.bifurcations.branch import branching
+from periodic.bifurcations.branchpoint import branching
 from periodic.bifurcations.doubling import DOUBLING, known
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stationary import HOPF

@@ -1,4 +1,4 @@
-"""What is looked for along a branch, and along curves of its special points in a second parameter.
+"""Test functions along a branch, and of codimension two along curves of its special points in two parameters.
 
 On a curve of folds, doublings or tori one multiplier (or a pair's product) stays where it is; test functions
 leave it out. With d_i = mu_i - 1 (or + 1) the second multiplier gets there where the sum of the products of
@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.bifurcations.branch import BRANCHING, branching
-from periodic.bifurcations.curves.contour import CONTOUR
-from periodic.bifurcations.curves.flips import GENERALISED
-from periodic.bifurcations.curves.resting import HOPFS, RESTING_FOLDS
-from periodic.bifurcations.doubling import DOUBLING, doubling, passing
+from periodic.bifurcations.branchpoint import BRANCHING, branching
+from periodic.bifurcations.doubling import DOUBLING, doubling, product_test
 from periodic.bifurcations.fold import FOLD
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.stationary import BRANCHING as CROSSING
 from periodic.bifurcations.stationary import HOPF
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import TORUS, complex_pair, nearest_pair, noise, torus_of
+from periodic.bifurcations.twoparameter.contours import CONTOUR
+from periodic.bifurcations.twoparameter.equilibria import HOPFS, RESTING_FOLDS
+from periodic.bifurcations.twoparameter.generalisedflips import GENERALISED
 from periodic.conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from periodic.correction.condition import Condition
 from periodic.correction.problem import Problem
@@ -28,10 +28,10 @@ from periodic.linear.unknowns import mean_weights
 from periodic.orbit.scheme import Array
 from periodic.stability.spectrum import Complex, Stability
 
-PASSAGES = {Stability.MULTIPLIERS: (DOUBLING, TORUS), Stability.EIGENVALUES: (HOPF, CROSSING)}
+TESTS = {Stability.MULTIPLIERS: (DOUBLING, TORUS), Stability.EIGENVALUES: (HOPF, CROSSING)}
 """Test functions of the special points of a branch, turns (LP) apart, by what decides stability."""
 
-BESIDE_TURNS = {Stability.MULTIPLIERS: (BRANCHING,), Stability.EIGENVALUES: ()}
+BESIDE_FOLDS = {Stability.MULTIPLIERS: (BRANCHING,), Stability.EIGENVALUES: ()}
 """Those that are looked for only where the branch does not turn."""
 
 REVERSED = 0.05
@@ -68,10 +68,10 @@ def _beside(solution: Solution) -> Complex:
     return np.delete(found, np.abs(np.abs(found) - 1).argmin())
 
 
-def _passing_beside(solution: Solution, at: int) -> float:
+def _product_beside(solution: Solution, at: int) -> float:
     """Whether one passes 1 or -1 of the multipliers without the pair whose product is held at 1."""
     found = solution.spectrum.nontrivial
-    return passing(np.delete(found, nearest_pair(found)), at)
+    return product_test(np.delete(found, nearest_pair(found)), at)
 
 
 def _torus_beside(solution: Solution) -> float:
@@ -116,8 +116,8 @@ TORI = (
     TestFunction(label=Label.RESONANCE_2, value=lambda solution: _cosine(solution) + 1.0),
     TestFunction(label=Label.RESONANCE_3, value=lambda solution: _cosine(solution) + 0.5),
     TestFunction(label=Label.RESONANCE_4, value=_cosine),
-    TestFunction(label=Label.FOLD_TORUS, value=lambda solution: _passing_beside(solution, 1)),
-    TestFunction(label=Label.DOUBLING_TORUS, value=lambda solution: _passing_beside(solution, -1)),
+    TestFunction(label=Label.FOLD_TORUS, value=lambda solution: _product_beside(solution, 1)),
+    TestFunction(label=Label.DOUBLING_TORUS, value=lambda solution: _product_beside(solution, -1)),
 )
 CURVES: dict[type, tuple[TestFunction, ...]] = {
     FoldCondition: FOLDS,
@@ -154,7 +154,7 @@ def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
     """
     condition, decides = picked(solution.problem), solution.discretisation.stability
     if condition is None:
-        return PASSAGES[decides] + (() if turned else BESIDE_TURNS[decides])
+        return TESTS[decides] + (() if turned else BESIDE_FOLDS[decides])
     known = CURVES if decides is Stability.MULTIPLIERS else OF_EQUILIBRIA
     return known.get(type(condition), CONTOUR[decides])
 
