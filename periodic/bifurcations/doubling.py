@@ -9,7 +9,7 @@ import numpy as np
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import Complex
+from periodic.stability.multipliers import Complex
 from periodic.stability.winding import pair_crossings
 
 NEGATIVE = 1e-3

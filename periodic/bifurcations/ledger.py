@@ -19,7 +19,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
 
 CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""

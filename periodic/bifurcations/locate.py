@@ -20,9 +20,9 @@ from periodic.bifurcations.torus import TORUS
 from periodic.bifurcations.turningpoint import Found, is_one, named, shrinks, unstable
 from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import TRIALS, RejectedError, WithinStep, second_change
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.refinement.adaptation import refined
 
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.condensation import solve_stages
+from periodic.collocation.elimination import solve_stages
 from periodic.collocation.residual import Rows, eliminate, finite
 from periodic.events.modes import linearise, sides
 from periodic.orbit.orbit import Orbit

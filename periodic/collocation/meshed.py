@@ -12,9 +12,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation.condensation import condensation
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection
 from periodic.collocation.local import relax
-from periodic.collocation.multipliers.substeps import SteppedCorrection
 from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.newton import Correction
@@ -28,8 +28,8 @@ from periodic.linear.operator import LinearSolver
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
@@ -59,7 +59,7 @@ class MeshMethod(Discretisation):
     ntst_min: int = 8
     ntst_max: int = 1000
     kinks: KinkSettings | None = None
-    solver: LinearSolver = condensation
+    solver: LinearSolver = elimination
     condense: bool | None = None
     tolerance: float = 1e-7
 

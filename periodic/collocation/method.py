@@ -8,11 +8,11 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from periodic.collocation.condensation import condensation
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
 from periodic.collocation.meshed import MeshMethod, misplaced, scheme_for
-from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
-from periodic.collocation.multipliers.unresolved import lost
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
@@ -20,10 +20,10 @@ from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
 from periodic.events.noderows import event_rows
 from periodic.events.tying import Crossing, KinkSettings
@@ -32,10 +32,11 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.demand import demand, evenly, wanted_ntst
+from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 ASIDE = (1.0, 0.0, 10.0)
@@ -58,7 +59,7 @@ class Collocation(MeshMethod):
     kinks : KinkSettings, optional
         When the mesh is tied to a passage of a switch; default what the tolerance asks for.
     solver : callable
-        The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+        The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
         Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
         alone; by default where that pays. Results are those of all states all the same, but of many
@@ -131,7 +132,7 @@ class Collocation(MeshMethod):
     @property
     def _plain(self) -> bool:
         """Whether its equations are those of the compiled iteration."""
-        return self.solver is condensation
+        return self.solver is elimination
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.

@@ -31,7 +31,7 @@ from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 

@@ -23,7 +23,7 @@ from periodic.condensed.linearised import Linearised
 from periodic.condensed.subspace import invariant
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum
+from periodic.stability.multipliers import Complex, Pair, Spectrum
 
 LEADING = 8
 """Multipliers that are kept of many."""

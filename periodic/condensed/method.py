@@ -17,10 +17,10 @@ from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -29,7 +29,7 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System, jumps_of, slides_of
 
 SHORT = 0.05

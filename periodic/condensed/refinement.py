@@ -14,10 +14,10 @@ from periodic.condensed.estimate import ContactError
 from periodic.condensed.linearised import answer, local_rows, unheard
 from periodic.condensed.memory import Memory
 from periodic.correction.error import SAFETY
-from periodic.correction.meshes import AIM
 from periodic.orbit.mesh import EventNode, Mesh
-from periodic.orbit.redistribution import SPLIT, density, spread
 from periodic.orbit.scheme import Array
+from periodic.refinement.demand import AIM
+from periodic.refinement.equidistribution import SPLIT, density, spread
 from periodic.system import jumps_of, linear_of
 
 FINER, COARSER = 2.5, 2.0

@@ -17,9 +17,9 @@ from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import FORCED, Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import STUCK, System, jumps_of, linear_of, slides_of
 
 STEPS = 512

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.condensation import condensed
+from periodic.collocation.elimination import eliminated
 from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain
@@ -66,7 +66,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     polynomial(orbit)
     if len(orbit.phases) or linear_of(system) is not None:
         raise ValueError("orbit has event nodes, or its system is condensed; it must be a smooth one")
-    fundamental = chain(condensed(system, orbit, ()))[:, :, 1:]
+    fundamental = chain(eliminated(system, orbit, ()))[:, :, 1:]
     A = fundamental[-1]
     q, p = _critical(A), _critical(A.T)
     size = orbit.span() if orbit.span() > NO_SIZE else 1.0
@@ -97,7 +97,7 @@ def monodromy(system: System, orbit: Orbit, shift: Array) -> Array:
     still, change = np.zeros(0), np.append(1.0, shift)
     allowed = SETTLED * max(orbit.span(), 1.0)
     for _ in range(VECTOR_ITERATIONS):
-        local = condensed(system, orbit, ())
+        local = eliminated(system, orbit, ())
         maps = chain(local)
         nodes = maps @ change
         stages, algebraic = local.recover(nodes, still, 1.0)

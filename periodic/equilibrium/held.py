@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.equilibrium.linearise import Rows, rows_at
-from periodic.linear.pair import subspaces, within
+from periodic.linear.invariantpair import subspaces, within
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array

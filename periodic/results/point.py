@@ -17,7 +17,7 @@ from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import CONSERVED, LOST, ROUNDING, without_trivial
+from periodic.stability.multipliers import CONSERVED, LOST, ROUNDING, without_trivial
 
 SHOWN = 8
 """Multipliers that a notebook shows."""

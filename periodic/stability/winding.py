@@ -20,7 +20,7 @@ import numpy as np
 
 from periodic.checks import positive
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum, nearest
+from periodic.stability.multipliers import Complex, Pair, Spectrum, nearest
 
 ORDER = 4
 """What a cubic does not show goes with this power of the step."""

@@ -13,11 +13,11 @@ import numpy as np
 
 from periodic.correction.identity import distance
 from periodic.correction.predictor import tangent
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
+from periodic.refinement.adaptation import refined
 from periodic.tracing.steps.patternchange import Crossed
 
 MOST_READINGS = 5

@@ -26,7 +26,7 @@ from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import mean_weights
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Stability
+from periodic.stability.multipliers import Complex, Stability
 
 TESTS = {Stability.MULTIPLIERS: (DOUBLING, TORUS), Stability.EIGENVALUES: (HOPF, CROSSING)}
 """Test functions of the special points of a branch, turns (LP) apart, by what decides stability."""

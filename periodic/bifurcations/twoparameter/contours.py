@@ -26,7 +26,7 @@ from periodic.correction.solution import Solution
 from periodic.equilibrium.linearise import crossing
 from periodic.linear.unknowns import size_of
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Stability
+from periodic.stability.multipliers import Stability
 
 
 def _matrix(solution: Solution) -> Array:

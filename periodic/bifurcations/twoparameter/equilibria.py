@@ -14,7 +14,7 @@ from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.equilibrium.method import Equilibrium
 from periodic.equilibrium.normalform import first_lyapunov
-from periodic.stability.spectrum import Complex
+from periodic.stability.multipliers import Complex
 
 
 def _scaled(solution: Solution) -> Complex:

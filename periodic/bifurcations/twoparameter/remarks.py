@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Complex
+from periodic.stability.multipliers import Complex
 
 HELD = 1e-6
 """How far a product that is held at 1, or a sum held at 0, of two numbers of size 1 may be from it."""

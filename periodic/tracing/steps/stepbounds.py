@@ -13,7 +13,7 @@ from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
-from periodic.stability.spectrum import Stability
+from periodic.stability.multipliers import Stability
 from periodic.stability.winding import Motion, turned
 from periodic.system import jumps_of, resets_of
 from periodic.tracing.steps.stepsize import ArclengthControl

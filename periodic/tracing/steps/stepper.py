@@ -14,10 +14,10 @@ from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import distance
 from periodic.correction.newton import NewtonSettings
 from periodic.correction.predictor import cubic, tangent
-from periodic.correction.refinement import carried, is_refined, refined, remeshed
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
+from periodic.refinement.adaptation import carried, is_refined, refined, remeshed
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.steps.patternchange import Reached, reached
 from periodic.tracing.steps.stepbounds import bound_ratios

@@ -14,7 +14,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.native import call, iteration
 from periodic.collocation.native.estimate import estimated
 from periodic.correction.arclength import ArclengthConstraint

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.numpy_systems import LinearOscillator
 
-from periodic.collocation.multipliers import substeps as module
-from periodic.collocation.multipliers.substeps import GROWING, MOST_SUBSTEPS, substeps
+from periodic.collocation.fastmotions import substeps as module
+from periodic.collocation.fastmotions.substeps import GROWING, MOST_SUBSTEPS, substeps
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.scheme import Array, Scheme

@@ -26,7 +26,7 @@ from periodic.events.noderows import event_rows
 from periodic.events.rewrites.rewrite import Ends
 from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 from periodic.tracing import continuation
 

@@ -1,4 +1,4 @@
-"""Condensation: the stages eliminated interval by interval, in NumPy or in C.
+"""Elimination of the stages, interval by interval, in NumPy or in C (condensation of parameters).
 
 With y the event nodes' phases and the free parameters, what is left of interval j is an affine map
 
@@ -27,12 +27,12 @@ from periodic.system import LinearisationLike, System
 
 
 @dataclass(frozen=True)
-class Condensed:
+class EliminatedStages:
     """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
 
     algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one;
     perturbed (N, n, n+q) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
-    `periodic.linear.bordering.Condensed`.
+    `periodic.linear.bordering.Eliminated`.
     """
 
     orbit: Orbit
@@ -77,21 +77,23 @@ class Condensed:
         return stages, -(self.algebraic @ inner)[..., 0]
 
 
-def condense(system: System, orbit: Orbit, line: LinearisationLike, jumps: Sequence[Jump] = ()) -> Condensed:
+def eliminate_stages(
+    system: System, orbit: Orbit, line: LinearisationLike, jumps: Sequence[Jump] = ()
+) -> EliminatedStages:
     """Eliminate all that is local from equations evaluated at an orbit's collocation points, with its jumps.
 
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
     matrix is singular.
     """
-    smooth = _condense(system, orbit, line)
+    smooth = _eliminate(system, orbit, line)
     step, perturbed = applied(orbit, smooth.step, jumps)
     return replace(smooth, step=step, perturbed=perturbed)
 
 
-def _condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condensed:
+def _eliminate(system: System, orbit: Orbit, line: LinearisationLike) -> EliminatedStages:
     compiled = routines(system, line)
     if compiled is not None:
-        return Condensed(orbit, *compiled.condense(orbit, line), compiled)
+        return EliminatedStages(orbit, *compiled.eliminate_stages(orbit, line), compiled)
     rows = rows_of(orbit, line)
     count, ncol, n = orbit.stages.shape
     reduced, algebraic = eliminate(rows, n)
@@ -102,19 +104,22 @@ def _condense(system: System, orbit: Orbit, line: LinearisationLike) -> Condense
     right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
     stages = solve_stages(local, right, weights)
     steps = _steps(orbit, stages)
-    return Condensed(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), rows.residual)
+    return EliminatedStages(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), rows.residual)
 
 
-def condensed(system: System, orbit: Orbit, free: tuple[int, ...]) -> Condensed:
-    """Linearise the collocation equations at an orbit and condense them. Raises as `condense`."""
-    return condense(system, orbit, evaluated(system, orbit, free), jumps_of(system, orbit, free))
+def eliminated(system: System, orbit: Orbit, free: tuple[int, ...]) -> EliminatedStages:
+    """Return the collocation equations at an orbit, linearised, without their stages.
+
+    Raises as `eliminate_stages`.
+    """
+    return eliminate_stages(system, orbit, evaluated(system, orbit, free), jumps_of(system, orbit, free))
 
 
-def condensation(
+def elimination(
     system: System, orbit: Orbit, line: LinearisationLike, own: Sequence[Row], jumps: Sequence[Jump]
 ) -> Chain:
-    """The linear solver of `Collocation` by default: condensed intervals, chained and bordered."""
-    return Chain(condense(system, orbit, line, jumps), own)
+    """The linear solver of `Collocation` by default: stages eliminated, intervals chained and bordered."""
+    return Chain(eliminate_stages(system, orbit, line, jumps), own)
 
 
 def solve_stages(local: Array, right: Array, weights: Array) -> Array:

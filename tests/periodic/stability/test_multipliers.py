@@ -9,7 +9,7 @@ import pytest
 from support.numpy_systems import Array
 
 from periodic.stability.graded import spectrum_of
-from periodic.stability.spectrum import Pair, Spectrum, nearest
+from periodic.stability.multipliers import Pair, Spectrum, nearest
 from periodic.stability.winding import meetings
 
 

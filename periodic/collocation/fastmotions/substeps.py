@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.multipliers.unresolved import jacobians
+from periodic.collocation.fastmotions.unresolved import jacobians
 from periodic.correction.newton import Correction
 from periodic.linear.bordering import Chain
 from periodic.linear.operator import Operator

@@ -1,16 +1,13 @@
-"""What a discretisation would change of an orbit's mesh, and the mesh that spreads its error evenly."""
+"""How many intervals an orbit needs: for its own error, and for that of its multipliers."""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
 
 import numpy as np
 
 from periodic.correction.error import ROUNDED, SAFETY, ErrorEstimate
-from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import SPLIT, density
 from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import SPLIT, density
 
 AIM = 0.1
 """The part of the tolerance that a new mesh aims at."""
@@ -33,58 +30,6 @@ FINEST = 3.0
 
 UNEVEN = 0.4
 """Part of the intervals that evenly spread err as little, at the least."""
-
-
-class Refinement:
-    """What is to be done to the mesh of an orbit: as it stands, nothing. Discretisations override it.
-
-    Parameters
-    ----------
-    orbit : Orbit
-        A converged orbit.
-    error : ErrorEstimate
-        Its errors.
-    """
-
-    def __init__(self, orbit: Orbit, error: ErrorEstimate) -> None:
-        self.orbit, self.error = orbit, error
-
-    @property
-    def fits(self) -> bool:
-        """Whether the mesh is tied to just the events that it should be."""
-        return True
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether the mesh is the finest allowed."""
-        return True
-
-    @property
-    def shortfall(self) -> str:
-        """By how much the orbit misses the tolerance, and on which mesh."""
-        return f"error estimate {self.error.motion:.1e} with {self.orbit.mesh.ntst} intervals"
-
-    def refined(self) -> Mesh:
-        """Return a mesh that suits the orbit.
-
-        Returns
-        -------
-        Mesh
-            The mesh, with the event nodes that the orbit has.
-        """
-        return self.orbit.mesh
-
-    def meshes(self) -> Iterator[tuple[Mesh, Array]]:
-        """Yield meshes made for the orbit.
-
-        Yields
-        ------
-        Mesh
-            A mesh, the best first.
-        ndarray, shape (k,)
-            Phases of its event nodes, in rad.
-        """
-        yield from ()
 
 
 def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> Array | None:

@@ -7,8 +7,8 @@ import pytest
 
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import FLOOR, density
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.equidistribution import FLOOR, density
 
 WAVES = {1: 1.0, 3: 0.02}
 
