@@ -73,7 +73,9 @@ class GradedSpectrum(Spectrum):
         if not isinstance(operator, Stepping):
             return super().apart(monodromy)
         own, other = (self._sorted(stepping) / self.radius for stepping in (self.stepping, operator))
-        return float(max(abs((other**power).sum() - (own**power).sum()) / power for power in (1, 2)))
+        with np.errstate(over="ignore", invalid="ignore"):  # far larger ones are infinitely far
+            sums = [abs((other**power).sum() - (own**power).sum()) / power for power in (1, 2)]
+        return float(np.nan_to_num(max(sums), nan=np.inf))
 
     def _sorted(self, stepping: Stepping) -> Complex:
         """The multipliers, largest modulus first."""

@@ -119,8 +119,7 @@ class Ends:
     @property
     def condition(self) -> SideCondition:
         """How small it becomes."""
-        index = self.excursion.index
-        return Speed(index, self.size) if self.site.row is IMPACT else Length(index, self.size)
+        return self.excursion.held(self.size)
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
