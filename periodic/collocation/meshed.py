@@ -132,10 +132,10 @@ class MeshMethod(Discretisation):
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            told = motions.followed(system, orbit, FOLLOWED)
+            motion = motions.followed(system, orbit, FOLLOWED)
         except FAILURES:
             return None
-        return None if told is None else self.guess(system, told.parameter, told)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
         """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
@@ -147,7 +147,7 @@ class MeshMethod(Discretisation):
         return word(system, orbit)
 
 
-def misplaced(system: System, orbit: Orbit) -> list[Violation]:
+def mode_violations(system: System, orbit: Orbit) -> list[Violation]:
     """Return where an orbit slips that should be held, or the reverse."""
     return [v for v in violations(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
 

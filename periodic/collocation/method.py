@@ -12,7 +12,7 @@ from periodic.collocation.elimination import elimination
 from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
 from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.meshed import MeshMethod, misplaced, scheme_for
+from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
@@ -157,7 +157,7 @@ class Collocation(MeshMethod):
         if error is UNKNOWN:
             return error
         own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
+        missing = np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
@@ -205,18 +205,18 @@ class CollocationRefinement(Refinement):
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
+        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode
 
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
         brief = "the motion sticks or slips there for too short a while to be followed"
-        return brief if self._misplaced else super().shortfall
+        return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
-    def _misplaced(self) -> bool:
+    def _in_wrong_mode(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(misplaced(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -224,7 +224,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._misplaced:
+        if self._in_wrong_mode:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -232,7 +232,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._misplaced:
+        if self._in_wrong_mode:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 

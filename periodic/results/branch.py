@@ -153,8 +153,8 @@ class Branch(Record):
     def _missed(self) -> str:
         values = self.values
         missed = [v for v in self.made.get("at", ()) if not np.isclose(values, v, rtol=1e-9, atol=0).any()]
-        told = ", ".join(f"{value:.10g}" for value in missed)
-        return f"no point at {self.parameter} = {told}: the branch does not pass there" if told else ""
+        listed = ", ".join(f"{value:.10g}" for value in missed)
+        return f"no point at {self.parameter} = {listed}: the branch does not pass there" if listed else ""
 
     @property
     def values(self) -> Array:

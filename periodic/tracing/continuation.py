@@ -167,7 +167,7 @@ class Continuation:
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )
-        self.watch.check(solver.problem.shown, base.orbit)
+        self.watch.check(solver.problem.full, base.orbit)
         yield self._emitted(base, Label.END)
         if base.value in self.user:
             yield self._emitted(base, Label.USER)
@@ -197,7 +197,7 @@ class Continuation:
         Point
             Those that follow.
         """
-        c, last = checkpoint, self.solver.problem.solved(points[-1].orbit)
+        c, last = checkpoint, self.solver.problem.restrict(points[-1].orbit)
         self.stop, self.collected = None, points
         try:
             begun = Start(self.solver, self._follow, self.search).found(self.start, float(c.sign))
@@ -344,7 +344,7 @@ class Continuation:
 
     def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
         problem = self.solver.problem
-        columns = self.watch.measured(problem.shown, problem.seen(solution.orbit))
+        columns = self.watch.measured(problem.full, problem.expand(solution.orbit))
         point = describe(solution, label, event, columns)
         self.collected.append(point)
         return point

@@ -42,8 +42,8 @@ def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Di
     found = _found(system, problem, always=bool(asked))
     if found is None:
         return problem, method
-    solved = replace(problem, system=found, wider=WholeSystem(found))
-    return solved, _split(method, found)
+    restricted = replace(problem, system=found, wider=WholeSystem(found))
+    return restricted, _split(method, found)
 
 
 def _found(system: System, problem: Problem, *, always: bool) -> Within | None:

@@ -36,10 +36,10 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
     for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):
             break
-        told = solver.discretisation.reworded(solver.problem.system, found.orbit)
-        if told is None:
+        changed = solver.discretisation.reworded(solver.problem.system, found.orbit)
+        if changed is None:
             break
-        found = _fixed(solver, told, sign)
+        found = _fixed(solver, changed, sign)
     return found
 
 
@@ -57,10 +57,10 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
         parameter[problem.index] = value
-        told = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
-        if told is None:
+        changed = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
+        if changed is None:
             return None
-        found = worded(solver, told, sign)
+        found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
         if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):

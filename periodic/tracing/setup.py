@@ -125,12 +125,12 @@ def setup(
         _check_bound(system, parameter, end)
     method.discretisation.check(problem)
     named("values", {} if values is None else values, "numbers")
-    for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
+    for name in set(method.watch.columns) & reserved(layout_of(problem.full)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
     if values and parameter in values:
         raise ValueError(f"values has {parameter!r}, which is continued in; give it as start")
     if guess is not None:
-        guess = problem.solved(_expressed(problem.shown, guess))
+        guess = problem.restrict(_expressed(problem.full, guess))
         for name in set(problem.determined) & set(values or {}):
             raise ValueError(f"determined has {name!r}, which is also in values; it must be one or the other")
     base = np.array(system.nominal if guess is None else guess.parameter, dtype=float)

@@ -26,7 +26,7 @@ from symbolic.structures.rowspart import RowsPart
 from symbolic.system.angularfrequency import AngularFrequency
 from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
-from symbolic.tables import told
+from symbolic.tables import listed
 
 MANY, PLACES = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
@@ -94,7 +94,7 @@ class CompiledSystem:
     sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
-        groups = {name: told(v.name for v in some) for name, some in self._groups.items() if some}
+        groups = {name: listed(v.name for v in some) for name, some in self._groups.items() if some}
         return f"CompiledSystem({'; '.join(f'{name} {names}' for name, names in groups.items())})"
 
     @property

@@ -29,7 +29,7 @@ def level_test(functional: Functional, level: float, label: Label, name: str) ->
 
     def value(solution: Solution) -> float:
         problem = solution.problem
-        found = called(f"event {name}", functional, problem.shown, problem.seen(solution.orbit))
+        found = called(f"event {name}", functional, problem.full, problem.expand(solution.orbit))
         return apart(functional, finite(f"event {name}", found, solution), level)
 
     def twice(base: Solution, new: Solution) -> bool:
@@ -44,8 +44,10 @@ def level_test(functional: Functional, level: float, label: Label, name: str) ->
             return comes_back(ends, (length * base.once(rate), length * new.once(rate)))
         except FAILURES as error:
             place = f"{problem.parameter} = {base.value:.6g} to {new.value:.6g}"
-            told = f"{name or label} has no derivative ({error}); a touch in {place} is seen by values alone"
-            warnings.warn(told, RuntimeWarning, stacklevel=2)
+            message = (
+                f"{name or label} has no derivative ({error}); a touch in {place} is seen by values alone"
+            )
+            warnings.warn(message, RuntimeWarning, stacklevel=2)
             return False
 
     rate = _rate_of(cast(Smooth, functional))

@@ -13,7 +13,7 @@ from bice import Equation, Problem
 from bice.continuation import PseudoArclengthContinuation, TimePeriodicOrbitHandler
 from bice.core.solvers import MyNewtonSolver
 
-from reports.benchmarks.peers.told import folds, median, tell
+from reports.benchmarks.peers.answers import folds, median, tell
 
 MOST_POINTS = 3000
 """Points after which a branch that does not get to its end is given up."""

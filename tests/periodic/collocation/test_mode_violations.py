@@ -47,7 +47,7 @@ def test_slip_by_less_than_the_error(
     own = method.error(problem, correction, tangent, spectrum)
     assert orbit.mesh.events and COARSE < 3 * own.orbit < FINE
     place = Violation(Breach.MODE, 0, 0, 1, part * own.orbit)
-    monkeypatch.setattr(collocation, "misplaced", lambda system, orbit: [place])
+    monkeypatch.setattr(collocation, "mode_violations", lambda system, orbit: [place])
     found = method.error(problem, correction, tangent, spectrum)
     assert np.isfinite(found.orbit) == refined
     refinement = method.refine(problem.system, orbit, found)

@@ -1,4 +1,4 @@
-"""How motions beside an orbit pass events at which the forces on the linear part jump.
+"""Modal saltation: how motions beside an orbit pass events at which the forces on the linear part jump.
 
 In modes, with x = Re outputs z and dz/dtau = lambda z + B f, saltation is of rank one: at fixed tau
 
@@ -30,7 +30,7 @@ CLOSE = 1e-8
 
 
 @dataclass(frozen=True)
-class Passage:
+class ModalSaltation:
     """An event at the end of an interval.
 
     row (n,): how early a perturbation of the states makes it; modes (J,) and own (o,): what is added to
@@ -43,27 +43,27 @@ class Passage:
     own: Array
 
 
-def passages(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[Passage]:
+def saltations(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[ModalSaltation]:
     """Return the events of an orbit at which forces jump, in order.
 
     Raises numpy.linalg.LinAlgError where a switch is at rest at its event, or forces there are not found.
     """
-    jumps, found = jumps_of(system), list[Passage]()
+    jumps, found = jumps_of(system), list[ModalSaltation]()
     chosen = [i for i, event in enumerate(orbit.mesh.events) if event.switch in jumps]
     if not chosen:
         return []
     forces = np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)])
     history = response.history(forces)
     for i in chosen:
-        passage = _passage(system, part, orbit, response, history[orbit.mesh.starts[i]], i)
-        if passage is not None:
-            found.append(passage)
+        saltation = _saltation(system, part, orbit, response, history[orbit.mesh.starts[i]], i)
+        if saltation is not None:
+            found.append(saltation)
     return sorted(found, key=lambda each: each.interval)
 
 
-def _passage(
+def _saltation(
     system: System, part: LinearPart, orbit: Orbit, response: Response, modes: Complex, index: int
-) -> Passage | None:
+) -> ModalSaltation | None:
     """One event with the modes there; None where it does not depend on the states."""
     switch, start, side = orbit.mesh.events[index].switch, orbit.mesh.starts[index], sides(system, orbit)
     interval, x, phase = before(orbit, index)
@@ -83,7 +83,7 @@ def _passage(
     speed = float(slope @ rate + by_phase)
     if speed == 0:
         raise np.linalg.LinAlgError("an event at rest")
-    return Passage(interval, slope / speed, response.modes.inputs @ (after - forces), later - rates)
+    return ModalSaltation(interval, slope / speed, response.modes.inputs @ (after - forces), later - rates)
 
 
 def _given(
