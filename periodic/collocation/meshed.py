@@ -12,9 +12,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from periodic.checks import whole
-from periodic.collocation.condensation import condensation
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection
 from periodic.collocation.local import relax
-from periodic.collocation.multipliers.substeps import SteppedCorrection
 from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.newton import Correction
@@ -28,8 +28,8 @@ from periodic.linear.operator import LinearSolver
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
@@ -59,7 +59,7 @@ class MeshMethod(Discretisation):
     ntst_min: int = 8
     ntst_max: int = 1000
     kinks: KinkSettings | None = None
-    solver: LinearSolver = condensation
+    solver: LinearSolver = elimination
     condense: bool | None = None
     tolerance: float = 1e-7
 
@@ -132,10 +132,10 @@ class MeshMethod(Discretisation):
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            told = motions.followed(system, orbit, FOLLOWED)
+            motion = motions.followed(system, orbit, FOLLOWED)
         except FAILURES:
             return None
-        return None if told is None else self.guess(system, told.parameter, told)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
         """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
@@ -147,7 +147,7 @@ class MeshMethod(Discretisation):
         return word(system, orbit)
 
 
-def misplaced(system: System, orbit: Orbit) -> list[Violation]:
+def mode_violations(system: System, orbit: Orbit) -> list[Violation]:
     """Return where an orbit slips that should be held, or the reverse."""
     return [v for v in violations(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
 

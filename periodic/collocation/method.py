@@ -8,11 +8,11 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from periodic.collocation.condensation import condensation
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.meshed import MeshMethod, misplaced, scheme_for
-from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
@@ -20,10 +20,10 @@ from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
 from periodic.events.noderows import event_rows
 from periodic.events.tying import Crossing, KinkSettings
@@ -32,10 +32,11 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.demand import demand, evenly, wanted_ntst
+from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 ASIDE = (1.0, 0.0, 10.0)
@@ -58,7 +59,7 @@ class Collocation(MeshMethod):
     kinks : KinkSettings, optional
         When the mesh is tied to a passage of a switch; default what the tolerance asks for.
     solver : callable
-        The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+        The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
         Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
         alone; by default where that pays. Results are those of all states all the same, but of many
@@ -131,7 +132,7 @@ class Collocation(MeshMethod):
     @property
     def _plain(self) -> bool:
         """Whether its equations are those of the compiled iteration."""
-        return self.solver is condensation
+        return self.solver is elimination
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
@@ -156,7 +157,7 @@ class Collocation(MeshMethod):
         if error is UNKNOWN:
             return error
         own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
+        missing = np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
@@ -204,18 +205,18 @@ class CollocationRefinement(Refinement):
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
+        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode
 
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
         brief = "the motion sticks or slips there for too short a while to be followed"
-        return brief if self._misplaced else super().shortfall
+        return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
-    def _misplaced(self) -> bool:
+    def _in_wrong_mode(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(misplaced(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -223,7 +224,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._misplaced:
+        if self._in_wrong_mode:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -231,7 +232,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._misplaced:
+        if self._in_wrong_mode:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from periodic.collocation.meshed import MeshMethod, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised, unheard
+from periodic.condensed.linearised import Linearised, exempt
 from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -29,7 +29,7 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System, jumps_of, slides_of
 
 SHORT = 0.05
@@ -90,15 +90,15 @@ class CondensedCollocation(MeshMethod):
     ) -> ErrorEstimate:
         """Estimate the errors by what is missing on the halved mesh, or by a Newton step there.
 
-        Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
-        the forces, however fast they change between them.
+        Velocities of the places, to which all modes contribute, count at mesh points alone: there they are
+        exact for the forces, however fast they change in between.
         """
         operator = correction.operator
         if isinstance(operator, Condensed) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
-        quiet = self._quiet(problem.system, operator)
+        exempted = self._exempted(problem.system, operator)
         beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, quiet, beside
+        given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
         brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < SHORT
         digits = FELT * operator.rounding if brief and isinstance(operator, Condensed) else 0.0
         found = deferred(*given, lengths=True, digits=digits)
@@ -116,12 +116,12 @@ class CondensedCollocation(MeshMethod):
         return bool(slides_of(system))
 
     @staticmethod
-    def _quiet(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
+    def _exempted(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
         """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
         if not isinstance(operator, Condensed):
             return None
         found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
-        found[:, list(unheard(system))] = True
+        found[:, list(exempt(system))] = True
         if jumps_of(system):
             found[operator.system.held] = False
         return found

@@ -17,9 +17,9 @@ from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import FORCED, Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import STUCK, System, jumps_of, linear_of, slides_of
 
 STEPS = 512
@@ -173,17 +173,17 @@ class Motion:
         halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
         residual = line.residual[0] + halves @ (parts[stuck] - 1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
-        told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
+        given_rows = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
         switches = [jumps_of(system)[i] for i in stuck]
         held = system.switch(x[None], at, self.parameter)[0, switches]
         gradient = system.switch_gradient(x[None], at, self.parameter)[0][0, switches]
-        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / self.width)[told], gradient])
+        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / self.width)[given_rows], gradient])
         unknowns = np.zeros((len(states), len(unknown)))
-        unknowns[: told.sum()] = line.d_algebraic[0][told]
+        unknowns[: given_rows.sum()] = line.d_algebraic[0][given_rows]
         unknowns[:, self.forces] += states[:, self.places] @ self.local
-        across = np.concatenate([halves[told], np.zeros((len(stuck), len(stuck)))])
+        across = np.concatenate([halves[given_rows], np.zeros((len(stuck), len(stuck)))])
         rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
-        return rows, np.concatenate([residual[told], held])
+        return rows, np.concatenate([residual[given_rows], held])
 
     def _noted(self, old: Array, tau: float) -> None:
         """Keep the events of a step that began on other sides."""

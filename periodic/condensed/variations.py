@@ -46,7 +46,7 @@ class CondensedVariations:
         Raises ValueError where forces jump.
         """
         given = Linearised.about(system, orbit, free)
-        if given.passages:
+        if given.saltations:
             raise ValueError(
                 "forces at the places jump, as those of friction that sticks; curves in two parameters and "
                 "derivatives of multipliers need a structure that is compiled with condense=False"
@@ -89,5 +89,5 @@ class CondensedVariations:
         row = self.multiplier(i, complex(values[j]), free) + self.multiplier(j, complex(values[i]), free)
         value = float((values[i] * values[j]).real) - 1
         found = values[[i, j]]
-        told = np.stack([found.real, found.imag])
-        return Row(value + row.value, row.nodes, row.outer, row.stages), told
+        parts = np.stack([found.real, found.imag])
+        return Row(value + row.value, row.nodes, row.outer, row.stages), parts

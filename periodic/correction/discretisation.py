@@ -14,15 +14,15 @@ from typing import Protocol, Self, runtime_checkable
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.error import ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum, Stability
+from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System
 
 

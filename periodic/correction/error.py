@@ -30,9 +30,9 @@ from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, 
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.stability.multipliers import Spectrum
+from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
-from periodic.stability.spectrum import Spectrum
-from periodic.stability.spectrum import apart as powers_apart
 from periodic.system import System
 
 Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]

@@ -208,12 +208,12 @@ class Problem:
         return side_conditions(self.conditions, self.others, origin)
 
     @property
-    def shown(self) -> System:
-        """The system that results are of."""
+    def full(self) -> System:
+        """The full system: the one that results are of."""
         return self.system if self.wider is None else self.wider.system
 
-    def seen(self, orbit: Orbit) -> Orbit:
-        """Return an orbit as one of the system that results are of.
+    def expand(self, orbit: Orbit) -> Orbit:
+        """Expand an orbit of the system that is solved to one of the full system.
 
         Parameters
         ----------
@@ -223,17 +223,17 @@ class Problem:
         Returns
         -------
         Orbit
-            The orbit that is shown.
+            The orbit with all states.
         """
         return orbit if self.wider is None else self.wider.expanded(orbit)
 
-    def solved(self, orbit: Orbit) -> Orbit:
-        """Return an orbit that is shown as one of the system that is solved.
+    def restrict(self, orbit: Orbit) -> Orbit:
+        """Restrict an orbit of the full system to one of the system that is solved.
 
         Parameters
         ----------
         orbit : Orbit
-            The orbit that is shown.
+            The orbit with all states.
 
         Returns
         -------

@@ -19,8 +19,8 @@ import numpy as np
 
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
+from periodic.stability.multipliers import LOST, Complex, Spectrum
 from periodic.stability.product import ROUNDING, multipliers
-from periodic.stability.spectrum import LOST, Complex, Spectrum
 
 FLOW = 1e3
 """Growth of motions above which the flow is taken out: one of 1e6 leaves six digits less of the others."""

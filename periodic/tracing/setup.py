@@ -20,8 +20,8 @@ from periodic.orbit.scheme import Array
 from periodic.results.frames import reserved
 from periodic.system import System, check_value, index_of
 from periodic.tracing.continuation import Continuation
+from periodic.tracing.methodchoice import chosen_method
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.suited import suited
 from periodic.tracing.watch import Watch
 
 
@@ -60,9 +60,9 @@ class Method:
             if given is not None and not isinstance(given, kind):
                 raise ValueError(f"{name} is {given!r}; it must be {kind.__name__}(...)")
         tolerance = Tolerance.of(tol)
-        problem, suiting = suited(discretisation or Collocation(), problem)
+        problem, chosen = chosen_method(discretisation or Collocation(), problem)
         return problem, cls(
-            discretisation=suiting.at(tolerance.orbit),
+            discretisation=chosen.at(tolerance.orbit),
             tolerance=tolerance,
             control=control or ArclengthControl(),
             watch=watch or Watch(),
@@ -125,12 +125,12 @@ def setup(
         _check_bound(system, parameter, end)
     method.discretisation.check(problem)
     named("values", {} if values is None else values, "numbers")
-    for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
+    for name in set(method.watch.columns) & reserved(layout_of(problem.full)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
     if values and parameter in values:
         raise ValueError(f"values has {parameter!r}, which is continued in; give it as start")
     if guess is not None:
-        guess = problem.solved(_expressed(problem.shown, guess))
+        guess = problem.restrict(_expressed(problem.full, guess))
         for name in set(problem.determined) & set(values or {}):
             raise ValueError(f"determined has {name!r}, which is also in values; it must be one or the other")
     base = np.array(system.nominal if guess is None else guess.parameter, dtype=float)

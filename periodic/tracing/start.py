@@ -9,13 +9,13 @@ import numpy as np
 
 from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
-from periodic.stability.spectrum import Stability
+from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
 from periodic.tracing.rereading import worded

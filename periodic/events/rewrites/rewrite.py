@@ -27,8 +27,8 @@ from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.system import System
 
 ALIKE = 1e-3

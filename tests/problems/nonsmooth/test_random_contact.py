@@ -19,14 +19,14 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 import periodic as per
 from periodic import Reason
 from periodic.bifurcations.locate import special_points
-from periodic.bifurcations.turning import Found
+from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
 from periodic.events.noderows import event_rows
 from periodic.events.rewrites.rewrite import Ends
 from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 from periodic.tracing import continuation
 
