@@ -238,12 +238,16 @@ class Collocation(Discretisation):
         error = found.error
         if error is UNKNOWN:
             return error
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
+        missing = self._missing(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
+
+    def _missing(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
+        """What of the orbit's error is that it slips where it should be held, or the reverse."""
+        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        return np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

@@ -81,14 +81,16 @@ class Start:
         """The first orbit."""
         solver = self.solver
         first = self._fixed(guess, sign)
-        if first.ok and not collapsed(guess, first):
+        sticks = bool(linear_of(solver.problem.system) and slides_of(solver.problem.system))
+        slips = sticks and first.ok and np.isinf(first.error.motion)  # where it should be held
+        if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
-        if linear_of(solver.problem.system) and slides_of(solver.problem.system):  # it is cheap, and sticks
+        if sticks:  # it is cheap
             motion = next(others, None)
-            if motion is not None and (last := self._fixed(motion, sign)).ok:
+            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
                 return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
