@@ -54,7 +54,7 @@ def settled(system: System, start: Orbit) -> Orbit | None:
             motion.period()
             states, same = np.array(motion.states), np.array_equal(side, motion.side)
             if same and np.abs(states[-1] - states[0]).max() <= STILL * np.ptp(states, axis=0).max():
-                motion.pace(FINE)
+                motion.pace(FINE, SHORTEST)
                 motion.period()
                 return orbit_of(motion)
     except FAILURES:
@@ -78,7 +78,7 @@ def followed(system: System, orbit: Orbit) -> Orbit | None:
         side = np.where(side == HELD, STUCK, side)
         begun = orbit.nodes[k], orbit.algebraic[k, 0], response.modes, history[k], side
         motion = Motion(system, orbit.parameter, *begun, begin=float(orbit.grid.left[k]))
-        motion.pace(FINE)
+        motion.pace(FINE, SHORTEST)
         motion.period()
         return orbit_of(motion)
     except FAILURES:

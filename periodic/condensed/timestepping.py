@@ -9,6 +9,7 @@ carried along ends the step at its limit.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,9 @@ ITERATIONS = 8
 
 CLOSE = 1e-10
 """Increment at which a step in time is solved."""
+
+PARTS = 8
+"""Shorter steps in one in which a mode changes."""
 
 PIVOTS = 200
 """Most changes of a mode until all are consistent."""
@@ -73,6 +77,30 @@ class Changed:
     step: int
 
 
+@dataclass(frozen=True)
+class Step:
+    """What a step of a width does to modes z: z+ = grown z + kicked f, the states then local f more."""
+
+    width: float
+    grown: Complex
+    kicked: Complex
+    local: Array
+
+    @classmethod
+    def over(cls, width: float, modes: ModesLike) -> Step:
+        """Return it."""
+        turned = modes.exponents * width
+        with np.errstate(all="ignore"):
+            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
+        kicked = (width * mean)[:, None] * modes.inputs
+        return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
+
+
+def _width(length: float) -> float:
+    """The width of a step, the same where it differs in its last digits."""
+    return float(f"{length:.9e}")
+
+
 @dataclass
 class Motion:
     """A motion in time.
@@ -103,10 +131,12 @@ class Motion:
     z: Complex
     side: Array
     begin: float = 0.0
+    phases: list[float] = field(default_factory=list, init=False)
     states: list[Array] = field(default_factory=list, init=False)
     unknowns: list[Array] = field(default_factory=list, init=False)
     sides: list[Array] = field(default_factory=list, init=False)
     events: list[Changed] = field(default_factory=list, init=False)
+    _known: dict[float, Step] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         part = linear_of(self.system)
@@ -137,35 +167,43 @@ class Motion:
         moved = linearise(self.system, *given, self.parameter, np.where(columns, STUCK, 1.0)[None]).d_rate[0]
         return row, int(np.abs(moved[row]).argmax())
 
-    def pace(self, steps: int) -> None:
-        """Take so many steps in a period from now on."""
-        modes, self.width, self.steps = self.modes, FORCED / steps, steps
-        turned = modes.exponents * self.width
-        with np.errstate(all="ignore"):
-            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
-        self.grown, self.kicked = np.exp(turned), (self.width * mean)[:, None] * modes.inputs
-        self.outputs = modes.outputs
-        self.local = (modes.outputs @ self.kicked).real + modes.direct
+    def pace(self, steps: int, shortest: float = np.inf) -> None:
+        """Take so many steps in a period from now on, but shorter ones (rad) where modes change."""
+        self.steps, self.shortest = steps, shortest
 
     @property
     def phase(self) -> Array:
         """The phases of the states that are kept."""
-        return np.asarray(self.begin + self.width * np.arange(len(self.states)))
+        return np.array(self.phases)
 
     def period(self) -> None:
-        """Follow it over a period, whose states, unknowns, modes and events are kept."""
-        self.states, self.unknowns, self.sides, self.events = [self.state], [self.unknown], [self.side], []
+        """Follow it over a period, whose phases, states, unknowns, modes and events are kept."""
+        self.phases, self.events = [self.begin], []
+        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.side]
         for k in range(self.steps):
-            self._step(self.begin + (k + 1) * self.width)
-            self.states.append(self.state)
-            self.unknowns.append(self.unknown)
-            self.sides.append(self.side)
-            self._noted(k)
+            self._advance(self.begin + FORCED * k / self.steps, self.begin + FORCED * (k + 1) / self.steps)
 
-    def _step(self, tau: float) -> None:
+    def _advance(self, begin: float, end: float) -> None:
+        """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
+        before = self.z, self.state, self.unknown, self.side
+        self._step(end, _width(end - begin))
+        if end - begin > self.shortest and not np.array_equal(before[3], self.side):
+            self.z, self.state, self.unknown, self.side = before
+            ends = np.linspace(begin, end, PARTS + 1)
+            for first, last in pairwise(ends):
+                self._advance(float(first), float(last))
+            return
+        self.phases.append(end)
+        self.states.append(self.state)
+        self.unknowns.append(self.unknown)
+        self.sides.append(self.side)
+        self._noted(len(self.states) - 2)
+
+    def _step(self, tau: float, width: float) -> None:
         """Take a step to a phase. Raises FloatingPointError."""
+        step = self._over(width)
         for _ in range(PIVOTS):
-            x, unknown, parts = self._solved(tau)
+            x, unknown, parts = self._solved(tau, step)
             wrong = self._wrong(x, parts, tau)
             if wrong is None:
                 break
@@ -173,8 +211,14 @@ class Motion:
             self.side = np.where(np.arange(len(self.side)) == column, mode, self.side)
         if wrong is not None or not np.isfinite(x).all():
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
-        self.z = self.grown * self.z + self.kicked @ unknown[self.forces]
+        self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
         self.state, self.unknown = x, unknown
+
+    def _over(self, width: float) -> Step:
+        """What a step of a width does, kept."""
+        if width not in self._known:
+            self._known[width] = Step.over(width, self.modes)
+        return self._known[width]
 
     def _wrong(self, x: Array, parts: Array, tau: float) -> tuple[int, int] | None:
         """The first column whose mode is not that at the end of a step, and the mode that it should have."""
@@ -203,28 +247,30 @@ class Motion:
         kept = [joint for joint in self.joints if joint.slides and self.side[joint.column] == STUCK]
         return np.array([joint.column for joint in kept], dtype=int), [joint.switch for joint in kept]
 
-    def _solved(self, tau: float) -> tuple[Array, Array, Array]:
+    def _solved(self, tau: float, step: Step) -> tuple[Array, Array, Array]:
         """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
-        shown, own = (self.outputs @ (self.grown * self.z)).real, len(self.own)
+        shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
         for _ in range(ITERATIONS):
-            x[self.places] = shown + self.local @ unknown[self.forces]
-            change = -np.linalg.solve(*self._equations(x, unknown, parts, tau)).astype(float)
+            x[self.places] = shown + step.local @ unknown[self.forces]
+            change = -np.linalg.solve(*self._equations(x, unknown, parts, tau, step)).astype(float)
             x[self.own] += change[:own]
             unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
             parts[self._stuck[0]] += change[own + len(unknown) :]
             if np.abs(change).max() < CLOSE * (1 + np.abs(unknown).max()):
                 break
-        x[self.places] = shown + self.local @ unknown[self.forces]
+        x[self.places] = shown + step.local @ unknown[self.forces]
         return x, unknown, parts
 
-    def _equations(self, x: Array, unknown: Array, parts: Array, tau: float) -> tuple[Array, Array]:
+    def _equations(
+        self, x: Array, unknown: Array, parts: Array, tau: float, step: Step
+    ) -> tuple[Array, Array]:
         """Rows at the end of a step by own states, unknowns and parts of jumps, and what is left of them.
 
         Where it is stuck a switch is 0, and the equations lie between those of its two sides.
         """
         system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
-        given = ((x - self.state) / self.width)[None], x[None], unknown[None], at, self.parameter
+        given = ((x - self.state) / step.width)[None], x[None], unknown[None], at, self.parameter
         columns = np.arange(len(self.side))
         upper = np.where(np.isin(columns, stuck), 1.0, self.side)
         line, left = self._carried(linearise(system, *given, upper[None]), x, tau), []
@@ -237,10 +283,10 @@ class Motion:
         told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
         held = self.values(x, tau, self.side)[switches]
         gradient = guards_gradient(system, x[None], at, self.parameter, self.side[None])[0][0, switches]
-        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / self.width)[told], gradient])
+        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[told], gradient])
         unknowns = np.zeros((len(states), len(unknown)))
         unknowns[: told.sum()] = line.d_algebraic[0][told]
-        unknowns[:, self.forces] += states[:, self.places] @ self.local
+        unknowns[:, self.forces] += states[:, self.places] @ step.local
         across = np.concatenate([halves[told], np.zeros((len(stuck), len(stuck)))])
         rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
         return rows, np.concatenate([residual[told], held])
@@ -264,19 +310,20 @@ class Motion:
         for joint in self.joints:
             before, after = int(old[joint.column]), int(new[joint.column])
             if before and before != after:
-                phase = self.begin + self.width * (k + self._share(k, joint, before, after))
+                begin, end = self.phases[k : k + 2]
+                phase = begin + (end - begin) * self._share(k, joint, before, after)
                 self.events.append(Changed(joint.index, before, after, phase, k))
 
     def _share(self, k: int, joint: Joint, before: int, after: int) -> float:
         """At which part of a step a joint changes its mode, by what its guards do in the mode before it."""
-        tau, old = self.begin + k * self.width, self.sides[k]
-        first, last = (self.values(self.states[k + i], tau + i * self.width, old) for i in (0, 1))
+        first, last = (self.values(self.states[i], self.phases[i], self.sides[k]) for i in (k, k + 1))
         if before == STUCK:
             switch = joint.up if after > 0 else joint.down
             begun, ended = first[switch], last[switch]
         elif joint.slides:  # its releases are the rates of the guard on its two sides
             begun = first[joint.switch]
-            ended = begun + self.width * first[joint.up if before > 0 else joint.down]
+            width = self.phases[k + 1] - self.phases[k]
+            ended = begun + width * first[joint.up if before > 0 else joint.down]
         else:
             begun, ended = first[joint.switch], last[joint.switch]
         return float(begun / (begun - ended)) if begun * ended < 0 else 0.5
