@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from periodic.correction.change import Beyond, Change
 from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along
-from periodic.events.modes import releases, sliding
+from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
 from periodic.events.rewrites.sites import Site, index_of, rewritten
@@ -83,6 +83,8 @@ class Begins:
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(orbit, chosen, size)
+                if inconsistency(system, events):
+                    continue
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
                 begin = index_of(events, phases, chosen[0].begin(orbit, size), orbit)
                 held = self._held(system, orbit, begin, size)
@@ -127,6 +129,8 @@ class Ends:
             sites = self._alike(system, orbit, own)
             for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(orbit, chosen, self.size)
+                if inconsistency(system, events):
+                    continue
                 mesh = self._mesh(orbit, events, phases)
                 held = self._held(system, orbit, own, events, phases)
                 modes, parameter = all_along(system, orbit, events)

@@ -14,6 +14,9 @@ from reference.judging import BESIDE, CIRCLE, FOLD, Verdict
 PHASES = 80
 """At which it is seen how far the joints are from a change, at the most."""
 
+NEUTRAL = 1e-6
+"""Multipliers as near to 1 are those of joints that hold, where some do."""
+
 LEADING = 0.1
 """Multipliers of that modulus are compared where a point has not all of them."""
 
@@ -47,6 +50,8 @@ def judged(exact: Jointed, point: per.Point, states: Callable[[per.Orbit, Array]
 def _apart(found: Period, point: per.Point) -> float:
     """How far the multipliers' polynomials are apart, or each leading one from the next of the other."""
     theirs, own = found.multipliers, np.asarray(point.multipliers)
+    if point.orbit.mesh.modes:  # where a joint holds all along is left open, which the engine leaves out
+        theirs = theirs[np.abs(theirs - 1) > NEUTRAL]
     if len(theirs) == len(own):
         polynomials = np.poly(theirs), np.poly(own)
         return float(np.abs(polynomials[0] - polynomials[1]).max() / np.abs(polynomials[0]).max())
