@@ -73,9 +73,8 @@ def test_violations_of_a_word(sticking: per.Point) -> None:
     system, orbit = dry(), sticking.orbit
     assert violations(system, orbit) == []
     assert {*sides(system, orbit)[:, 0]} == {-1.0, 1.0, 2.0}
-    slips = replace(
-        orbit, mesh=replace(orbit.mesh, events=tuple(replace(e, modes=()) for e in orbit.mesh.events))
-    )
+    plain = tuple(replace(event, modes=()) for event in orbit.mesh.events)
+    slips = replace(orbit, mesh=replace(orbit.mesh, events=plain))
     assert {v.breach for v in violations(system, slips)} >= {Breach.MODE}
 
 

@@ -38,7 +38,7 @@ def test_whole_range(branch: per.Branch) -> None:
 
 
 def test_orbits_close(branch: per.Branch) -> None:
-    """Assert that an integration from event to event comes back to each eighth orbit, as near as it claims: to 1e-8 or its error."""
+    """Assert that an integration from event to event comes back: to 1e-8, or ten times what is claimed."""
     judged = 0
     for point in branch[::8]:
         times = point.orbit.grid.left / point.parameter
@@ -46,7 +46,7 @@ def test_orbits_close(branch: per.Branch) -> None:
         state = np.array([point.orbit[name](begin) for name in ("x", "x'")]).ravel()
         end = followed(state, begin, point.parameter)
         growth = max(1.0, float(np.abs(point.multipliers).max()))
-        claimed = max(1e-8, 2 * point.error.orbit)
+        claimed = max(1e-8, 10 * point.error.orbit)
         assert end == pytest.approx(state, abs=claimed * growth)
         judged += 1
     assert judged > 6
