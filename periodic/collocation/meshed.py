@@ -44,7 +44,7 @@ WRONG = {
     Breach.HELD: Outcome.SLIDES,
     Breach.REVERSED: Outcome.EVENTS_CROSSED,
 }
-"""What an orbit that violates its word so is refused as, the first of them."""
+"""Outcome of an orbit that violates its word, by the first kind of violation in this order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +64,7 @@ class MeshMethod(Discretisation):
     tolerance: float = 1e-7
 
     ends_below: ClassVar[float] = ENDS_BELOW
-    """Length (rad) of an excursion below which a touch within it that is foreseen may be its end."""
+    """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -138,7 +138,7 @@ class MeshMethod(Discretisation):
         return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
-        """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
+        """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
 

@@ -37,10 +37,10 @@ PERIODS = 60
 STILL = 1e-3
 """A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
-ITERATIONS = 8
+STEP_ITERATIONS = 8
 """Newton steps in a step in time."""
 
-CLOSE = 1e-10
+STEP_INCREMENT = 1e-10
 """Increment at which a step in time is solved."""
 
 INTERVALS = 192
@@ -147,13 +147,13 @@ class Motion:
         """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
         shown, own = (self.outputs @ (self.grown * self.z)).real, len(self.own)
-        for _ in range(ITERATIONS):
+        for _ in range(STEP_ITERATIONS):
             x[self.places] = shown + self.local @ unknown[self.forces]
             change = -np.linalg.solve(*self._equations(x, unknown, parts, tau)).astype(float)
             x[self.own] += change[:own]
             unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
             parts[self.side == STUCK] += change[own + len(unknown) :]
-            if np.abs(change).max() < CLOSE * (1 + np.abs(unknown).max()):
+            if np.abs(change).max() < STEP_INCREMENT * (1 + np.abs(unknown).max()):
                 break
         x[self.places] = shown + self.local @ unknown[self.forces]
         return x, unknown, parts

@@ -37,8 +37,8 @@ from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2
-"""How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
-steps."""
+"""Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
+not resolve, or towards a change that no special point accounts for."""
 
 
 @dataclass(frozen=True)
