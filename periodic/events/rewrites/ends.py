@@ -28,12 +28,13 @@ from periodic.events.rewrites.table import (
     SWITCHING_SLIDING,
     Row,
 )
+from periodic.events.rewrites.twins import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
 from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, SurfaceLike, System
+from periodic.system import STUCK, Kind, SurfaceLike, System
 
 SHALLOW = 0.1
 """Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
@@ -177,8 +178,8 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
     if i == j:
         return None
     surface = surface_of(system, orbit.mesh.events[i].switch)
-    other = surface_of(system, orbit.mesh.events[j].switch)
-    return surface if surface.releases is not None and surface.switch == other.switch else None
+    ends = mode_after(surface, orbit.mesh.events[j]) is not None
+    return surface if surface.releases is not None and ends else None
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
@@ -188,6 +189,10 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
         return None
     first, second = orbit.mesh.events[segment], orbit.mesh.events[(segment + 1) % len(orbit.phases)]
     stuck, then = (mode_after(surface, event) == STUCK for event in (first, second))
+    if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
+        return GRAZING_SLIDING
+    if surface.kind == Kind.SLIDER:
+        return ADDING_SLIDING if then and not stuck else None
     if stuck:
         return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
     if then:
@@ -214,6 +219,9 @@ def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         held = Clearance(guard, second.direction, _middle(orbit, i))
         return Site(row, guard, i, held, 0.0, removed=(i, j))
     held = Clearance(first.switch, -first.direction, _middle(orbit, i))
+    others_stay = without(system, second, guard)
+    if others_stay is not None:
+        return Site(row, first.switch, i, held, 0.0, (), (i,), ((j, others_stay),))
     return Site(row, first.switch, i, held, 0.0, removed=(i, j))
 
 
