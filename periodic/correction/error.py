@@ -137,7 +137,7 @@ LEAST_VALUE = 0.1
 
 
 BEST = 2e-12
-"""Relative error of an orbit that rounding may leave; beside a touch it is far more in the multipliers."""
+"""Relative error of an orbit that rounding may leave; beside a grazing it is far more in the multipliers."""
 
 LAST_DIGITS = 4 * float(np.finfo(float).eps)
 """To how much of itself a parameter is known at the most."""
@@ -187,7 +187,7 @@ def deferred(
         Whether the equations change at events; by default whether the mesh has event nodes.
     lengths : bool
         Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
-        beside a touch these change far more along the branch than the states do.
+        beside a grazing these change far more along the branch than the states do.
     digits : float
         To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
         is rounding.
@@ -269,7 +269,7 @@ class _OnBranch:
 
     Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, d parameter /
     (d parameter / d arclength), is followed where it is short and that rate stays what it is on it: a rate
-    that is small may be so because orbits change much with the parameter, as beside a touch.
+    that is small may be so because orbits change much with the parameter, as beside a grazing.
     """
 
     problem: Problem
@@ -279,7 +279,7 @@ class _OnBranch:
     def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
         """Return them at the orbit of the same parameter, at the nearest one beside a fold. Raises FAILURES.
 
-        The parameter is known to rounding alone, which beside a touch moves a contact: it is added to the
+        The parameter is known to rounding alone, which beside a grazing moves a contact: it is added to the
         way, to the side on which lengths of excursions change more by both.
         """
         shift = found.increment.parameter

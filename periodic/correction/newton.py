@@ -126,7 +126,7 @@ class Way:
     residual is the largest one at that orbit, size the largest relative increment for the convergence test,
     length that for damping, and stretch the largest change of the distance between two event nodes, relative
     to it where that is less than 1 rad. depth is about the same by which the states' own increment is felt
-    there: beside a touch the square of a contact's length goes with them.
+    there: beside a grazing the square of a contact's length goes with them.
     """
 
     orbit: Orbit
