@@ -17,6 +17,7 @@ from periodic.collocation.fastmotions.substeps import SteppedCorrection
 from periodic.collocation.local import relax
 from periodic.correction.change import Change
 from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import motions, tying
@@ -136,6 +137,11 @@ class MeshMethod(Discretisation):
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)
+
+    def _missing(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
+        """What of the orbit's error is that it slips where it should be held, or the reverse."""
+        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
         """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""

@@ -37,7 +37,7 @@ from periodic.refinement.demand import demand, evenly, wanted_ntst
 from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
-from periodic.system import System
+from periodic.system import Kind, System, surfaces_of
 
 ASIDE = (1.0, 0.0, 10.0)
 """Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
@@ -156,12 +156,16 @@ class Collocation(MeshMethod):
         error = found.error
         if error is UNKNOWN:
             return error
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
+        missing = self._missing(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
+
+    def settles(self, system: System) -> bool:
+        """Return whether several joints may stick, or sliders are held: in time they find how."""
+        held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
+        return len(held) > 1 or Kind.SLIDER in held
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

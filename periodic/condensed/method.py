@@ -15,6 +15,7 @@ from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import SplitLinearisation, exempt
 from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
+from periodic.condensed.settling import followed
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.newton import Correction, briefest, in_order
@@ -85,6 +86,11 @@ class CondensedCollocation(MeshMethod):
         """Yield the orbit on the other mesh."""
         yield transfer(orbit, mesh, phases)
 
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return a guess with the events of the orbit's own motion, where that can be followed."""
+        motion = followed(system, orbit)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
+
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
@@ -111,6 +117,7 @@ class CondensedCollocation(MeshMethod):
         if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
+        named["orbit"] = max(found.orbit, self._missing(problem.system, correction.orbit, found))
         return ContactError(**named, variation=variation)
 
     def settles(self, system: System) -> bool:

@@ -16,11 +16,12 @@ import numpy as np
 
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.response import Response
-from periodic.events.modes import linearise, sides
+from periodic.events.impacts import carrying
+from periodic.events.modes import linearise, modes_in, sides
 from periodic.events.rates import before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import LinearPart, System, jumps_of
+from periodic.system import LinearPart, System, guards_gradient, jumps_of
 
 FORCE_ITERATIONS = 8
 """Newton steps to the forces at an event; one is enough where equations are linear in them."""
@@ -44,11 +45,11 @@ class ModalSaltation:
 
 
 def saltations(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[ModalSaltation]:
-    """Return the events of an orbit at which forces jump, in order.
+    """Return the events of an orbit at which forces jump, or rates of own states, in order.
 
     Raises numpy.linalg.LinAlgError where a switch is at rest at its event, or forces there are not found.
     """
-    jumps, found = jumps_of(system), list[ModalSaltation]()
+    jumps, found = {*jumps_of(system), *carrying(system)}, list[ModalSaltation]()
     chosen = [i for i, event in enumerate(orbit.mesh.events) if event.switch in jumps]
     if not chosen:
         return []
@@ -67,7 +68,10 @@ def _saltation(
     """One event with the modes there; None where it does not depend on the states."""
     switch, start, side = orbit.mesh.events[index].switch, orbit.mesh.starts[index], sides(system, orbit)
     interval, x, phase = before(orbit, index)
-    slope, by_phase, _ = (g[0, switch] for g in system.switch_gradient(x, phase, orbit.parameter))
+    modes_before = modes_in(system, orbit, interval)
+    slope, by_phase, _ = (
+        g[0, switch] for g in guards_gradient(system, x, phase, orbit.parameter, modes_before)
+    )
     if not slope.any():
         return None
     own = np.setdiff1d(np.arange(x.shape[1]), part.states)

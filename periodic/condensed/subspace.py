@@ -37,7 +37,7 @@ EIGENVECTOR_RESIDUAL = 1e-12
 
 
 class Motions(Protocol):
-    """Free motion over a period; see `periodic.condensed.floquet.Floquet`."""
+    """Free motion over a period; see `periodic.condensed.floquet.ModalFloquet`."""
 
     @property
     def light(self) -> int: ...

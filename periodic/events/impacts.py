@@ -31,7 +31,7 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
 
     Raises numpy.linalg.LinAlgError where one has no rates.
     """
-    jumping = {*resets_of(system), *jumps_of(system), *_carried(system)}
+    jumping = {*resets_of(system), *jumps_of(system), *carrying(system)}
     return [
         _jump(system, orbit, i, free)
         for i, event in enumerate(orbit.mesh.events)
@@ -39,8 +39,8 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
     ]
 
 
-def _carried(system: System) -> list[int]:
-    """The switches at which elastic sliders give way: the rate of their place jumps there."""
+def carrying(system: System) -> list[int]:
+    """Return the switches at which elastic sliders give way: the rate of their place jumps there."""
     return [k for surface in of_kind(system, Kind.SLIDER) for k in surface.releases or ()]
 
 

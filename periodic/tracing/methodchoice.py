@@ -100,8 +100,8 @@ def _check_events(system: System) -> None:
     unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
     state, _ = system.rest(system.nominal)
     slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]
-    if slopes[unknown].any() or getattr(system, "guards_depend", False):
+    if slopes[unknown].any():
         raise ValueError(
-            "the equations at the places jump, and whether motion sticks there is known only of one joint "
-            "on a structure with all its modes; it must be compiled with condense=False"
+            "the equations at the places jump, and whether motion sticks there is known only of a "
+            "structure with all its modes; it must be compiled with condense=False"
         )

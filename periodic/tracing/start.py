@@ -80,14 +80,16 @@ class Start:
         """The first orbit."""
         solver = self.solver
         first = self._fixed(guess, sign)
-        if first.ok and not collapsed(guess, first):
+        settles = solver.discretisation.settles(solver.problem.system)
+        slips = settles and first.ok and np.isinf(first.error.motion)  # where it should be held
+        if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
-        if solver.discretisation.settles(solver.problem.system):
+        if settles:
             motion = next(others, None)
-            if motion is not None and (last := self._fixed(motion, sign)).ok:
+            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
                 return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
