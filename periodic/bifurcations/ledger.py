@@ -54,8 +54,8 @@ class Entry:
         Whether it is one.
     conservative : bool
         Whether multipliers come in pairs mu, 1/mu.
-    touch : bool
-        Whether it sits on a touch, where multipliers jump: its own are those on one side.
+    grazing : bool
+        Whether it sits on a grazing, where multipliers jump: its own are those on one side.
     """
 
     label: Label
@@ -66,7 +66,7 @@ class Entry:
     blur: float = 0.0
     equilibrium: bool = False
     conservative: bool = False
-    touch: bool = False
+    grazing: bool = False
 
     @property
     def crossing(self) -> int | None:
@@ -107,7 +107,7 @@ class Entry:
         crossing = self.crossing
         if crossing is None:
             return set(range(len(self.growth) + 1))
-        if self.touch:
+        if self.grazing:
             return {n + side * crossing for n in before for side in (-1, 1)}
         few = self.beside
         more = {count + crossing for count in few}
@@ -161,10 +161,10 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
     """Return what is not accounted for between the points of a branch, in order along it.
 
     turns: whether turns of the parameter have labels there, as folds of a branch have. One that is named at a
-    touch may lie just before it.
+    grazing may lie just before it.
     """
     entries, found = _on_touches(entries), []
-    folded = {entry.value for entry in entries if entry.touch and entry.label is Label.FOLD}
+    folded = {entry.value for entry in entries if entry.grazing and entry.label is Label.FOLD}
     both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
     for (last, entry), (before, after), turning in both:
         if not entry.after(before, turning):
@@ -175,12 +175,12 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 
 
 def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
-    """The entries, those at a touch marked so: a GR, and what is named right after it at the same orbit."""
+    """The entries, those at a grazing marked so: a GR, and what is named right after it at the same orbit."""
     found: list[Entry] = []
     for entry in entries:
         last = found[-1] if found else None
-        same = last is not None and last.touch and entry.value == last.value
-        found.append(replace(entry, touch=True) if same or entry.label is Label.GRAZING else entry)
+        same = last is not None and last.grazing and entry.value == last.value
+        found.append(replace(entry, grazing=True) if same or entry.label is Label.GRAZING else entry)
     return found
 
 

@@ -180,8 +180,8 @@ def _between(within: WithinStep, new: Solution, ds: float, test: TestFunction) -
         return float(sign * local(within.at(distance)))
 
     ends = {0.0: value(0.0), ds: value(ds)}
-    touching = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
-    dips = test.dips(within.base, new) or [(touching, np.nan)]
+    vertex = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
+    dips = test.dips(within.base, new) or [(vertex, np.nan)]
     found = (second_change(value, ends, place * ds, expected) for place, expected in dips)
     return next((place for place in found if place is not None), None)
 

@@ -18,7 +18,8 @@ from periodic.correction.identity import from_itself
 from periodic.correction.solution import Solution
 
 MERGED = 0.05
-"""What a pitchfork leaves of an orbit's distance from its copies, as a part of that at the step's ends."""
+"""Largest distance of the orbit at a pitchfork from its shifted copies, as a part of that at the step's
+ends."""
 
 BESIDE = 1e-3
 """Distance from a turn, as a part of the step, at which its multipliers are looked at on either side, and
@@ -43,12 +44,12 @@ class Found:
 def named(within: WithinStep, turn: Found, new: Solution, ds: float) -> Found:
     """Return a turn of the branch by its name.
 
-    BP where its orbit takes fewer periods than those of the step's ends: there it is as good as itself one or
-    more excitation periods later, and what follows are the same orbits so much later. HB where an autonomous
-    orbit has shrunk to an equilibrium: what follows are the same orbits half a period later. BP also where a
-    multiplier touches 1 without passing it: the branch leaves another there, which goes on. On a curve in two
-    parameters it is at most a cusp. Raises RejectedError where a multiplier passes 1 and comes back within
-    the step: a fold and a branch point.
+    BP where its orbit has a smaller period than those at the step's ends: it equals its copy one or more
+    excitation periods later, and the branch beyond consists of such copies of the same orbits. HB where an
+    autonomous orbit has shrunk to an equilibrium: the branch beyond consists of the same orbits half a period
+    later. BP also where a multiplier touches 1 without passing it: the branch leaves another there, which
+    goes on. On a curve in two parameters it is at most a cusp. Raises RejectedError where a multiplier passes
+    1 and comes back within the step: a fold and a branch point.
     """
     base, problem = within.base, within.solver.problem
     if codim2.picked(problem) is not None:

@@ -45,7 +45,7 @@ WRONG = {
     Breach.HELD: Outcome.SLIDES,
     Breach.REVERSED: Outcome.EVENTS_CROSSED,
 }
-"""What an orbit that violates its word so is refused as, the first of them."""
+"""Outcome of an orbit that violates its word, by the first kind of violation in this order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +65,7 @@ class MeshMethod(Discretisation):
     tolerance: float = 1e-7
 
     ends_below: ClassVar[float] = ENDS_BELOW
-    """Length (rad) of an excursion below which a touch within it that is foreseen may be its end."""
+    """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -144,7 +144,7 @@ class MeshMethod(Discretisation):
         return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
-        """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
+        """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
 

@@ -20,7 +20,7 @@ from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
+from periodic.correction.newton import Correction, LinearisedEquations, NewtonSettings, in_order, linearised
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -40,7 +40,7 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import Kind, System, surfaces_of
 
 ASIDE = (1.0, 0.0, 10.0)
-"""How far before its kink an event node begins on a new mesh (rad), in tolerances; tried in turn."""
+"""Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
 
 SHALLOWER = (10.0, 100.0)
 """How much shallower event nodes are tried where a new mesh fails."""
@@ -62,8 +62,8 @@ class Collocation(MeshMethod):
         The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
         Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
-        alone; by default where that pays. Results are those of all states all the same, but of many
-        multipliers the leading ones.
+        alone; by default where that pays. Results are still of all states, but of the multipliers, if they
+        are many, only the leading ones.
     tolerance : float
         What meshes are made for; set by the trace.
 
@@ -75,7 +75,7 @@ class Collocation(MeshMethod):
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
-        """The same with other schemes: Newton's way from a rest is a matter of luck."""
+        """The same with other schemes: whether Newton converges from rest depends on the scheme."""
         schemes = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
         return tuple(replace(self, scheme=scheme) for scheme in schemes)
 
@@ -118,11 +118,11 @@ class Collocation(MeshMethod):
         free: tuple[int, ...],
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
-    ) -> Linearised:
+    ) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
-        Event nodes are as far beside their levels as rounding may leave them: it is nothing to the orbit, but
-        to the multipliers where a contact is shallow.
+        Event nodes are put off their levels by as much as rounding may: that does not change the orbit
+        noticeably, but the multipliers where a contact is shallow.
         """
         off = aside(orbit, event_rows(system, orbit, free))
         given = (system, orbit, free, conditions, settings)
@@ -137,7 +137,7 @@ class Collocation(MeshMethod):
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
 
-        Past its kink a switch hardly changes, and Newton has nothing to hold on to.
+        Past its kink a switch hardly changes, and the row of the event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in ASIDE if deep.any() else (0.0,):
@@ -192,7 +192,7 @@ class CollocationRefinement(Refinement):
 
     @cached_property
     def wanted(self) -> list[Crossing]:
-        """The crossings to tie the mesh to, at levels that the orbit is accurate enough for."""
+        """The crossings to tie the mesh to, at levels not below the error of the orbit."""
         settings, meaningful = self._settings, tying.DEEPEST * min(self.error.orbit, 1.0)
         deepest = max(settings.deepest or 0.0, meaningful)
         return tying.wanted(self.system, self.orbit, replace(settings, deepest=deepest))

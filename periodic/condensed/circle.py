@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.scheme import Array
 
@@ -26,7 +26,7 @@ TURN = 0.8
 DEEPEST = 40
 """How often an interval is halved for this."""
 
-NEAR = 0.3
+NEAR_CIRCLE = 0.3
 """Moduli between this part of the radius and its inverse are those of poles near the circle."""
 
 
@@ -34,7 +34,7 @@ class Beside(Protocol):
     """Motions beside an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
 
     @property
-    def given(self) -> Linearised:
+    def given(self) -> SplitLinearisation:
         """The system about the orbit, with all modes."""
 
     def repeating(self, multiplier: complex) -> CondensedRepeating:
@@ -68,7 +68,7 @@ class Circle:
 
         Raises FloatingPointError where one lies on the circle, to rounding.
         """
-        near = self.poles[(np.abs(self.poles) > NEAR * self.radius) & (self.poles.imag > 0)]
+        near = self.poles[(np.abs(self.poles) > NEAR_CIRCLE * self.radius) & (self.poles.imag > 0)]
         angles = np.unique(np.concatenate([np.linspace(0, np.pi, FEWEST + 1), np.angle(near)]))
         places = [(float(angle), self._value(float(angle))) for angle in angles]
         turn = sum(self._turn(*ends, DEEPEST) for ends in pairwise(places))

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.modal.flexibility import Flexibility
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -29,7 +29,7 @@ class Coupled:
 
     Parameters
     ----------
-    given : Linearised
+    given : SplitLinearisation
         The system about its orbit.
     flexibility : Flexibility
         What forces do to the states of the linear part.
@@ -38,7 +38,7 @@ class Coupled:
         they begin with nothing.
     """
 
-    def __init__(self, given: Linearised, flexibility: Flexibility, *, wraps: complex) -> None:
+    def __init__(self, given: SplitLinearisation, flexibility: Flexibility, *, wraps: complex) -> None:
         orbit, local = given.orbit, given.local
         self.given, self.flexibility, self.wraps = given, flexibility, wraps
         self.kind = np.result_type(float if flexibility.real else complex, wraps)

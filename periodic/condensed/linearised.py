@@ -87,7 +87,7 @@ def answer(
 
 
 @dataclass(frozen=True)
-class Linearised:
+class SplitLinearisation:
     """A split system about an orbit.
 
     Parameters
@@ -114,7 +114,9 @@ class Linearised:
     system: System
 
     @classmethod
-    def about(cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0) -> Linearised:
+    def about(
+        cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0
+    ) -> SplitLinearisation:
         """Return it with the modes that matter at a tolerance, with all of them by default.
 
         Raises ValueError for a system without a linear part, and as `condense` does.

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from periodic.collocation.meshed import MeshMethod, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised, exempt
-from periodic.condensed.operator import Condensed
+from periodic.condensed.linearised import SplitLinearisation, exempt
+from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.settling import followed
 from periodic.correction.discretisation import Discretisation
@@ -33,11 +33,11 @@ from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System, jumps_of, slides_of
 
-SHORT = 0.05
+BRIEF_CONTACT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
 
-FELT = 0.1
-"""The part of it by which the parameter is off, about: fast modes have a small share of a motion."""
+PARAMETER_SHARE = 0.1
+"""Error of the parameter in parts of the rounding in the states: fast modes have little part in a motion."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,8 @@ class CondensedCollocation(MeshMethod):
         """Return the equations of the places, and those of the event nodes."""
         if not in_order(orbit):
             raise EventsCrossedError
-        given = Linearised.about(system, orbit, free, self.tolerance)
-        return Condensed(given, event_rows(system, orbit, free))
+        given = SplitLinearisation.about(system, orbit, free, self.tolerance)
+        return CondensedOperator(given, event_rows(system, orbit, free))
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
@@ -88,8 +88,8 @@ class CondensedCollocation(MeshMethod):
 
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
-        told = followed(system, orbit)
-        return None if told is None else self.guess(system, told.parameter, told)
+        motion = followed(system, orbit)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
@@ -100,19 +100,21 @@ class CondensedCollocation(MeshMethod):
         exact for the forces, however fast they change in between.
         """
         operator = correction.operator
-        if isinstance(operator, Condensed) and applies(operator):
+        if isinstance(operator, CondensedOperator) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
         exempted = self._exempted(problem.system, operator)
         beside = OneSided(self._brief)
         given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
-        brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < SHORT
-        digits = FELT * operator.rounding if brief and isinstance(operator, Condensed) else 0.0
+        brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < BRIEF_CONTACT
+        digits = (
+            PARAMETER_SHARE * operator.rounding if brief and isinstance(operator, CondensedOperator) else 0.0
+        )
         found = deferred(*given, lengths=True, digits=digits)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
         named = {f.name: getattr(found, f.name) for f in fields(found)}
-        if isinstance(operator, Condensed):
+        if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
         named["orbit"] = max(found.orbit, self._missing(problem.system, correction.orbit, found))
@@ -125,7 +127,7 @@ class CondensedCollocation(MeshMethod):
     @staticmethod
     def _exempted(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
         """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
-        if not isinstance(operator, Condensed):
+        if not isinstance(operator, CondensedOperator):
             return None
         found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
         found[:, list(exempt(system))] = True
@@ -134,13 +136,13 @@ class CondensedCollocation(MeshMethod):
         return found
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
-        given = Linearised.about(system, orbit, free, self.tolerance)
-        return Condensed(given, event_rows(system, orbit, free), brief=True)
+        given = SplitLinearisation.about(system, orbit, free, self.tolerance)
+        return CondensedOperator(given, event_rows(system, orbit, free), brief=True)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""
         operator = correction.operator
-        leading = operator.leading if isinstance(operator, Condensed) else None
+        leading = operator.leading if isinstance(operator, CondensedOperator) else None
         return LeadingSpectrum(correction.fundamental, trivial, leading)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:

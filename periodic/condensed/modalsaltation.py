@@ -23,10 +23,10 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, System, guards_gradient, jumps_of
 
-ITERATIONS = 8
+FORCE_ITERATIONS = 8
 """Newton steps to the forces at an event; one is enough where equations are linear in them."""
 
-CLOSE = 1e-8
+FORCE_INCREMENT = 1e-8
 """Part of rates and unknowns by which the last one may still move them."""
 
 
@@ -98,7 +98,7 @@ def _given(
     Raises numpy.linalg.LinAlgError where they are not found.
     """
     n, rate, unknown = x.shape[1], np.zeros_like(x), guess[None].copy()
-    for _ in range(ITERATIONS):
+    for _ in range(FORCE_ITERATIONS):
         line = linearise(system, rate, x, unknown, phase, orbit.parameter, side[None])
         rows = np.concatenate([line.d_rate[0][:, own], line.d_algebraic[0]], axis=1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[:n]
@@ -107,6 +107,6 @@ def _given(
         rate[0, own] -= change[: len(own)]
         unknown = system.move(unknown, -change[None, len(own) :])
         found = np.append(rate[0, own], unknown)
-        if np.abs(change).max(initial=0.0) <= CLOSE * (1 + np.abs(found).max(initial=0.0)):
+        if np.abs(change).max(initial=0.0) <= FORCE_INCREMENT * (1 + np.abs(found).max(initial=0.0)):
             return rate[0, own], unknown[0]
     raise np.linalg.LinAlgError("the forces at an event are not found")

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from periodic.condensed.chain import pays
 from periodic.condensed.coupled import Coupled, folded
-from periodic.condensed.floquet import Floquet, Leading
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.floquet import Leading, ModalFloquet
+from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.recursion import pays
 from periodic.linear import bordered
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
@@ -21,12 +21,12 @@ from periodic.orbit.scheme import Array
 
 
 @dataclass(frozen=True)
-class Condensed:
+class CondensedOperator:
     """The linearised equations of a split system; see `periodic.linear.operator.Operator`.
 
     Parameters
     ----------
-    given : Linearised
+    given : SplitLinearisation
         The system about the orbit.
     own : sequence of Row
         The rows of the event nodes.
@@ -34,7 +34,7 @@ class Condensed:
         Whether of the fundamental matrices the last is enough.
     """
 
-    given: Linearised
+    given: SplitLinearisation
     own: Sequence[Row] = ()
     brief: bool = False
 
@@ -99,9 +99,9 @@ class Condensed:
         return unknowns @ found[:count] + driven @ given, found[count:]
 
     @cached_property
-    def _floquet(self) -> Floquet:
+    def _floquet(self) -> ModalFloquet:
         """Free motion beside the orbit."""
-        return Floquet(self.given)
+        return ModalFloquet(self.given)
 
     def _bordered(self, rows: Sequence[Row]) -> Array:
         """The equations with the rows of event nodes and side conditions, constants first."""

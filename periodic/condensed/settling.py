@@ -73,7 +73,7 @@ def followed(system: System, orbit: Orbit) -> Orbit | None:
     try:
         response, _ = answer(system, orbit, orbit.parameter, ())
         history = response.history(np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)]))
-        k = _quiet(orbit)
+        k = _amid_segment(orbit)
         side = sides(system, orbit)[k]
         side = np.where(side == HELD, STUCK, side)
         begun = orbit.nodes[k], orbit.algebraic[k, 0], response.modes, history[k], side
@@ -85,7 +85,7 @@ def followed(system: System, orbit: Orbit) -> Orbit | None:
         return None
 
 
-def _quiet(orbit: Orbit) -> int:
+def _amid_segment(orbit: Orbit) -> int:
     """The mesh point about the middle of the longest segment."""
     mesh = orbit.mesh
     if not mesh.events:

@@ -31,10 +31,10 @@ from periodic.system import (
     surfaces_of,
 )
 
-ITERATIONS = 8
+STEP_ITERATIONS = 8
 """Newton steps in a step in time."""
 
-CLOSE = 1e-10
+STEP_INCREMENT = 1e-10
 """Increment at which a step in time is solved."""
 
 PARTS = 8
@@ -251,13 +251,13 @@ class Motion:
         """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
         shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
-        for _ in range(ITERATIONS):
+        for _ in range(STEP_ITERATIONS):
             x[self.places] = shown + step.local @ unknown[self.forces]
             change = -np.linalg.solve(*self._equations(x, unknown, parts, tau, step)).astype(float)
             x[self.own] += change[:own]
             unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
             parts[self._stuck[0]] += change[own + len(unknown) :]
-            if np.abs(change).max() < CLOSE * (1 + np.abs(unknown).max()):
+            if np.abs(change).max() < STEP_INCREMENT * (1 + np.abs(unknown).max()):
                 break
         x[self.places] = shown + step.local @ unknown[self.forces]
         return x, unknown, parts
@@ -280,16 +280,16 @@ class Motion:
         halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
         residual = line.residual[0] + halves @ (parts[stuck] - 1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
-        told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
+        given_rows = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
         held = self.values(x, tau, self.side)[switches]
         gradient = guards_gradient(system, x[None], at, self.parameter, self.side[None])[0][0, switches]
-        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[told], gradient])
+        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[given_rows], gradient])
         unknowns = np.zeros((len(states), len(unknown)))
-        unknowns[: told.sum()] = line.d_algebraic[0][told]
+        unknowns[: given_rows.sum()] = line.d_algebraic[0][given_rows]
         unknowns[:, self.forces] += states[:, self.places] @ step.local
-        across = np.concatenate([halves[told], np.zeros((len(stuck), len(stuck)))])
+        across = np.concatenate([halves[given_rows], np.zeros((len(stuck), len(stuck)))])
         rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
-        return rows, np.concatenate([residual[told], held])
+        return rows, np.concatenate([residual[given_rows], held])
 
     def _carried(self, line: LinearisationLike, x: Array, tau: float) -> LinearisationLike:
         """Put the limits of sliders that are carried along in the place of their rows."""

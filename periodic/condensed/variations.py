@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from periodic.condensed.circle import Circle
-from periodic.condensed.floquet import Floquet, Leading
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.floquet import Leading, ModalFloquet
+from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.orbit import Orbit
@@ -29,14 +29,14 @@ class CondensedVariations:
     ----------
     system : System
         The equations.
-    given : Linearised
+    given : SplitLinearisation
         The same about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change.
     """
 
     system: System
-    given: Linearised
+    given: SplitLinearisation
     free: tuple[int, ...]
 
     @staticmethod
@@ -45,7 +45,7 @@ class CondensedVariations:
 
         Raises ValueError where forces jump.
         """
-        given = Linearised.about(system, orbit, free)
+        given = SplitLinearisation.about(system, orbit, free)
         if given.saltations:
             raise ValueError(
                 "forces at the places jump, as those of friction that sticks; curves in two parameters and "
@@ -61,7 +61,7 @@ class CondensedVariations:
     @cached_property
     def multipliers(self) -> Complex:
         """The leading multipliers."""
-        return np.linalg.eigvals(Leading(Floquet(self.given)).fundamental[-1]).astype(np.complex128)
+        return np.linalg.eigvals(Leading(ModalFloquet(self.given)).fundamental[-1]).astype(np.complex128)
 
     def outside(self, radius: float) -> int:
         """Return how many multipliers have a modulus larger than `radius`, of all modes."""

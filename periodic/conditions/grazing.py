@@ -1,4 +1,4 @@
-"""The condition that holds an orbit at a touch: curves of grazing orbits in two parameters."""
+"""The condition that holds an orbit at a grazing: curves of grazing orbits in two parameters."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHORT_OF = 1e-9
 class GrazingCondition(Condition):
     """A switch just touches its level (GR): an extremum of s(x, tau, p) over the period lies on it.
 
-    The orbit has no event node at the touch, as the GR point of a branch that it is traced from.
+    The orbit has no event node at the grazing, as the GR point of a branch that it is traced from.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The boundary to discretisations: how an orbit is represented, linearised, held against its error, refined.
+"""The boundary to discretisations: how an orbit is represented, linearised, refined, and its error estimated.
 
 A new one is one file: a class with the five methods of `Discretisation` that have no body here. Orbits are
 `periodic.orbit.orbit.Orbit` (or a subclass): values at mesh points and, in each interval, at the points of a
@@ -137,7 +137,7 @@ class Discretisation(Protocol):
         """
 
     def check(self, problem: Problem) -> None:
-        """Refuse a problem that the method is not for.
+        """Refuse a problem to which the method does not apply.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class Discretisation(Protocol):
         return ()
 
     def settles(self, system: System) -> bool:
-        """Return whether a motion that is left to settle is the first to be tried where Newton fails.
+        """Return whether time integration until the motion settles is tried first where Newton fails.
 
         Parameters
         ----------
@@ -237,16 +237,16 @@ class Discretisation(Protocol):
 
     @property
     def trusted(self) -> float:
-        """Error of the multipliers above which they tell no special points."""
+        """Error of the multipliers above which no special points are located by them."""
         return float("inf")
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
-        """Others with which a first orbit is looked for if Newton does not find it with this one."""
+        """Discretisations to try for the first orbit if Newton does not find it with this one."""
         return ()
 
     def at(self, tolerance: float) -> Self:
-        """Return the discretisation with what its settings leave open chosen for a tolerance.
+        """Return the discretisation with all settings that were left open chosen for a tolerance.
 
         Parameters
         ----------
@@ -278,7 +278,7 @@ class Discretisation(Protocol):
         Returns
         -------
         Orbit or None
-            A guess; None where the motion cannot be followed, or nothing tells more than the orbit does.
+            A guess; None where the motion cannot be followed, or has the events that the orbit has already.
         """
         return None
 

@@ -18,7 +18,7 @@ from periodic.correction.condition import SideCondition
 from periodic.correction.newton import (
     USUAL,
     Linearise,
-    Linearised,
+    LinearisedEquations,
     NewtonSettings,
     linearised,
     moved,
@@ -35,7 +35,9 @@ from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
 from periodic.system import System
 
-Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]
+Solved = Callable[
+    [System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], LinearisedEquations
+]
 """What linearises the equations at an orbit and solves them; raises FAILURES."""
 
 LEAST_SPAN = 1e-6
@@ -102,7 +104,7 @@ class ErrorEstimate:
         float
             Its error (SI).
         """
-        return SAFETY * self.parameter * max(abs(value), SMALL * scale)
+        return SAFETY * self.parameter * max(abs(value), LEAST_VALUE * scale)
 
     @property
     def worst(self) -> float:
@@ -130,12 +132,12 @@ UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 ROUNDED = 3.0
 """How many times the rounding expected of them multipliers may be off by rounding."""
 
-SMALL = 0.1
+LEAST_VALUE = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
 
 BEST = 2e-12
-"""Relative error of an orbit that rounding may leave; beside a touch it is far more in the multipliers."""
+"""Relative error of an orbit that rounding may leave; beside a grazing it is far more in the multipliers."""
 
 LAST_DIGITS = 4 * float(np.finfo(float).eps)
 """To how much of itself a parameter is known at the most."""
@@ -185,7 +187,7 @@ def deferred(
         Whether the equations change at events; by default whether the mesh has event nodes.
     lengths : bool
         Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
-        beside a touch these change far more along the branch than the states do.
+        beside a grazing these change far more along the branch than the states do.
     digits : float
         To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
         is rounding.
@@ -252,7 +254,7 @@ def relative(
     better: Callable[[], Orbit] | None = None,
 ) -> ErrorEstimate:
     """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
-    largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
+    largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
     by_orbit = _powers(spectrum, found.monodromy, found.fundamental[-1])
     rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))
@@ -267,17 +269,17 @@ class _OnBranch:
 
     Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, d parameter /
     (d parameter / d arclength), is followed where it is short and that rate stays what it is on it: a rate
-    that is small may be so because orbits change much with the parameter, as beside a touch.
+    that is small may be so because orbits change much with the parameter, as beside a grazing.
     """
 
     problem: Problem
-    solve: Callable[[Orbit], Linearised]
+    solve: Callable[[Orbit], LinearisedEquations]
     size: float
 
-    def at_same_parameter(self, found: Linearised) -> Linearised:
+    def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
         """Return them at the orbit of the same parameter, at the nearest one beside a fold. Raises FAILURES.
 
-        The parameter is known to rounding alone, which beside a touch moves a contact: it is added to the
+        The parameter is known to rounding alone, which beside a grazing moves a contact: it is added to the
         way, to the side on which lengths of excursions change more by both.
         """
         shift = found.increment.parameter
@@ -290,13 +292,13 @@ class _OnBranch:
                 return there
         return self.solve(self._moved(found, found.increment))
 
-    def beyond(self, found: Linearised, way: float) -> Linearised:
+    def beyond(self, found: LinearisedEquations, way: float) -> LinearisedEquations:
         """Return them where the parameter is `way` more; `found` beside a fold."""
         along = self._along(found, way)
         there = None if along is None else self._there(found, along)
         return found if there is None else there
 
-    def _along(self, found: Linearised, way: float) -> Increment | None:
+    def _along(self, found: LinearisedEquations, way: float) -> Increment | None:
         """The way along the branch on which the parameter changes by so much; None where that is far.
 
         It is where an excursion changes by more than its length, too.
@@ -307,7 +309,7 @@ class _OnBranch:
         along = kernel.scaled(way / kernel.parameter)
         return along if stretched(found.orbit, along) <= 1 else None
 
-    def _there(self, found: Linearised, way: Increment) -> Linearised | None:
+    def _there(self, found: LinearisedEquations, way: Increment) -> LinearisedEquations | None:
         """The same at the end of a way; None where the branch is not straight on it."""
         try:
             there = self.solve(self._moved(found, way))
@@ -316,10 +318,10 @@ class _OnBranch:
         straight = 1 / STRAIGHT < there.kernel.parameter / found.kernel.parameter < STRAIGHT
         return there if straight else None
 
-    def _moved(self, found: Linearised, by: Increment) -> Orbit:
+    def _moved(self, found: LinearisedEquations, by: Increment) -> Orbit:
         return moved(self.problem.system, self.problem.free, found.orbit, by)
 
-    def _length(self, found: Linearised) -> float:
+    def _length(self, found: LinearisedEquations) -> float:
         """Arclength of the kernel; lengths of excursions tell of no fold."""
         kernel = found.kernel
         still = replace(kernel, phases=np.zeros_like(kernel.phases))

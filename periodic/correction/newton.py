@@ -126,7 +126,7 @@ class Way:
     residual is the largest one at that orbit, size the largest relative increment for the convergence test,
     length that for damping, and stretch the largest change of the distance between two event nodes, relative
     to it where that is less than 1 rad. depth is about the same by which the states' own increment is felt
-    there: beside a touch the square of a contact's length goes with them.
+    there: beside a grazing the square of a contact's length goes with them.
     """
 
     orbit: Orbit
@@ -294,7 +294,7 @@ def briefest(orbit: Orbit) -> float:
 
 
 @dataclass(frozen=True)
-class Linearised:
+class LinearisedEquations:
     """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n).
 
     operator: they themselves, where they are to be had.
@@ -314,12 +314,12 @@ def linearised(
     free: tuple[int, ...],
     conditions: Sequence[SideCondition],
     settings: NewtonSettings,
-) -> Linearised:
+) -> LinearisedEquations:
     """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
     step = newton_step(linearise, system, orbit, free, conditions, settings)
     kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
     operator = step.operator
-    return Linearised(operator.orbit, step.increment, kernel, operator.fundamental, operator)
+    return LinearisedEquations(operator.orbit, step.increment, kernel, operator.fundamental, operator)
 
 
 def in_order(orbit: Orbit) -> bool:

@@ -91,7 +91,7 @@ class Balance:
 
     @property
     def fundamental(self) -> Array:
-        """Nothing is known of them: Hill's method has them, once the orbit is found."""
+        """Unknown here (NaN): Hill's method computes them once the orbit is found."""
         n = self.orbit.nodes.shape[1]
         return np.full((1, n, n), np.nan)
 

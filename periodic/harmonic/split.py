@@ -16,8 +16,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.floquet import Floquet, Leading, LeadingSpectrum
-from periodic.condensed.linearised import Linearised, Local, local_rows
+from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
+from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
@@ -257,4 +257,4 @@ def _leading(system: System, correction: Correction) -> SeriesLeading:
     changes = [part.slope(orbit.parameter, index) for index in free]
     response = Response(part.modes(orbit.parameter), SCHEME, pieces.grid, mesh.period)
     local = local_rows(system, part, pieces, free)
-    return SeriesLeading(Floquet(Linearised(pieces, part, response, changes, local, system)))
+    return SeriesLeading(ModalFloquet(SplitLinearisation(pieces, part, response, changes, local, system)))

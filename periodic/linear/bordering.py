@@ -28,10 +28,10 @@ GROWTH = 1e6
 PLACES = 16
 """Between so many places at the most growth is looked at."""
 
-MOST = 1e150
+LARGEST_FUNDAMENTAL = 1e150
 """Largest fundamental matrices that are given: products of two are finite."""
 
-SMALL = 16
+PAIRED_UP_TO = 16
 """Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
 
 
@@ -123,17 +123,17 @@ class Chain:
 
     @cached_property
     def fundamental(self) -> Array:
-        """Fundamental matrices at the mesh points, shape (N+1, n, n), those beyond MOST scaled to it."""
+        """Fundamental matrices at the mesh points, (N+1, n, n), scaled to LARGEST_FUNDAMENTAL if larger."""
         if getattr(self.eliminated, "perturbed", None) is None:
             found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
-            if self.growth <= MOST:
+            if self.growth <= LARGEST_FUNDAMENTAL:
                 return found
         return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
 
     @cached_property
     def growth(self) -> float:
         """How much motions grow at the most from one joint to another; of large systems from the first."""
-        if self.maps.shape[1] <= SMALL:
+        if self.maps.shape[1] <= PAIRED_UP_TO:
             return between_any(self.steps)
         found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
         return found if np.isfinite(found) else np.inf
@@ -189,11 +189,11 @@ class Chain:
 def chain(eliminated: Eliminated) -> Array:
     """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
     count, n, width = eliminated.step.shape
-    if eliminated.compiled is not None and n <= SMALL:
+    if eliminated.compiled is not None and n <= PAIRED_UP_TO:
         return eliminated.compiled.chain(eliminated.step)
     first = np.zeros((1, n, width))
     first[0, :, 1 : 1 + n] = np.eye(n)
-    if n <= SMALL and np.array_equal(eliminated.origin, np.arange(count)):
+    if n <= PAIRED_UP_TO and np.array_equal(eliminated.origin, np.arange(count)):
         return np.concatenate([first, _chained(eliminated.step)])
     maps = np.concatenate([first, np.empty((count, n, width))])
     for j in range(count):
@@ -242,10 +242,10 @@ def between_any(steps: Array) -> float:
 
 
 def _after_bounded(before: Array, step: Array) -> Array:
-    """A product of two matrices, scaled down to MOST if it is larger."""
+    """A product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
     product = step @ before
     size = float(np.abs(product).max())
-    return product if size <= MOST else product * (MOST / size)
+    return product if size <= LARGEST_FUNDAMENTAL else product * (LARGEST_FUNDAMENTAL / size)
 
 
 def onto_start(row: Row, maps: Array) -> Array:

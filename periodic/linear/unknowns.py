@@ -14,7 +14,7 @@ STEEP = 5.0
 """Rates of the states, in sizes a rad, from which on an orbit with kinks is steep."""
 
 BRIEF = 0.02
-"""Excursions (rad) about as short are told apart by their lengths as well: beside a touch an orbit hardly
+"""Excursions (rad) about as short are told apart by their lengths as well: beside a grazing an orbit hardly
 changes while they grow by decades."""
 
 E_FOLD = 0.03
@@ -167,7 +167,7 @@ class Increment:
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
         """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points.
 
-        With the event nodes where these are the same: beside a touch excursions' lengths alone tell how far
+        With the event nodes where these are the same: beside a grazing excursions' lengths alone tell how far
         along a branch an orbit is.
         """
         at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later

@@ -10,7 +10,7 @@ from periodic.system import System
 
 UNKNOWN_ITERATIONS = 12
 UNKNOWN_INCREMENT = 1e-10
-LONGEST = 5.0
+LONGEST_STEP = 5.0
 
 
 def solve_algebraic(
@@ -45,7 +45,7 @@ def solve_algebraic(
         change = np.zeros_like(algebraic)
         rows = line.d_algebraic[finite, n:]
         change[finite] = np.linalg.solve(rows, line.residual[finite, n:, None])[..., 0]
-        algebraic = algebraic - np.clip(change, -LONGEST, LONGEST)
+        algebraic = algebraic - np.clip(change, -LONGEST_STEP, LONGEST_STEP)
         if np.abs(change).max() < UNKNOWN_INCREMENT:
             break
     return algebraic

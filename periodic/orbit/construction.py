@@ -1,4 +1,4 @@
-"""Orbits made otherwise than by solving: constants, and orbits on another mesh or in other scales."""
+"""Orbits that need no solving: constants, and orbits carried to another mesh or to other scales."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from periodic.system import System, VariableLike, check_system
 
 
 def as_read_by(system: System, orbit: Orbit) -> Orbit:
-    """Return an orbit in the scales of a system: itself, as a rule.
+    """Return an orbit in the scales of a system; the same one if it has them already.
 
     Parameters
     ----------

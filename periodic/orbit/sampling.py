@@ -16,13 +16,13 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System, index_of, resets_of
 
 PER_PERIOD = 96
-"""Intervals in each period of the excitation, of equal length as far as these show the samples."""
+"""Equal intervals in each period of the excitation, used where they resolve the samples."""
 
 GRADED = 384
-"""Intervals in each period, between samples, of a motion that the equal ones do not show."""
+"""Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
 
 LEAST_PEAK_TO_PEAK = 1e-6
-"""Peak to peak (scaled) that samples are compared with at the least."""
+"""Least peak to peak (scaled) that samples are compared with."""
 
 APART = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
@@ -106,7 +106,7 @@ def sampled(
 
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:
-    """The orbit on equal intervals, or on those of the samples' own where equal ones jump over something."""
+    """The orbit on equal intervals, or on intervals that end at samples where equal ones miss something."""
     even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     orbit = _on(even, phase, state, algebraic, parameter)
     missed = np.abs(orbit.state(phase) - state).max(axis=0)

@@ -19,10 +19,10 @@ from periodic.orbit.scheme import Array
 Complex = NDArray[np.complex128]
 
 CONSERVED = 100.0
-"""What lies within so many errors of the multipliers from 1 cannot be told from it,"""
+"""A multiplier cannot be told from 1 if it is nearer to it than so many times the multipliers' error,"""
 
 ROUNDING = 1e-10
-"""... or within this."""
+"""... or nearer than this distance."""
 
 LOST = 0.1
 """Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""

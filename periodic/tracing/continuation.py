@@ -37,8 +37,8 @@ from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2
-"""How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
-steps."""
+"""Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
+not resolve, or towards a change that no special point accounts for."""
 
 
 @dataclass(frozen=True)
@@ -273,9 +273,9 @@ class Continuation:
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
         sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
-        touching = standing(self.solver, base, ds) if self.state.steps == 0 else None
-        if touching is not None:
-            return Step(base, ds, [], Course(), touching)
+        at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
+        if at_grazing is not None:
+            return Step(base, ds, [], Course(), at_grazing)
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
@@ -354,8 +354,8 @@ class Continuation:
         assert self.state is not None
         found = crossed(self.solver, at)
         if found is not None:
-            touching = found.solution if found.touches else at.end
-            named = [Found(label, 0.0, touching) for label in at_once(at.end, found.solution)]
+            at_grazing = found.solution if found.touches else at.end
+            named = [Found(label, 0.0, at_grazing) for label in at_once(at.end, found.solution)]
             for special in [] if found.touches else named:
                 yield from self._met(special)
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
@@ -419,7 +419,7 @@ class Continuation:
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""
         self._since_remesh += 1
-        if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
+        if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the grazing
             return new
         better = self._stepper.remeshed(new, self._since_remesh >= self.control.remesh_every)
         if better is new or self._unaccounted([entry(found, Label.NONE) for found in (new, better)]):

@@ -34,7 +34,8 @@ class Watch:
     limits : mapping of str to (float, float)
         Ranges of further parameters (SI) that end the branch.
     stop : mapping of str to int
-        After how many points of a label or event it ends, {"LP": 2}, counted from the start each way.
+        Number of points of a label or event after which the branch ends, as {"LP": 2}, counted from the start
+        in each direction.
     special : tuple of TestFunction
         Further kinds of special points.
     progress : callable, optional
@@ -152,7 +153,7 @@ class Watch:
 
 
 def _rising(ends: object) -> bool:
-    """Whether two values are finite numbers that rise."""
+    """Whether two values are finite numbers in rising order."""
     if not (isinstance(ends, Sequence | np.ndarray) and len(ends) == 2):
         return False
     numbers = all(isinstance(end, int | float | np.number) and math.isfinite(end) for end in ends)

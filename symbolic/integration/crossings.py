@@ -24,7 +24,7 @@ from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
 from symbolic.integration.cvodes import IntegrationError, spaced
 
-LONGEST = math.pi / 32
+LONGEST_INTERVAL = math.pi / 32
 """Longest interval (rad) between two phases at which switches are looked at."""
 
 PARTS = 16
@@ -281,8 +281,8 @@ class _Way:
 
 
 def _filled(phase: Array) -> tuple[Array, NDArray[np.int_]]:
-    """Phases that are nowhere farther apart than LONGEST, and the indices of the given ones."""
-    counts = np.maximum(np.ceil(np.diff(phase) / LONGEST), 1).astype(int)
+    """Phases that are nowhere farther apart than LONGEST_INTERVAL, and the indices of the given ones."""
+    counts = np.maximum(np.ceil(np.diff(phase) / LONGEST_INTERVAL), 1).astype(int)
     places = np.append(0, np.cumsum(counts))
     inner = np.arange(places[-1]) - np.repeat(places[:-1], counts)
     every = np.repeat(phase[:-1], counts) + np.repeat(np.diff(phase) / counts, counts) * inner

@@ -35,7 +35,7 @@ ASIDE = 1e3
 """How far before a kink, in tolerances, the derivatives are integrated: past it they have none."""
 
 UNKNOWN_ITERATIONS = 60
-UNKNOWN_INCREMENT = 1e-13
+INCREMENT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -165,9 +165,7 @@ class SensitiveFlow:
             if not np.isfinite(by_unknown).all() or not np.isfinite(g).all():
                 break
             change: Array = np.linalg.solve(by_unknown, -g.ravel()).astype(float)
-            if (np.abs(change) <= UNKNOWN_INCREMENT * (1 + np.abs(unknown))).all() or (
-                np.abs(g) <= UNKNOWN_INCREMENT
-            ).all():
+            if (np.abs(change) <= INCREMENT * (1 + np.abs(unknown))).all() or (np.abs(g) <= INCREMENT).all():
                 gradient = -np.linalg.solve(by_unknown, np.hstack([by_state, by_free]))
                 first = np.hstack([np.eye(n), np.zeros((n, q))])
                 y = np.append(state, unknown)[:, None]

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from symbolic.scenes.changing import Steps, Value, address, complaint, keys_of, set_value
-from symbolic.scenes.errors import LONGEST, InputError, cut, refused
+from symbolic.scenes.errors import LONGEST_QUOTE, InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
@@ -18,11 +18,11 @@ from symbolic.scenes.names import built_in, scene_names
 from symbolic.scenes.schema import Scene, schema_of
 
 Override = tuple[str, Value]
-"""A key, dotted or its last component alone, and its value, perhaps as text; none takes the key out."""
+"""A key (dotted, or its last component alone) and its value (perhaps as text); None removes the key."""
 
 
 LARGEST = 32768
-"""Bytes of a scene file; what is larger is none, and may take Python's reader of TOML for ever."""
+"""Most bytes of a scene file: Python's reader of TOML may take for ever with larger ones."""
 
 
 def ends(scene: Scene) -> list[str]:
@@ -106,5 +106,5 @@ def _parsed(source: str, text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         why = "its tables are too deep" if isinstance(error, RecursionError) else str(error)
-        found = f'file "{source}" is not TOML: {cut(why, 3 * LONGEST)}'
+        found = f'file "{source}" is not TOML: {cut(why, 3 * LONGEST_QUOTE)}'
         raise InputError("scene", found, "it must hold lines like preload = 810") from error

@@ -21,7 +21,7 @@ NOTHING = 1e-9
 """Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
 
 SAME = 16 * np.finfo(float).eps
-"""Part of the largest coefficient by which matrices differ that are the same but for rounding."""
+"""Largest difference of equal matrices by rounding, as a part of the largest coefficient."""
 
 DEFECTIVE = 1e12
 """Condition of the eigenvectors above which they do not span the motion."""
@@ -85,7 +85,7 @@ class RowsPart:
     rates : tuple of int
         Which of `places`, by their order, are velocities.
     moving : tuple of int
-        Which of all states are velocities: rates by the phase, as Omega scales the time.
+        Which of all states are velocities, dq/dtau in the phase: Omega scales them.
     omega : callable
         Parameters (p,) to Omega in rad/s.
     """

@@ -26,10 +26,10 @@ from periodic.orbit.orbit import Orbit
 from periodic.system import System, jumps_of, resets_of
 
 GROWING = 1.0
-"""Re z beyond which growth is followed in substeps,"""
+"""Motions whose rate times interval z has a real part beyond this are followed in substeps."""
 
 EACH, FASTEST = 0.7, 2.0
-"""... in which it is so much at the most, and |z| of any other motion."""
+"""Largest Re z of a growing motion in a substep, and largest |z| of any other motion there."""
 
 ROUNDING = float(np.finfo(float).eps)
 """Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""

@@ -1,4 +1,4 @@
-"""What forces do to the places, as a matrix: the columns that are asked for, or its product with forces."""
+"""The flexibility matrix, from forces to states at the places: chosen columns, or its product with forces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Matrix = NDArray[Any]
 """Real or complex."""
 
 SPREAD = 300.0
-"""Decay over a run of intervals (nepers) up to which the way between any two of them is one product."""
+"""Decay (nepers) over a run of intervals up to which the response between any two of them is one product."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Flexibility:
     response : Response
         The modes.
     closing : tuple of ndarray, optional
-        What the modes and their conjugates at the beginning are of what a period leaves in them, (J,) each;
-        default nothing, z(0) = 0.
+        Factors, (J,) each, by which modes and their conjugates at the beginning follow from what the forces
+        of a period leave in them; default 0, z(0) = 0.
     past : bool
         Whether forces act within their own period too, not just in later ones.
     """
@@ -41,7 +41,7 @@ class Flexibility:
 
     @classmethod
     def repeating(cls, response: Response, multiplier: complex = 1.0) -> Flexibility:
-        """Return that of motions and forces that are multiplied by a number over the period."""
+        """Return the flexibility for motions and forces that are multiplied by a number over the period."""
         return cls(response, response.closings(multiplier))
 
     @classmethod
@@ -69,7 +69,7 @@ class Flexibility:
 
     @property
     def _alike(self) -> bool:
-        """Whether of the way between two intervals only how many lie in between counts."""
+        """Whether the response between two intervals depends on their distance alone."""
         response = self.response
         begun = self.closing is None or self.closing[0] is response.closing
         return response.uniform and self.past and begun
@@ -122,7 +122,7 @@ class Flexibility:
         return response.stages(forces, 0.0 if self.closing is None else self.closing[0])
 
     def pulled(self, weights: Array) -> Matrix:
-        """Return the weights of forces, (N, b, k, r), in those (N, a, s, r) of the states that they make."""
+        """Return the transposed product: weights of forces (N, b, k, r) from those of states (N, a, s, r)."""
         if not self._chained_up or np.iscomplexobj(weights):
             found = self.whole.reshape(weights[..., 0].size, -1).T @ weights.reshape(-1, weights.shape[3])
             return np.asarray(found.reshape(*self.whole.shape[3:], weights.shape[3]))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.modal.moments import NEAR, TERMS, Complex, Table
+from periodic.condensed.modal.moments import SERIES_UP_TO, TERMS, Complex, Table
 from periodic.condensed.modal.response import Response, moments_of
 from periodic.orbit.mesh import Grid
 from periodic.orbit.native.arrays import address, plain, source
@@ -280,7 +280,7 @@ def _room(shapes: Sequence[tuple[int, ...]]) -> list[Complex]:
 @cache
 def _of_scheme(scheme: Scheme) -> tuple[_Call, Sequence[Array]]:
     """A call with what belongs to a scheme, and the arrays that it has addresses of."""
-    moments, call = moments_of(scheme), _Call(points=scheme.ncol, terms=TERMS, near=NEAR)
+    moments, call = moments_of(scheme), _Call(points=scheme.ncol, terms=TERMS, near=SERIES_UP_TO)
     kept = [plain(array) for array in (moments.places, moments.taylor, moments.derivatives)]
     for name, array in zip(_OF_SCHEME, kept, strict=True):
         setattr(call, name, address(array))

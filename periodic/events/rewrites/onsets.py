@@ -28,7 +28,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
 
 AT_ONCE = 1e-7
-"""What is as near to its change, as a part of its largest value, changes at once."""
+"""Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
 
 SHORT_OF = 1e-9
 """How far from where something begins orbits without it are held, in the same part: rounding decides."""

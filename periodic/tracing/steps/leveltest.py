@@ -25,7 +25,7 @@ from periodic.system import System
 
 
 def level_test(functional: Functional, level: float, label: Label, name: str) -> TestFunction:
-    """Return the test function of a level that is passed, or touched within a step."""
+    """Return the test function of a level that is crossed, or grazed within a step."""
 
     def value(solution: Solution) -> float:
         problem = solution.problem

@@ -34,7 +34,7 @@ MESHES_BEYOND = 4
 """How often the mesh of the orbit beyond a change is made anew."""
 
 CHANGES_IN_A_STEP = 8
-"""Most switches that touch within one step."""
+"""Most changes of the pattern that are tried as the first one in a step."""
 
 
 @dataclass(frozen=True)

@@ -172,7 +172,7 @@ def test_who_is_left_to_numpy() -> None:
     assert not chosen(compiled("duffing", "numpy"))
     assert not chosen(compiled("duffing"), free=()) and not chosen(compiled("duffing"), count=2)
     assert not chosen(LinearOscillator())
-    many = replace(guess, nodes=np.zeros((len(guess.nodes), call.MOST + 1)))
+    many = replace(guess, nodes=np.zeros((len(guess.nodes), call.MOST_STATES + 1)))
     assert iteration.corrected(compiled("duffing"), many, (constraint.index,), [constraint], NEWTON) is None
 
 

@@ -14,7 +14,7 @@ import periodic as per
 import symbolic as sym
 from periodic.condensed.floquet import LASTING, Leading
 from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.operator import Condensed
+from periodic.condensed.operator import CondensedOperator
 from periodic.harmonic.split import SeriesLeading
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
@@ -125,7 +125,7 @@ def test_increments_are_periodic() -> None:
     method = per.Collocation().at(1e-6)
     problem, method = chosen_method(method, per.Problem(system, "Omega", (3.0, 8.0)))
     operator = method.linearise(problem.system, orbit, problem.free)
-    assert isinstance(operator, Condensed)
+    assert isinstance(operator, CondensedOperator)
     held = [per.Amplitude("tip").linearise(problem.system, orbit, problem.free)]
     places = operator.system.places
     lacking = np.random.default_rng(1).standard_normal((*orbit.stages.shape[:2], len(places)))

@@ -66,7 +66,7 @@ def test_chain_in_pairs(ntst: int, monkeypatch: pytest.MonkeyPatch) -> None:
     system = chain(2)
     local = eliminated(system, orbit(system, Scheme(ncol=3), ntst), (0,))
     found = chaining.chain(local)
-    monkeypatch.setattr(chaining, "SMALL", 0)
+    monkeypatch.setattr(chaining, "PAIRED_UP_TO", 0)
     plain = chaining.chain(local)
     assert found.shape == plain.shape == (ntst + 1, 4, 6)
     assert np.abs(found - plain).max() < 1e-12 * np.abs(plain).max()

@@ -13,8 +13,8 @@ from support.cantilevers import cantilever
 import periodic as per
 import symbolic as sym
 from periodic.condensed import floquet, operator
-from periodic.condensed.linearised import Linearised
-from periodic.condensed.operator import Condensed
+from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.operator import CondensedOperator
 from periodic.events.noderows import event_rows
 
 ELEMENTS, RANGE = 2, (2.8, 2.95)
@@ -46,7 +46,9 @@ def test_is_the_same_as_all_equations_at_once(at_tip: Any, monkeypatch: pytest.M
     for chained in (True, False):
         for module in (floquet, operator):
             monkeypatch.setattr(module, "pays", lambda *_, chained=chained: chained)
-        equations = Condensed(Linearised.about(system, orbit, ()), event_rows(system, orbit, ()))
+        equations = CondensedOperator(
+            SplitLinearisation.about(system, orbit, ()), event_rows(system, orbit, ())
+        )
         increment, kernel = equations.solve([], np.array([[1.0, 0.0]]))
         values = np.linalg.eigvals(equations.fundamental[-1])
         found.append((increment.nodes, increment.phases, np.sort_complex(values), equations.fundamental))

@@ -48,7 +48,7 @@ Added = dict[int, tuple[Complex, Array]]
 """What events add to modes (J, r) and own states (o, r), by the intervals that they end."""
 
 
-class Chain:
+class IntervalRecursion:
     """The equations of a system where it has forces that depend on the motion, or own states.
 
     Parameters
