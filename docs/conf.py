@@ -9,7 +9,7 @@ from types import ModuleType
 
 HERE = Path(__file__).parent
 
-DOORS = {
+NAMESPACES = {
     "symbolic.films": "films and their laws",
     "symbolic.functions": "of symbols",
     "periodic.plots": "pictures of orbits and curves",
@@ -70,7 +70,7 @@ sphinx_gallery_conf = {
 
 
 def reference() -> None:
-    """Write the pages of the reference: a list of what stands behind each door, parts apart."""
+    """Write the pages of the reference: a list of what stands in each namespace, parts apart."""
     import periodic
     import symbolic
 
@@ -95,9 +95,9 @@ def reference() -> None:
     page("parts", "Parts", "symbolic", [name for name in names if is_part(name)])
     page("symbolic", "symbolic: what the equations are", "symbolic", [n for n in names if not is_part(n)])
     page("periodic", "periodic: what a periodic orbit is", "periodic", front(periodic))
-    for door, title in DOORS.items():
-        module = importlib.import_module(door)
-        page(door.rpartition(".")[2], f"{door}: {title}", door, module.__all__)
+    for namespace, title in NAMESPACES.items():
+        module = importlib.import_module(namespace)
+        page(namespace.rpartition(".")[2], f"{namespace}: {title}", namespace, module.__all__)
     for file in (HERE / "reference" / "generated").glob("*.rst"):
         if file.stem not in listed:  # of a name that there was once
             file.unlink()

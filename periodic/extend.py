@@ -8,8 +8,8 @@ from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.condition import Condition, SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
+from periodic.correction.refinement import Refinement
 from periodic.correction.solution import Solution
 from periodic.linear.bordering import Chain
 from periodic.linear.operator import Operator
@@ -17,7 +17,7 @@ from periodic.linear.unknowns import Increment, Unknowns
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.row import Row
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import LinearisationLike, System
 
 __all__ = [

@@ -1,7 +1,7 @@
 """What the equations are: parts that add up to models, scenes of such models, and their compilation.
 
 The names stand in `__init__.pyi`; each is imported when it is first asked for, so that the command line need
-not import CasADi to say how it is used. What everybody calls stands here, the rest behind a door: `films`,
+not import CasADi to say how it is used. What everybody calls stands here, the rest in namespaces: `films`,
 `functions`.
 """
 

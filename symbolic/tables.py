@@ -9,7 +9,7 @@ MANY = 12
 """Names of a list that are told, and rows of a table that are shown at once."""
 
 
-def told(names: Iterable[str]) -> str:
+def listed(names: Iterable[str]) -> str:
     """Return names in a line, of many the first and how many there are."""
     known = list(names)
     shown = ", ".join(known[:MANY]) or "none"

@@ -150,15 +150,17 @@ def test_every_detail_is_explained() -> None:
 
 
 def test_reference_has_every_name() -> None:
-    """Assert that the reference lists all that stands behind the doors, each name of a package once."""
+    """Assert that the reference lists all that stands in the namespaces, each name of a package once."""
     said = runpy.run_path(str(DOCS / "conf.py"))
-    doors = [importlib.import_module(name) for name in said["DOORS"]]
-    assert {"parts", "symbolic", "periodic", *(d.__name__.split(".")[1] for d in doors)} == set(REFERENCE)
+    namespaces = [importlib.import_module(name) for name in said["NAMESPACES"]]
+    assert {"parts", "symbolic", "periodic", *(d.__name__.split(".")[1] for d in namespaces)} == set(
+        REFERENCE
+    )
     listed = Counter(name for page in REFERENCE for name in listed_on(page))
-    for door in (sym, per, *doors):
-        for name in dir(door) if door in (sym, per) else door.__all__:
-            package = door.__name__.split(".")[0]
-            assert isinstance(getattr(door, name), ModuleType) or listed[package, name] == 1, name
+    for namespace in (sym, per, *namespaces):
+        for name in dir(namespace) if namespace in (sym, per) else namespace.__all__:
+            package = namespace.__name__.split(".")[0]
+            assert isinstance(getattr(namespace, name), ModuleType) or listed[package, name] == 1, name
 
 
 def listed_on(page: str) -> list[tuple[str, str]]:

@@ -13,15 +13,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.doubling import known as known_spectrum
 from periodic.bifurcations.fold import STEEP
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
 
-PASSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
+CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
 
 PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
@@ -69,7 +69,7 @@ class Entry:
     touch: bool = False
 
     @property
-    def passing(self) -> int | None:
+    def crossing(self) -> int | None:
         """How many pass there; None where that is not known, as where orbits shrink to an equilibrium.
 
         At folds of conservative orbits none pass but the two that are 1.
@@ -77,7 +77,7 @@ class Entry:
         if self.label is Label.HOPF and not self.equilibrium:
             return None
         none = self.label in (*PLAIN, Label.GRAZING) or (self.conservative and self.label is Label.FOLD)
-        return 0 if none else PASSING.get(self.label)
+        return 0 if none else CROSSING.get(self.label)
 
     @property
     def unstable(self) -> set[int]:
@@ -87,9 +87,9 @@ class Entry:
     @property
     def beside(self) -> set[int]:
         """How many besides those that pass there."""
-        passing = (self.passing or 0) * (2 if self.conservative else 1)
+        crossing = (self.crossing or 0) * (2 if self.conservative else 1)
         order = np.abs(self.growth).argsort()
-        return self._outside(self.growth[order[passing:]], self.noise)
+        return self._outside(self.growth[order[crossing:]], self.noise)
 
     @staticmethod
     def _outside(growth: np.ndarray, noise: float) -> set[int]:
@@ -104,15 +104,15 @@ class Entry:
             return self.unstable if before & self.unstable else set()
         if self.label in PLAIN:
             return before & self.unstable
-        passing = self.passing
-        if passing is None:
+        crossing = self.crossing
+        if crossing is None:
             return set(range(len(self.growth) + 1))
         if self.touch:
-            return {n + side * passing for n in before for side in (-1, 1)}
+            return {n + side * crossing for n in before for side in (-1, 1)}
         few = self.beside
-        more = {count + passing for count in few}
+        more = {count + crossing for count in few}
         stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
-        up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
+        up, down = {n + crossing for n in before & few}, {n - crossing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
 

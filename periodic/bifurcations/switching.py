@@ -24,7 +24,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
-FAR = 0.02
+FIRST_DISTANCE = 0.02
 """Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
 
 NO_SIZE = 1e-6
@@ -58,8 +58,8 @@ def doubled(
     determined : mapping of str to Condition, optional
         As in `trace`.
     distance : float, optional
-        From the orbit, root mean square of the scaled states; default FAR times the largest peak to peak (of
-        an orbit at rest FAR).
+        From the orbit, root mean square of the scaled states; default FIRST_DISTANCE times the largest peak
+        to peak (of an orbit at rest FIRST_DISTANCE).
 
     Returns
     -------
@@ -171,7 +171,8 @@ def switched(
     determined : mapping of str to Condition
         Further free parameters with the conditions that determine them.
     distance : float or None
-        From the origin, root mean square of the scaled states; None for FAR times the orbit's own size.
+        From the origin, root mean square of the scaled states; None for FIRST_DISTANCE times the orbit's own
+        size.
 
     Returns
     -------
@@ -185,7 +186,7 @@ def switched(
     """
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     size = origin.span()
-    length = FAR * (size if size > NO_SIZE else 1.0) if distance is None else distance
+    length = FIRST_DISTANCE * (size if size > NO_SIZE else 1.0) if distance is None else distance
     parameters = np.append(direction.parameter, np.zeros(len(determined)))
     unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
     direction = replace(direction, parameters=parameters).scaled(unit)

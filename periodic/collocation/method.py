@@ -3,68 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 
-from periodic.checks import whole
-from periodic.collocation.condensation import condensation
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
-from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
 from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
-from periodic.correction.outcome import FAILURES, EventsCrossedError, Outcome
+from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
-from periodic.events import impacts, motions, tying
-from periodic.events.modes import completed, group, of_held
+from periodic.correction.refinement import Refinement
+from periodic.events import impacts, tying
 from periodic.events.noderows import event_rows
-from periodic.events.rewrites.first import first_change
 from periodic.events.tying import Crossing, KinkSettings
-from periodic.events.violations import Breach, Violation, violations, word
-from periodic.linear.operator import LinearSolver, Operator
+from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
-from periodic.orbit.construction import at_rest, transfer
-from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.demand import demand, evenly, wanted_ntst
+from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
-
-DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
-"""Collocation points in each interval down to a tolerance."""
 
 ASIDE = (1.0, 0.0, 10.0)
 """How far before its kink an event node begins on a new mesh (rad), in tolerances; tried in turn."""
-
-WRONG = {
-    Breach.GRAZED: Outcome.GRAZING,
-    Breach.THROUGH: Outcome.THROUGH_STOP,
-    Breach.HELD: Outcome.SLIDES,
-    Breach.REVERSED: Outcome.EVENTS_CROSSED,
-}
-"""What an orbit that violates its word so is refused as, the first of them."""
-
-FOLLOWED = 1e-8
-"""Tolerance with which motions are followed in time for their events."""
 
 SHALLOWER = (10.0, 100.0)
 """How much shallower event nodes are tried where a new mesh fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Collocation(Discretisation):
+class Collocation(MeshMethod):
     """Orthogonal collocation R(x', x, z, tau, p) = 0 at ncol points in each of ntst intervals.
 
     Parameters
@@ -76,7 +59,7 @@ class Collocation(Discretisation):
     kinks : KinkSettings, optional
         When the mesh is tied to a passage of a switch; default what the tolerance asks for.
     solver : callable
-        The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+        The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
         Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
         alone; by default where that pays. Results are those of all states all the same, but of many
@@ -90,66 +73,15 @@ class Collocation(Discretisation):
     Doedel, Keller & Kernevez, Int. J. Bifurcation and Chaos 1 (1991) 745.
     """
 
-    scheme: Scheme | None = None
-    ntst: int = 24
-    ntst_min: int = 8
-    ntst_max: int = 1000
-    kinks: KinkSettings | None = None
-    solver: LinearSolver = condensation
-    condense: bool | None = None
-    tolerance: float = 1e-7
-
-    def __post_init__(self) -> None:
-        if not (self.condense is None or isinstance(self.condense, bool)):
-            raise ValueError(f"condense is {self.condense!r}; it must be True, False or None")
-        check_intervals(self.ntst, self.ntst_min, self.ntst_max)
-        check_scheme(self.scheme)
-        if self.kinks is not None and not isinstance(self.kinks, KinkSettings):
-            raise ValueError(f"kinks is {self.kinks!r}; it must be KinkSettings(...)")
-        if not callable(self.solver):
-            raise ValueError(f"solver is {self.solver!r}; it must be a function that makes an Operator")
-
-    @property
-    def shortest(self) -> float:
-        """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
-        return 0.005 * self.tolerance
-
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
         """The same with other schemes: Newton's way from a rest is a matter of luck."""
         schemes = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
         return tuple(replace(self, scheme=scheme) for scheme in schemes)
 
-    def at(self, tolerance: float) -> Collocation:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance."""
-        return replace(
-            self,
-            scheme=self.scheme or scheme_for(tolerance),
-            kinks=(self.kinks or KinkSettings()).at(tolerance),
-            tolerance=tolerance,
-        )
-
-    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
-        """Return the orbit at rest, or one carried to this scheme, its hard intervals solved locally."""
-        scheme = self.scheme or Scheme()
-        if near is None:
-            return at_rest(system, uniform(scheme, self.ntst), parameter)
-        if near.equilibrium:
-            near = transfer(near, uniform(scheme, self.ntst), near.phases)
-        old = near.mesh
-        mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
-        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
-        return relax(system, self._tied(system, adopted))
-
-    def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        held = of_held(system)
-        if not held or any(group(system, orbit.mesh, k) for k in held):
-            return orbit
-        settings = (self.kinks or KinkSettings()).at(self.tolerance)
-        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
-        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-        return transfer(orbit, mesh, phases)
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance."""
+        return scheme_for(tolerance)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the collocation equations and those of the event nodes."""
@@ -197,24 +129,10 @@ class Collocation(Discretisation):
         found = linearised(partial(self._equations, off=off), *given)
         return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
 
-    def _breached(self, found: list[Violation], breach: Breach) -> bool:
-        """Whether an orbit violates its word in a way, where impacts are farther than the tolerance."""
-        least = self.tolerance if breach is Breach.THROUGH else -np.inf
-        return any(v.breach is breach and v.depth > least for v in found)
-
     @property
     def _plain(self) -> bool:
         """Whether its equations are those of the compiled iteration."""
-        return self.solver is condensation and type(self) is Collocation
-
-    def accepted(self, system: System, correction: Correction) -> Correction:
-        """Return it as failed where an event node is not a crossing in its own direction."""
-        found = violations(system, correction.orbit)
-        wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
-        if wrong is not None:
-            return replace(correction, outcome=wrong)
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return SteppedCorrection(**given, system=system, equations=self.linearise)
+        return self.solver is elimination
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
@@ -238,38 +156,17 @@ class Collocation(Discretisation):
         error = found.error
         if error is UNKNOWN:
             return error
-        missing = self._missing(system, orbit, error)
+        missing = self._misheld(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
-
-    def _missing(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
-        """What of the orbit's error is that it slips where it should be held, or the reverse."""
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        return np.inf if any(v.depth > own for v in misplaced(system, orbit)) else 0.0
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""
         if len(orbit.mesh.exact_ends) == 0:
             return 0.0
         return of_states(orbit, spectrum) + of_events(orbit, event_rows(system, orbit, ()), spectrum)
-
-    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
-        """Return where a switch touches its level on the way, or two event nodes meet."""
-        return first_change(system, before, after, self.shortest)
-
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
-        """Return a guess with the events of the orbit's own motion, where that can be followed."""
-        try:
-            told = motions.followed(system, orbit, FOLLOWED)
-        except FAILURES:
-            return None
-        return None if told is None else self.guess(system, told.parameter, told)
-
-    def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
-        """Return the event nodes where the equations change; None where the orbit passes others."""
-        return word(system, orbit)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
@@ -284,7 +181,7 @@ class Collocation(Discretisation):
 class CollocationRefinement(Refinement):
     """Meshes for an orbit of `Collocation`."""
 
-    def __init__(self, method: Collocation, system: System, orbit: Orbit, error: ErrorEstimate) -> None:
+    def __init__(self, method: MeshMethod, system: System, orbit: Orbit, error: ErrorEstimate) -> None:
         super().__init__(orbit, error)
         self.method, self.system = method, system
 
@@ -307,18 +204,18 @@ class CollocationRefinement(Refinement):
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
+        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode
 
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
         brief = "the motion sticks or slips there for too short a while to be followed"
-        return brief if self._misplaced else super().shortfall
+        return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
-    def _misplaced(self) -> bool:
+    def _in_wrong_mode(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(misplaced(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -326,7 +223,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._misplaced:
+        if self._in_wrong_mode:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -334,7 +231,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._misplaced:
+        if self._in_wrong_mode:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
@@ -369,28 +266,3 @@ class CollocationRefinement(Refinement):
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
             yield tying.wanted(self.system, self.orbit, shallower)
-
-
-def misplaced(system: System, orbit: Orbit) -> list[Violation]:
-    """Return where an orbit slips that should be held, or the reverse."""
-    return [v for v in violations(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
-
-
-def scheme_for(tolerance: float) -> Scheme:
-    """Return the scheme for a tolerance."""
-    points = (points for least, points in DEGREES.items() if tolerance >= least)
-    return Scheme(Family.RADAU, next(points, max(DEGREES.values())))
-
-
-def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
-    """Raise ValueError for numbers of intervals that are none, or not in order."""
-    for name, value in {"ntst": ntst, "ntst_min": ntst_min, "ntst_max": ntst_max}.items():
-        whole(name, value)
-    if not ntst_min <= ntst <= ntst_max:
-        raise ValueError(f"ntst is {ntst}; it must lie from ntst_min = {ntst_min} to ntst_max = {ntst_max}")
-
-
-def check_scheme(scheme: object) -> None:
-    """Raise ValueError for what is no scheme, nor left open."""
-    if scheme is not None and not isinstance(scheme, Scheme):
-        raise ValueError(f"scheme is {scheme!r}; it must be Scheme(family, ncol)")

@@ -13,7 +13,7 @@ from periodic.events.rates import rate_before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 EPSILON = float(np.finfo(float).eps)
 TERMS = 4

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.modal.moments import Complex
-from periodic.condensed.passing import Passage
+from periodic.condensed.modalsaltation import ModalSaltation
 from periodic.orbit.scheme import Array
 
 INTERVAL = 6e4
@@ -55,15 +55,15 @@ class Chain:
     ----------
     system : Coupled
         The equations; what they have of motion that repeats is not read.
-    passages : sequence of Passage
+    saltations : sequence of ModalSaltation
         Events at which forces jump.
     """
 
-    def __init__(self, system: Coupled, passages: Sequence[Passage] = ()) -> None:
+    def __init__(self, system: Coupled, saltations: Sequence[ModalSaltation] = ()) -> None:
         given, own = system.given, len(system.others)
         self.system, self.response = system, given.response
-        self.passages = {each.interval: each for each in passages}
-        ends = np.array(sorted(self.passages), dtype=int)
+        self.saltations = {each.interval: each for each in saltations}
+        ends = np.array(sorted(self.saltations), dtype=int)
         self.intervals = np.arange(system.intervals) if own else np.union1d(system.held, ends)
         self.at = self.intervals[:, None] * system.ncol + np.arange(system.ncol)
         self.forces = system.ncol * len(system.active)
@@ -88,8 +88,8 @@ class Chain:
         by_place = sign * rows[..., [1 + system.n + k for k in system.places]]
         local = response.local[self.intervals][..., system.active]
         blocks = [(by_place @ local.reshape(count, points, len(system.places), self.forces))]
-        shown = response.shown[self.intervals]
-        begun = by_place @ np.concatenate([shown.real, -shown.imag], axis=3)
+        stage_outputs = response.stage_outputs[self.intervals]
+        begun = by_place @ np.concatenate([stage_outputs.real, -stage_outputs.imag], axis=3)
         width = system.given.orbit.grid.width[self.intervals]
         weights = system.given.orbit.mesh.scheme.stage_rates / width[:, None, None]
         rates = sign * rows[..., 1 + system.others]
@@ -144,18 +144,18 @@ class Chain:
             left = leaves[i] @ found[i, : self.forces]
             z = grown[i][:, None] * z + (left[:count] + 1j * left[count:])
             own, now = found[i, found.shape[1] - len(own) :], response.end[interval]
-            if passed is not None and interval in self.passages:
-                passed[interval] = more = self._passed(self.passages[interval], z, own)
+            if passed is not None and interval in self.saltations:
+                passed[interval] = more = self._passed(self.saltations[interval], z, own)
                 z, own = z + more[0], own + more[1]
         z = np.exp(exponents * (response.period - now))[:, None] * z
         return self._together(found), z, own
 
-    def _passed(self, passage: Passage, z: Complex, own: Array) -> tuple[Complex, Array]:
+    def _passed(self, saltation: ModalSaltation, z: Complex, own: Array) -> tuple[Complex, Array]:
         """What an event adds to modes (J, r) and own states (o, r) that arrive there."""
         system = self.system
-        early = passage.row[system.places] @ (self.response.modes.outputs @ z).real
-        early = early + passage.row[system.others] @ own
-        return passage.modes[:, None] * early, passage.own[:, None] * early
+        early = saltation.row[system.places] @ (self.response.modes.outputs @ z).real
+        early = early + saltation.row[system.others] @ own
+        return saltation.modes[:, None] * early, saltation.own[:, None] * early
 
     def _by_interval(self, right: Array) -> Array:
         """Right-hand sides (size, r) as (C, m, r)."""

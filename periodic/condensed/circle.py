@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
-from periodic.condensed.variations import CondensedVariations
+from periodic.condensed.linearised import Linearised
+from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.scheme import Array
 
 FEWEST = 24
@@ -28,19 +30,30 @@ NEAR = 0.3
 """Moduli between this part of the radius and its inverse are those of poles near the circle."""
 
 
+class Beside(Protocol):
+    """Motions beside an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
+
+    @property
+    def given(self) -> Linearised:
+        """The system about the orbit, with all modes."""
+
+    def repeating(self, multiplier: complex) -> CondensedRepeating:
+        """Return the equations of the motions that are multiplied by a number."""
+
+
 @dataclass(frozen=True)
 class Circle:
     """The determinant round a circle about 0.
 
     Parameters
     ----------
-    variations : CondensedVariations
+    variations : Beside
         The motions beside the orbit.
     radius : float
         Of the circle.
     """
 
-    variations: CondensedVariations
+    variations: Beside
     radius: float = 1.0
 
     @property

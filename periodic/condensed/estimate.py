@@ -31,7 +31,7 @@ from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 
@@ -65,8 +65,8 @@ def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum
     part = operator.given.part
     smooth = answer.stages[:, :, list(part.states)] - missing.on_own(states)
     between = np.abs(missing.gap + states + missing.on_fine(smooth))
-    heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
-    apart = max(between[:, :, heard].max(initial=0.0), float(np.abs(answer.nodes).max()))
+    displacements = [k for k, state in enumerate(part.states) if state not in part.velocities]
+    apart = max(between[:, :, displacements].max(initial=0.0), float(np.abs(answer.nodes).max()))
     largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
     parameter = float(abs(answer.parameter) / largest)
     return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)

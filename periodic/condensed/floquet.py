@@ -23,7 +23,7 @@ from periodic.condensed.linearised import Linearised
 from periodic.condensed.subspace import invariant
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum
+from periodic.stability.multipliers import Complex, Pair, Spectrum
 
 LEADING = 8
 """Multipliers that are kept of many."""
@@ -70,7 +70,7 @@ class Floquet:
     @cached_property
     def chain(self) -> Chain | None:
         """The same interval by interval, where that pays or forces jump."""
-        given = self.given.passages
+        given = self.given.saltations
         if not given and not pays(self._system, min(len(self.kept), SMALL)):
             return None
         return Chain(self._system, given)
@@ -200,7 +200,7 @@ class Floquet:
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
         if self.chain is not None:
-            if self.given.passages:
+            if self.given.saltations:
                 return self.driven(None, basis, {})[1]
             square = basis.shape[0] == basis.shape[1]
             return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]

@@ -9,19 +9,20 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.method import Collocation, scheme_for
+from periodic.collocation.meshed import MeshMethod, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised, unheard
+from periodic.condensed.linearised import Linearised, exempt
 from periodic.condensed.operator import Condensed
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.settling import followed
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
+from periodic.events.modes import group, of_kind
 from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -30,8 +31,8 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
-from periodic.system import System, jumps_of
+from periodic.stability.multipliers import Spectrum
+from periodic.system import Kind, System, jumps_of, slides_of
 
 SHORT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
@@ -41,11 +42,11 @@ FELT = 0.1
 
 
 @dataclass(frozen=True)
-class CondensedCollocation(Collocation):
+class CondensedCollocation(MeshMethod):
     """Collocation for a system with a linear part (`periodic.system.Split`).
 
     Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
-    fast its modes; event nodes, error estimate and meshes are those of `Collocation`, whose settings it has.
+    fast its modes; event nodes are those of `Collocation`, whose settings it has.
     """
 
     ntst: int = 12
@@ -53,14 +54,12 @@ class CondensedCollocation(Collocation):
 
     ends_below: ClassVar[float] = 0.1
 
-    def at(self, tolerance: float) -> CondensedCollocation:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance.
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance.
 
         Unknowns are few and forces smooth: one point more in an interval than where all states are unknown.
         """
-        more = Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
-        chosen = super().at(tolerance)
-        return replace(self, scheme=self.scheme or more, kinks=chosen.kinks, tolerance=tolerance)
+        return Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the equations of the places, and those of the event nodes."""
@@ -90,26 +89,28 @@ class CondensedCollocation(Collocation):
 
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
-        told = followed(system, orbit)
-        return None if told is None else self.guess(system, told.parameter, told)
+        motion = followed(system, orbit)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by what is missing on the halved mesh, or by a Newton step there.
 
-        Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
-        the forces, however fast they change between them.
+        Velocities of the places, to which all modes contribute, count at mesh points alone: there they are
+        exact for the forces, however fast they change in between.
         """
         operator = correction.operator
         if isinstance(operator, Condensed) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
-        quiet = self._quiet(problem.system, operator)
+        exempted = self._exempted(problem.system, operator)
         beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, quiet, beside
+        given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
         brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < SHORT
         digits = FELT * operator.rounding if brief and isinstance(operator, Condensed) else 0.0
         found = deferred(*given, lengths=True, digits=digits)
+        if self._unknown(problem.system, correction.orbit):
+            return replace(found, orbit=np.inf)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
@@ -117,16 +118,27 @@ class CondensedCollocation(Collocation):
         if isinstance(operator, Condensed):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
-        named["orbit"] = max(found.orbit, self._missing(problem.system, correction.orbit, found))
+        named["orbit"] = max(found.orbit, self._misheld(problem.system, correction.orbit, found))
         return ContactError(**named, variation=variation)
 
     @staticmethod
-    def _quiet(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
+    def _unknown(system: System, orbit: Orbit) -> bool:
+        """Whether an elastic slider has no mode all along: then it creeps, as in none of its modes."""
+        modes = dict(orbit.mesh.modes)
+        own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
+        return any(not group(system, orbit.mesh, switch) for switch in own)
+
+    def settles(self, system: System) -> bool:
+        """Return whether motion may stick: settling is cheap in modes, and sticks."""
+        return bool(slides_of(system))
+
+    @staticmethod
+    def _exempted(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
         """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
         if not isinstance(operator, Condensed):
             return None
         found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
-        found[:, list(unheard(system))] = True
+        found[:, list(exempt(system))] = True
         if jumps_of(system):
             found[operator.system.held] = False
         return found

@@ -134,8 +134,8 @@ class CondensedRepeating:
         if source is not None:
             pull = pull + folded(given.orbit, source, (1 / self.mu).real)[0]
         pull = pull[:, coupled.places]
-        felt = coupled.flexibility.pulled(self._by_interval(pull))
-        driven = np.where(coupled.passive, felt.reshape(coupled.points, -1), 0.0)
+        by_force = coupled.flexibility.pulled(self._by_interval(pull))
+        driven = np.where(coupled.passive, by_force.reshape(coupled.points, -1), 0.0)
         onto = np.zeros_like(onto, dtype=driven.dtype)
         onto[:, forces] = driven
         return np.concatenate([own, weights + _solved(line, onto)], axis=1), pull

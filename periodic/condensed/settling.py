@@ -15,8 +15,8 @@ from periodic.events.rewrites.sites import ordered
 from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.sampling import sampled
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import HELD, STUCK, System, linear_of
 
 STEPS = 512

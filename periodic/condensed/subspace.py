@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex
+from periodic.stability.multipliers import Complex
 
 SPARE = 3
 """Multipliers below those that are wanted which must be known too."""

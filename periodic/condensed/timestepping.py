@@ -280,16 +280,16 @@ class Motion:
         halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
         residual = line.residual[0] + halves @ (parts[stuck] - 1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
-        told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
+        given_rows = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
         held = self.values(x, tau, self.side)[switches]
         gradient = guards_gradient(system, x[None], at, self.parameter, self.side[None])[0][0, switches]
-        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[told], gradient])
+        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[given_rows], gradient])
         unknowns = np.zeros((len(states), len(unknown)))
-        unknowns[: told.sum()] = line.d_algebraic[0][told]
+        unknowns[: given_rows.sum()] = line.d_algebraic[0][given_rows]
         unknowns[:, self.forces] += states[:, self.places] @ step.local
-        across = np.concatenate([halves[told], np.zeros((len(stuck), len(stuck)))])
+        across = np.concatenate([halves[given_rows], np.zeros((len(stuck), len(stuck)))])
         rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
-        return rows, np.concatenate([residual[told], held])
+        return rows, np.concatenate([residual[given_rows], held])
 
     def _carried(self, line: LinearisationLike, x: Array, tau: float) -> LinearisationLike:
         """Put the limits of sliders that are carried along in the place of their rows."""

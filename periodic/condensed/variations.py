@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from periodic.condensed.circle import Circle
 from periodic.condensed.floquet import Floquet, Leading
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.modal.moments import Complex
@@ -45,7 +46,7 @@ class CondensedVariations:
         Raises ValueError where forces jump.
         """
         given = Linearised.about(system, orbit, free)
-        if given.passages:
+        if given.saltations:
             raise ValueError(
                 "forces at the places jump, as those of friction that sticks; curves in two parameters and "
                 "derivatives of multipliers need a structure that is compiled with condense=False"
@@ -61,6 +62,10 @@ class CondensedVariations:
     def multipliers(self) -> Complex:
         """The leading multipliers."""
         return np.linalg.eigvals(Leading(Floquet(self.given)).fundamental[-1]).astype(np.complex128)
+
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`, of all modes."""
+        return Circle(self, radius).outside()
 
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu), dmu = -w' dK v / w' K_mu v with w' K = 0, K v = 0."""
@@ -84,5 +89,5 @@ class CondensedVariations:
         row = self.multiplier(i, complex(values[j]), free) + self.multiplier(j, complex(values[i]), free)
         value = float((values[i] * values[j]).real) - 1
         found = values[[i, j]]
-        told = np.stack([found.real, found.imag])
-        return Row(value + row.value, row.nodes, row.outer, row.stages), told
+        parts = np.stack([found.real, found.imag])
+        return Row(value + row.value, row.nodes, row.outer, row.stages), parts

@@ -14,15 +14,15 @@ from typing import Protocol, Self, runtime_checkable
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.error import ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum, Stability
+from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System
 
 
@@ -214,6 +214,21 @@ class Discretisation(Protocol):
             Those that its mesh is tied to; None where it passes others as well.
         """
         return ()
+
+    def settles(self, system: System) -> bool:
+        """Return whether a motion that is left to settle is the first to be tried where Newton fails.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+
+        Returns
+        -------
+        bool
+            True where it is cheap, and finds what Newton does not.
+        """
+        return False
 
     @property
     def stability(self) -> Stability:

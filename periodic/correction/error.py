@@ -30,9 +30,9 @@ from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, 
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.stability.multipliers import Spectrum
+from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
-from periodic.stability.spectrum import Spectrum
-from periodic.stability.spectrum import apart as powers_apart
 from periodic.system import System
 
 Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]
@@ -297,10 +297,15 @@ class _OnBranch:
         return found if there is None else there
 
     def _along(self, found: Linearised, way: float) -> Increment | None:
-        """The way along the branch on which the parameter changes by so much; None where that is far."""
+        """The way along the branch on which the parameter changes by so much; None where that is far.
+
+        It is where an excursion changes by more than its length, too.
+        """
         kernel = found.kernel
-        near = self._length(found) * abs(way) <= REACH * abs(kernel.parameter) > 0
-        return kernel.scaled(way / kernel.parameter) if near else None
+        if not self._length(found) * abs(way) <= REACH * abs(kernel.parameter) > 0:
+            return None
+        along = kernel.scaled(way / kernel.parameter)
+        return along if stretched(found.orbit, along) <= 1 else None
 
     def _there(self, found: Linearised, way: Increment) -> Linearised | None:
         """The same at the end of a way; None where the branch is not straight on it."""

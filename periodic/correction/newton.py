@@ -352,10 +352,10 @@ def sizes(
     change = moved_unknowns(system, orbit.algebraic, increment.algebraic) - orbit.algebraic
     unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     left = float(unknowns.max()) ** 2
-    felt = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
-    if not np.isfinite(regular + left + felt):
+    weighted = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
+    if not np.isfinite(regular + left + weighted):
         return np.inf, np.inf
-    return max(regular, left), max(regular, felt)
+    return max(regular, left), max(regular, weighted)
 
 
 def moved_unknowns(system: System, algebraic: Array, increment: Array) -> Array:

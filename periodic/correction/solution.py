@@ -8,13 +8,13 @@ from functools import cached_property
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import Outcome
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 
 @dataclass(frozen=True)

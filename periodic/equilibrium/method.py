@@ -13,9 +13,9 @@ import numpy as np
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import EXACT, ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.equilibrium.linearise import linearise
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -24,7 +24,7 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.stability.spectrum import Spectrum, Stability
+from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System, index_of
 
 PHASES = np.linspace(0.0, FORCED, 8) + 0.1

@@ -28,6 +28,9 @@ from periodic.system import (
     surfaces_of,
 )
 
+LOOKS = 3
+"""States at which guards are compared."""
+
 SHALLOW = 0.05
 """How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
 
@@ -45,6 +48,21 @@ def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
 def bends(system: System) -> list[int]:
     """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
+
+
+def twins(system: System, switch: int) -> list[int]:
+    """Return the guards of surfaces at which motions may be held that are one function, this one first.
+
+    The speeds at which elastic sliders side by side are strained are one: those that slip stop at once.
+    """
+    held = of_held(system)
+    if switch not in held or len(held) < 2:
+        return [switch]
+    state, _ = system.rest(system.nominal)
+    moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
+    values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
+    same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
+    return [switch, *same]
 
 
 def of_held(system: System) -> list[int]:

@@ -12,6 +12,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.events.modes import twins
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -50,12 +51,21 @@ def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
     rows = sorted(events, key=lambda event: event.phase)
     for _, group in groupby(rows, key=lambda event: round(event.phase / SAME)):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
-        if not _brings_about(system, surfaces[each[0].surface]):
-            for count, event in enumerate(each):  # which of them is first is left open
-                found.append((_node(system, surfaces[event.surface], [event]), event.phase + count * APART))
-            continue
-        found.append((_node(system, surfaces[each[0].surface], each), each[0].phase))
+        for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
+            node = _node(system, surfaces[apart[0].surface], apart)
+            found.append((node, apart[0].phase + count * APART))
     return found
+
+
+def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
+    """What happens at one phase, in sets that bring each other about, or are one by their nature."""
+    surfaces = surfaces_of(system)
+    if _brings_about(system, surfaces[each[0].surface]):
+        return [each]
+    found = dict[int, list[Happened]]()
+    for event in each:
+        found.setdefault(min(twins(system, surfaces[event.surface].switch)), []).append(event)
+    return list(found.values())
 
 
 def _brings_about(system: System, surface: SurfaceLike) -> bool:

@@ -76,6 +76,20 @@ class Length:
 
 
 @dataclass(frozen=True)
+class Lengths:
+    """Side condition: some segments, by the event nodes at which they begin, are so long together (rad)."""
+
+    segments: tuple[int, ...]
+    length: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return their lengths less the given one."""
+        each = [Length(segment, 0.0).linearise(system, orbit, free) for segment in self.segments]
+        row = sum(each[1:], each[0])
+        return Row(row.value - self.length, row.nodes, row.outer)
+
+
+@dataclass(frozen=True)
 class Limit:
     """Side condition: side * (a switch) is `level` at an event node, which need not be its own."""
 

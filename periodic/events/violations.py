@@ -19,6 +19,9 @@ from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
+AT_LEVEL = 1e-8
+"""How near to 0 what happens at another's event node is, as a part of its largest value."""
+
 NOISE = 1e-10
 """How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
 
@@ -154,11 +157,11 @@ def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> lis
         surface = surface_of(system, k)
         if k == own.switch or surface.releases is None or surface.column is None:
             continue
-        up, down = surface.releases
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
-        torn = mode != STUCK and mode * (before[up if mode > 0 else down]) < 0
-        torn = torn and mode * (after[up if mode > 0 else down]) > 0
-        if not torn:
+        release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
+        torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
+        most = largest(SwitchPolynomials(system, orbit), release)
+        if not torn and abs(before[release]) > AT_LEVEL * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 

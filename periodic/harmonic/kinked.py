@@ -20,9 +20,9 @@ from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.refinement.equidistribution import redistribute
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 

@@ -11,10 +11,10 @@ from periodic.checks import whole
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.harmonic.balance import Balance, sampled
 from periodic.harmonic.hill import Floquet, floquet
 from periodic.harmonic.kinked import beside, has_kinks
@@ -26,7 +26,7 @@ from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
 
 WAYS = (1.0, 0.5, 0.25)

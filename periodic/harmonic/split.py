@@ -44,7 +44,7 @@ from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import LinearPart, ModesLike, System, linear_of
 
 Complex = NDArray[np.complex128]

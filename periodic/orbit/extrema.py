@@ -117,7 +117,7 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
     return _searched(system, orbit) if compiled is None else Extremes(*compiled)
 
 
-LEAST = 1e-6
+LEAST_PEAK_TO_PEAK = 1e-6
 """Peak to peak of an output, as a part of its size, with which errors are compared at the least."""
 
 
@@ -155,7 +155,7 @@ def apart(system: System, orbit: Orbit, found: Extremes, better: Callable[[], Or
     values = outputs(system, finer, at.ravel())[:, own].reshape(*at.shape, len(own))
     same = np.einsum("ekbk->ekb", values)
     errors = np.abs([same[0].min(axis=1) - low, same[1].max(axis=1) - high]).max(axis=0)
-    scale = np.maximum(high - low, LEAST * np.maximum(np.abs(low), np.abs(high)))
+    scale = np.maximum(high - low, LEAST_PEAK_TO_PEAK * np.maximum(np.abs(low), np.abs(high)))
     return float(np.max(errors / np.where(scale > 0, scale, 1.0)))
 
 

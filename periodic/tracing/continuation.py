@@ -13,13 +13,13 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
-from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
-from periodic.bifurcations.turning import Found, at_once
+from periodic.bifurcations.turningpoint import Found, at_once
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -31,7 +31,7 @@ from periodic.tracing.ends import ending
 from periodic.tracing.rereading import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.steps.passage import Reached, crossed, standing
+from periodic.tracing.steps.patternchange import Reached, crossed, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
@@ -167,7 +167,7 @@ class Continuation:
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )
-        self.watch.check(solver.problem.shown, base.orbit)
+        self.watch.check(solver.problem.full, base.orbit)
         yield self._emitted(base, Label.END)
         if base.value in self.user:
             yield self._emitted(base, Label.USER)
@@ -197,7 +197,7 @@ class Continuation:
         Point
             Those that follow.
         """
-        c, last = checkpoint, self.solver.problem.solved(points[-1].orbit)
+        c, last = checkpoint, self.solver.problem.restrict(points[-1].orbit)
         self.stop, self.collected = None, points
         try:
             begun = Start(self.solver, self._follow, self.search).found(self.start, float(c.sign))
@@ -284,7 +284,9 @@ class Continuation:
                 final = tried.change is not None and tried.change.change.final
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
                 self._check_balance(origin, new, found, length)
-                further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
+                further = min(
+                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
+                )
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:
@@ -322,7 +324,7 @@ class Continuation:
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
-            bounds = self.solver.problem.bounds
+            bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
                 Stop.limit(special.name)
                 if own
@@ -342,7 +344,7 @@ class Continuation:
 
     def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
         problem = self.solver.problem
-        columns = self.watch.measured(problem.shown, problem.seen(solution.orbit))
+        columns = self.watch.measured(problem.full, problem.expand(solution.orbit))
         point = describe(solution, label, event, columns)
         self.collected.append(point)
         return point
@@ -411,8 +413,8 @@ class Continuation:
 
     def _values(self, begin: float) -> Sequence[float]:
         """Values at which the branch gets a point: the user's, and where it may meet its own start."""
-        low, high = self.solver.problem.bounds
-        return sorted({*self.user, begin}) if low < begin < high else self.user
+        problem = self.solver.problem
+        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
 
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""

@@ -13,33 +13,33 @@ import numpy as np
 
 from periodic.correction.identity import distance
 from periodic.correction.predictor import tangent
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
-from periodic.tracing.steps.passage import Crossed
+from periodic.refinement.adaptation import refined
+from periodic.tracing.steps.patternchange import Crossed
 
-ROUNDS = 5
+MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
-AHEAD = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+AHEAD = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
-NEAR = 1.0
+FARTHEST = 1.0
 """How far from where the tangent leads it may be, in the length of the step."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
     """Return the orbit near a motion at its parameters; while it violates its word, that is read again."""
     found = _fixed(solver, guess, sign)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):
             break
-        told = solver.discretisation.reworded(solver.problem.system, found.orbit)
-        if told is None:
+        changed = solver.discretisation.reworded(solver.problem.system, found.orbit)
+        if changed is None:
             break
-        found = _fixed(solver, told, sign)
+        found = _fixed(solver, changed, sign)
     return found
 
 
@@ -57,13 +57,13 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
         parameter[problem.index] = value
-        told = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
-        if told is None:
+        changed = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
+        if changed is None:
             return None
-        found = worded(solver, told, sign)
+        found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > NEAR * distance(problem, base.orbit, ahead):
+        if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):
             continue
         if found.tangent.parameter * sign > 0:
             apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)

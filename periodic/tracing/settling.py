@@ -48,8 +48,8 @@ def settled(system: System, start: Orbit) -> Orbit | None:
             return None
         if _closed(path.state):
             last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
-            if (told := orbit_of(moving, *last)) is not None:
-                return told
+            if (converged := orbit_of(moving, *last)) is not None:
+                return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None

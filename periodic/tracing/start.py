@@ -9,14 +9,13 @@ import numpy as np
 
 from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
-from periodic.stability.spectrum import Stability
-from periodic.system import linear_of, slides_of
+from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
 from periodic.tracing.rereading import worded
@@ -81,14 +80,14 @@ class Start:
         """The first orbit."""
         solver = self.solver
         first = self._fixed(guess, sign)
-        sticks = bool(linear_of(solver.problem.system) and slides_of(solver.problem.system))
-        slips = sticks and first.ok and np.isinf(first.error.motion)  # where it should be held
+        settles = solver.discretisation.settles(solver.problem.system)
+        slips = settles and first.ok and np.isinf(first.error.motion)  # where it should be held
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
-        if sticks:  # it is cheap
+        if settles:
             motion = next(others, None)
             if motion is not None and (last := worded(self.solver, motion, sign)).ok:
                 return last
@@ -206,8 +205,8 @@ class Start:
         except FAILURES:
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        low, high = problem.bounds
-        within = low - ASIDE * problem.scale <= found.value <= high + ASIDE * problem.scale
+        aside = ASIDE * problem.scale
+        within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 
     def _approached(self, guess: Orbit, factor: float) -> Orbit | None:

@@ -178,7 +178,7 @@ def trace(
     if before is not None:
         check(before, ready)
         ready.work.iterations = before.newton_iterations
-    first = ready.first() if before is None else problem.solved(start_of(before).orbit)
+    first = ready.first() if before is None else problem.restrict(start_of(before).orbit)
     runs = [ready.run(first, sign) for sign in ready.signs]
     generators: list[Iterator[Point]] = [*runs] if before is None else taken_up(runs, before)
     return _collected(ready, runs, generators, empty, before)

@@ -18,7 +18,7 @@ from periodic.correction.solution import Solution
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, index_of
-from periodic.tracing.steps.passing import called, finite, passing
+from periodic.tracing.steps.leveltest import called, finite, level_test
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,9 +97,11 @@ class Watch:
         tuple of TestFunction
             In this order.
         """
-        events = [passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
+        events = [
+            level_test(event.functional, event.value, Label.USER, n) for n, event in self.events.items()
+        ]
         limits = [
-            passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
+            level_test(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]

@@ -10,7 +10,7 @@ from symbolic.checks import refusal, text, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import Parameter
-from symbolic.tables import told
+from symbolic.tables import listed
 
 PART = "Part, as symbolic.Mass(x, 1.0) is"
 
@@ -107,7 +107,7 @@ class Model:
         object.__setattr__(self, "parts", parts)
 
     def __repr__(self) -> str:
-        return f"Model({told(type(part).__name__ for part in self.parts)})"
+        return f"Model({listed(type(part).__name__ for part in self.parts)})"
 
     @property
     def latex(self) -> str:

@@ -15,10 +15,10 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import finite
+from symbolic.integration.crossings import SwitchCrossings
 from symbolic.integration.cvodes import integrated, integrator, kept
 from symbolic.integration.lsoda import Rates, failure, followed
 from symbolic.integration.modes import Event, Modes, Switched, Switching
-from symbolic.integration.passages import Passages
 from symbolic.integration.pieces import Follower
 from symbolic.integration.rates import constraint_rows, explicit_rates, ode
 
@@ -89,11 +89,11 @@ class Flow:
             return self._on_constraints(np.append(after, y[n:]), parameter, tau)
 
         given = reset if self.system.resets else None
-        found = self._passages.follow(sweep, start, phase, parameter, given)
+        found = self._crossings.follow(sweep, start, phase, parameter, given)
         tau, values = found.with_impacts(phase)
-        passed = [(p.switch, p.before, p.rate) for p in found.passages]
+        crossed = [(p.switch, p.before, p.rate) for p in found.crossings]
         switching = Switching(self.system, parameter, self.tolerance)
-        events = switching.along(float(phase[0]), start[:n], passed) if passed else ()
+        events = switching.along(float(phase[0]), start[:n], crossed) if crossed else ()
         return Trajectory(tau, values[:, :n], values[:, n:], events, events[-1].modes if events else ())
 
     def _pieced(self, start: Array, parameter: Array, phase: Array, modes: Modes | None = None) -> Trajectory:
@@ -137,8 +137,10 @@ class Flow:
         return kept(self._integrators, phase, lambda: integrator(self._problem, phase, self.tolerance))
 
     @cached_property
-    def _passages(self) -> Passages:
-        return Passages(self.system.expressions, self._problem["ode"], self.system.kinks, self.system.resets)
+    def _crossings(self) -> SwitchCrossings:
+        return SwitchCrossings(
+            self.system.expressions, self._problem["ode"], self.system.kinks, self.system.resets
+        )
 
     @cached_property
     def _problem(self) -> dict[str, ca.SX]:

@@ -231,7 +231,7 @@ class Switching:
         return self.system.switch(state, phase, self.parameter, side)
 
     def along(
-        self, tau: float, state: Array, passages: Sequence[tuple[int, float, float]]
+        self, tau: float, state: Array, crossings: Sequence[tuple[int, float, float]]
     ) -> tuple[Event, ...]:
         """Return the events of a motion through kinks and impacts alone.
 
@@ -241,12 +241,12 @@ class Switching:
             Phase where it begins.
         state : ndarray, shape (n,)
             State there.
-        passages : sequence of tuple
+        crossings : sequence of tuple
             Switch, phase, and the rate with which it passes.
         """
         modes, found = self.begin(tau, state)[1], []
         places = {surface.switch: i for i, surface in enumerate(self.surfaces)}
-        for switch, phase, rate in passages:
+        for switch, phase, rate in crossings:
             i = places[switch]
             impact = self.surfaces[i].kind == Kind.IMPACT
             after = PLUS if impact or rate > 0 else MINUS

@@ -15,10 +15,10 @@ from symbolic.integration.interrupts import heard
 from symbolic.integration.lsoda import EVALUATIONS, Counted, Rates
 from symbolic.integration.modes import Event, Guard, Modes, Switching
 
-MOST = 1000
+MOST_EVENTS = 1000
 """Most events in a period of the excitation, 2 pi in tau: after more they pile up in a point."""
 
-STEP = 0.05
+LONGEST_STEP = 0.05
 """Longest step in tau, so that no event is passed over."""
 
 LOOKS = 4
@@ -87,7 +87,7 @@ class Follower:
             y = self._with(y, state, at)
         self._found.append((phase[:1], y[None]))
         periods = math.ceil((phase[-1] - phase[0]) / (2 * math.pi))
-        method, left, work = self._method(y, at, modes), MOST * periods, EVALUATIONS * periods
+        method, left, work = self._method(y, at, modes), MOST_EVENTS * periods, EVALUATIONS * periods
         with heard() as raised:
             while phase[-1] - at > SHORT:
                 counted = Counted(self.rates(modes), work, raised)
@@ -122,7 +122,7 @@ class Follower:
         """Radau for modes far faster than the steps, which ring and die away: LSODA's worst case."""
         slope = self.jacobian(modes)(at, y)
         fastest = float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
-        return "Radau" if fastest * STEP > STIFF and self.switching.tolerance >= LOOSE else "LSODA"
+        return "Radau" if fastest * LONGEST_STEP > STIFF and self.switching.tolerance >= LOOSE else "LSODA"
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class _Piece:
         """Return where it ends, and the guards that end it; none at the last phase."""
         switching, tolerance = self.follower.switching, self.follower.switching.tolerance
         guards = switching.guards(self.modes)
-        given = {"rtol": tolerance, "atol": tolerance, "max_step": STEP}
+        given = {"rtol": tolerance, "atol": tolerance, "max_step": LONGEST_STEP}
         kind = getattr(scipy.integrate, self.method)
         solver = kind(self.rates, at, y, self.phase[-1], jac=self.follower.jacobian(self.modes), **given)
         floor = np.minimum(self._values(guards, np.array([at]), y[None])[0], 0.0) - SHARP * tolerance

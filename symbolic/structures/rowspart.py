@@ -14,7 +14,7 @@ from symbolic.checks import refusal
 from symbolic.structures.linearpart import Modes
 from symbolic.structures.matrices import index
 
-STEP = 1e-6
+PARAMETER_STEP = 1e-6
 """Relative step of differences in a parameter."""
 
 NOTHING = 1e-9
@@ -173,7 +173,7 @@ class RowsPart:
         """
         if index not in self.varying:
             return None
-        step, ends = STEP * max(abs(float(parameter[index])), STEP), []
+        step, ends = PARAMETER_STEP * max(abs(float(parameter[index])), PARAMETER_STEP), []
         for sign in (1, -1):
             moved = parameter.copy()
             moved[index] += sign * step

@@ -23,10 +23,10 @@ from symbolic.kernels.choice import Kernels
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
+from symbolic.system.angularfrequency import AngularFrequency
 from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
-from symbolic.system.turning import Turning
-from symbolic.tables import told
+from symbolic.tables import listed
 
 MANY, PLACES = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
@@ -94,7 +94,7 @@ class CompiledSystem:
     sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
-        groups = {name: told(v.name for v in some) for name, some in self._groups.items() if some}
+        groups = {name: listed(v.name for v in some) for name, some in self._groups.items() if some}
         return f"CompiledSystem({'; '.join(f'{name} {names}' for name, names in groups.items())})"
 
     @property
@@ -123,23 +123,23 @@ class CompiledSystem:
         return self.recipe, ()
 
     @cached_property
-    def _turning(self) -> Turning:
-        return Turning(self.expressions, self.parameters)
+    def _angular_frequency(self) -> AngularFrequency:
+        return AngularFrequency(self.expressions, self.parameters)
 
     @property
     def frequency(self) -> tuple[str, ...]:
         """Names of the parameters whose product is omega (rad/s) but for a factor; () if it is none."""
-        return self._turning.product[0]
+        return self._angular_frequency.product[0]
 
     @property
     def frequency_factor(self) -> float:
         """What the product of the parameters `frequency` is multiplied by to be omega."""
-        return self._turning.product[1]
+        return self._angular_frequency.product[1]
 
     @property
     def frequency_held(self) -> dict[str, float]:
         """Values of other parameters that this factor depends on, by name."""
-        return self._turning.product[2]
+        return self._angular_frequency.product[2]
 
     def omega(self, parameter: Array) -> float:
         """Return the frequency of the excitation.
@@ -154,14 +154,14 @@ class CompiledSystem:
         float
             omega in rad/s.
         """
-        return self._turning.omega(parameter)
+        return self._angular_frequency.omega(parameter)
 
     @cached_property
     def linear(self) -> LinearPart | RowsPart | None:
         """The linear part of a system that is split: condensed structures, or what was found."""
         if self.part is not None:
             return self.part
-        return LinearPart(self.held, self.omega, self._turning.gradient) if self.held else None
+        return LinearPart(self.held, self.omega, self._angular_frequency.gradient) if self.held else None
 
     @property
     def whole(self) -> CompiledSystem:

@@ -15,7 +15,7 @@ from symbolic.kernels.kernel import Argument, batch, build, points, vector
 
 Kernel = Callable[..., None]
 
-SMALL = 60
+ITERATED_UP_TO = 60
 """Number of states up to which the engine iterates in C."""
 
 
@@ -132,7 +132,7 @@ class Generated:
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
             results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            iterated = name == "residual" and e.state.numel() <= SMALL
+            iterated = name == "residual" and e.state.numel() <= ITERATED_UP_TO
             self._derivatives[name, free] = build([*self._arguments, *more], results, self.choice, iterated)
         return self._derivatives[name, free]
 

@@ -101,7 +101,7 @@ def condensed(system: CompiledSystem) -> CompiledSystem:
 
 
 @dataclass(frozen=True)
-class Condensed:
+class CondensedRecipe:
     """A recipe of what is condensed of a system."""
 
     recipe: Callable[[], CompiledSystem]
@@ -198,7 +198,7 @@ class _Split:
             algebraics=(*whole.algebraics, *unknowns),
             outputs=tuple(whole.outputs[k] for k in outputs),
             expressions=self._expressions(outputs),
-            recipe=None if whole.recipe is None else Condensed(whole.recipe),
+            recipe=None if whole.recipe is None else CondensedRecipe(whole.recipe),
             part=self._part(forces),
             origin=whole,
             splitting=None,

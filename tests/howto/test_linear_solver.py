@@ -1,4 +1,4 @@
-"""How to bring a linear solver of one's own: SciPy's sparse LU (`splu`) in place of condensation.
+"""How to bring a linear solver of one's own: SciPy's sparse LU (`splu`) in place of elimination.
 
 `Collocation(solver=...)` takes a function of the system, an orbit, its equations evaluated at the collocation
 points and the rows of its event nodes; it returns an `Operator`. Newton asks the operator for three things:
@@ -143,7 +143,7 @@ def by_splu(
 
 @pytest.mark.parametrize("scene", ["duffing", "disc"])
 def test_same_branch_with_another_solver(scene: str) -> None:
-    """Assert that points, folds and multipliers are those of condensation, to the orbits' tolerance."""
+    """Assert that points, folds and multipliers are those of the elimination, to the orbits' tolerance."""
     duffing = (duffing_system(*DUFFING_A), "Omega", (1.8, 2.4))
     disc = (disc_system("vitrea79-810N"), "speed", (300 * RPM, 270 * RPM))  # contact is lost on the way
     problem = duffing if scene == "duffing" else disc

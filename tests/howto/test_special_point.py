@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.condensation import condensed
+from periodic.collocation.elimination import eliminated
 from periodic.extend import (
     Chain,
     Condition,
@@ -76,7 +76,7 @@ def tripled(
     It leaves along x(tau) + s Re(exp(i phi) Phi(tau) v), M v = exp(2 pi i/3) v; of the phases phi those are
     tried that differ.
     """
-    chain, thrice = Chain(condensed(system, orbit, ())), repeated(orbit, 3)
+    chain, thrice = Chain(eliminated(system, orbit, ())), repeated(orbit, 3)
     values, vectors = np.linalg.eig(chain.fundamental[-1])
     vector = chain.fundamental @ vectors[:, values.imag.argmax()]
     for phi in np.linspace(0, THIRD, 8, endpoint=False):
@@ -93,7 +93,7 @@ def tripled(
 def _thrice(chain: Chain, periods: list[Array]) -> Increment:
     """The perturbation of three periods from that of each at the mesh points."""
     still = np.zeros(len(chain.orbit.phases))
-    inner = [chain.condensed.recover(nodes, still, 0.0) for nodes in periods]
+    inner = [chain.eliminated.recover(nodes, still, 0.0) for nodes in periods]
     nodes = np.concatenate([*(part[:-1] for part in periods[:-1]), periods[-1]])
     stages, algebraic = (np.concatenate(parts) for parts in zip(*inner, strict=True))
     return Increment(nodes, stages, algebraic, np.tile(still, 3), np.zeros(1), nodes)

@@ -10,7 +10,7 @@ from symbolic.integration.flow import Flow
 from symbolic.motion.explicit import rates
 from symbolic.motion.linear import modes
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.system.compiled import with_values
 
 THIRD, THREE = "third-order-810N", "vitrea79-810N"

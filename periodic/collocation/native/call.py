@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from periodic.collocation.multipliers.substeps import GROWING
+from periodic.collocation.fastmotions.substeps import GROWING
 from periodic.collocation.native.elimination import ELIMINATION, LARGE, full
 from periodic.correction.newton import NewtonSettings
 from periodic.linear.bordering import GROWTH

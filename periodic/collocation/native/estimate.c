@@ -179,16 +179,16 @@ static void go(struct call *c, struct room *r, double further)
     move(c, r, 1);
 }
 
-/* The largest change of a segment's length, relative where it is shorter than 1 rad, on the way of the increment
-   and so many kernels: see `periodic.correction.newton.stretched`. */
-static double stretched(const struct call *c, double kernels)
+/* The largest change of a segment's length, relative where it is shorter than 1 rad, on the way of so many
+   increments and kernels: see `periodic.correction.newton.stretched`. */
+static double stretched(const struct call *c, double increments, double kernels)
 {
     const double *one = c->increment.outer, *other = c->kernel.outer;
     double most = 0;
     for (whole a = 0; a < c->k; a++) {
         const whole next = a + 1 < c->k ? a + 1 : 0;
         const double own = (next ? c->phases[next] : c->phases[0] + c->period) - c->phases[a];
-        const double change = one[next] - one[a] + kernels * (other[next] - other[a]);
+        const double change = increments * (one[next] - one[a]) + kernels * (other[next] - other[a]);
         most = fmax(most, fabs(change) / fmin(own, 1));
     }
     return most;
@@ -207,8 +207,11 @@ static int at_same_parameter(struct call *c, const struct estimate *e, struct ro
         double most = -1;
         for (whole side = 1; side >= -1; side -= 2) {
             const double way = far[i] + side * least, kernels = -way / rate;
-            if (rate != 0 && length * fabs(way) <= e->reach * fabs(rate) && stretched(c, kernels) > most) {
-                most = stretched(c, kernels);
+            if (rate == 0 || !(length * fabs(way) <= e->reach * fabs(rate)) || !(stretched(c, 0, kernels) <= 1))
+                continue;
+            const double both = stretched(c, 1, kernels);
+            if (both > most) {
+                most = both;
                 ways[i] = kernels;
             }
         }

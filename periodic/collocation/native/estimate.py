@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from periodic.collocation.multipliers.unresolved import FAST
+from periodic.collocation.fastmotions.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
 from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
@@ -17,7 +17,7 @@ from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP, Increment, size_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
 _BETTER = tuple(f"better_{name}" for name in FOUND)

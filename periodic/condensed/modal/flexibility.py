@@ -173,10 +173,10 @@ class Flexibility:
             exponents = response.modes.exponents
             ahead = np.exp(exponents * (start - end[-1])[:, None])
             back = np.exp(exponents * (end[-1] - end)[:, None])
-            shown = (response.shown[after] * ahead[:, None, None]).reshape(-1, size)
+            outputs = (response.stage_outputs[after] * ahead[:, None, None]).reshape(-1, size)
             columns = response.impulse[inside] * back[:, :, None, None]
             columns = np.moveaxis(columns, 1, 0).reshape(size, -1)
-            found[here + count :] += real_product(shown, columns).reshape(len(start), *found.shape[1:])
+            found[here + count :] += real_product(outputs, columns).reshape(len(start), *found.shape[1:])
 
     def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
         """Responses of some modes to earlier intervals of a run by one product."""
@@ -184,20 +184,20 @@ class Flexibility:
         exponents, begun = response.modes.exponents[chosen], response.start[inside.start]
         ahead = np.exp(exponents * (response.start[inside] - begun)[:, None])
         back = np.exp(-exponents * (response.end[inside] - begun)[:, None])
-        shown = response.shown[inside][..., chosen] * ahead[:, None, None]
+        outputs = response.stage_outputs[inside][..., chosen] * ahead[:, None, None]
         left = np.moveaxis(response.impulse[inside][:, chosen] * back[:, :, None, None], 1, 0)
-        found = real_product(shown.reshape(-1, len(chosen)), left.reshape(len(chosen), -1))
-        return found.reshape(*shown.shape[:3], *left.shape[1:])
+        found = real_product(outputs.reshape(-1, len(chosen)), left.reshape(len(chosen), -1))
+        return found.reshape(*outputs.shape[:3], *left.shape[1:])
 
     def _chained(self, chosen: NDArray[np.int_], inside: slice) -> Array:
         """The same interval after interval, for modes that decay too fast for one product."""
         response, size = self.response, len(chosen)
-        shown = response.shown[inside][..., chosen]
+        outputs = response.stage_outputs[inside][..., chosen]
         left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)
         decay = response.grown[inside][:, chosen]
         own, width, found = np.zeros_like(left).reshape(size, -1), left[0, 0].size, []
-        for i, rows in enumerate(shown):
+        for i, rows in enumerate(outputs):
             found.append(real_product(rows.reshape(-1, size), own))
             own = decay[i][:, None] * own
             own[:, i * width : (i + 1) * width] = left[:, i].reshape(size, -1)
-        return np.array(found).reshape(*shown.shape[:3], *left.shape[1:])
+        return np.array(found).reshape(*outputs.shape[:3], *left.shape[1:])

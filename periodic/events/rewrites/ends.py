@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
 from periodic.events.modes import bends, group, mode_after, surface_of
 from periodic.events.rewrites.corners import corner
@@ -15,6 +16,7 @@ from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strikes import last_impact
 from periodic.events.rewrites.swaps import swapped, swaps
 from periodic.events.rewrites.table import (
+    ADDING_ABOUT,
     ADDING_SLIDING,
     CORNER,
     CROSSING_SLIDING,
@@ -26,28 +28,44 @@ from periodic.events.rewrites.table import (
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.sideconditions import Clearance, Limit, speed
+from periodic.events.rewrites.twins import without
+from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.violations import largest
+from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, SurfaceLike, System
+from periodic.system import STUCK, Kind, SurfaceLike, System
+
+SHALLOW = 0.1
+"""Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
 
 
 @dataclass(frozen=True)
 class Excursion:
     """What may end: its row, the event node at which it begins, and its size in the row's measure.
 
-    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges.
+    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges. segments: those whose lengths
+    together are its size, where it is not the one that begins there.
     """
 
     row: Row
     index: int
     unit: float = 1.0
 
+    segments: tuple[int, ...] = ()
+
     def size(self, system: System, orbit: Orbit) -> float:
         """How long it lasts, or with which speed it arrives."""
         if self.row is IMPACT:
             return speed(system, orbit, self.index)
-        return float(orbit.mesh.segment_lengths(orbit.phases)[self.index])
+        lengths = orbit.mesh.segment_lengths(orbit.phases)
+        return float(lengths[list(self.segments or (self.index,))].sum())
+
+    def held(self, size: float) -> SideCondition:
+        """What keeps it as small as that, in its own unit."""
+        if self.row is IMPACT:
+            return Speed(self.index, size)
+        return Lengths(self.segments, size) if self.segments else Length(self.index, size)
 
 
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
@@ -66,6 +84,9 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
         row = _held(system, orbit, i)
         if row is not None:
             yield Excursion(row, i)
+        inner = slip_about(system, orbit, i)
+        if inner:
+            yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
         if swaps(system, orbit, i) and i not in about:
@@ -90,6 +111,8 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         return _pair(orbit, row, around, i)
     if row is REVERSAL:
         return _reversal(system, orbit, i)
+    if row is ADDING_ABOUT:
+        return _about(system, orbit, i)
     return _stretch(system, orbit, row, i)
 
 
@@ -114,14 +137,49 @@ def _reversal(system: System, orbit: Orbit, begin: int) -> Site:
     return Site(REVERSAL, first.switch, at, held, 0.0, removed=(turn.begin, turn.end))
 
 
+def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
+    """Return the event nodes of other surfaces in a slip that begins at one; () if there are none or many."""
+    events, k = orbit.mesh.events, len(orbit.phases)
+    surface = surface_of(system, events[begin].switch)
+    if surface.releases is None or events[begin].switch == surface.switch:
+        return ()
+    inner = list[int]()
+    for m in range(1, min(k, INSIDE + 2)):
+        j = (begin + m) % k
+        mode = mode_after(surface, events[j])
+        if mode is not None:
+            ends = mode == STUCK and events[j].switch == surface.switch
+            return tuple(inner) if ends and inner and _shallow(system, orbit, begin, j) else ()
+        inner.append(j)
+    return ()
+
+
+def _shallow(system: System, orbit: Orbit, begin: int, end: int) -> bool:
+    """Whether what is released at an event node is hardly pulled more than it holds, until another one."""
+    event, mesh = orbit.mesh.events[begin], orbit.mesh
+    dense = SwitchPolynomials(system, orbit)
+    first, last = int(mesh.starts[begin]), int(mesh.starts[end])
+    inside = np.arange(first, last if last > first else last + mesh.ntst) % mesh.ntst
+    excess = float((event.direction * dense.knots[inside][:, :, event.switch]).max())
+    return excess < SHALLOW * largest(dense, event.switch)
+
+
+def _about(system: System, orbit: Orbit, begin: int) -> Site:
+    """A slip about events at other surfaces, where the joint is pulled most."""
+    inner, first = slip_about(system, orbit, begin), orbit.mesh.events[begin]
+    gone = begin, (inner[-1] + 1) % len(orbit.phases)
+    held = Limit(inner[0], first.switch, -first.direction)
+    return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, removed=gone)
+
+
 def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
     """The surface both of whose neighbouring transitions a segment lies between, if any."""
     i, j = segment, (segment + 1) % len(orbit.phases)
     if i == j:
         return None
     surface = surface_of(system, orbit.mesh.events[i].switch)
-    other = surface_of(system, orbit.mesh.events[j].switch)
-    return surface if surface.releases is not None and surface.switch == other.switch else None
+    ends = mode_after(surface, orbit.mesh.events[j]) is not None
+    return surface if surface.releases is not None and ends else None
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
@@ -131,6 +189,10 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
         return None
     first, second = orbit.mesh.events[segment], orbit.mesh.events[(segment + 1) % len(orbit.phases)]
     stuck, then = (mode_after(surface, event) == STUCK for event in (first, second))
+    if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
+        return GRAZING_SLIDING
+    if surface.kind == Kind.SLIDER:
+        return ADDING_SLIDING if then and not stuck else None
     if stuck:
         return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
     if then:
@@ -157,6 +219,9 @@ def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         held = Clearance(guard, second.direction, _middle(orbit, i))
         return Site(row, guard, i, held, 0.0, removed=(i, j))
     held = Clearance(first.switch, -first.direction, _middle(orbit, i))
+    others_stay = without(system, second, guard)
+    if others_stay is not None:
+        return Site(row, first.switch, i, held, 0.0, (), (i,), ((j, others_stay),))
     return Site(row, first.switch, i, held, 0.0, removed=(i, j))
 
 

@@ -13,6 +13,7 @@ from periodic.events.rewrites.onsets import begins
 from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.table import (
+    ADDING_ABOUT,
     ADDING_SLIDING,
     CORNER,
     GRAZING,
@@ -38,7 +39,9 @@ LAST = 1e-2
 """Length (rad) of the last slips of a motion that will not slip any more."""
 
 
-def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -> Change | None:
+def first_change(
+    system: System, before: Orbit, after: Orbit, shortest: float, ends_below: float = ENDS_BELOW
+) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
     `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
@@ -46,15 +49,15 @@ def first_change(system: System, before: Orbit, after: Orbit, shortest: float) -
     """
     if not system.switches:
         return None
-    ending = _endings(system, before, after, shortest)
+    ending = _alone(_endings(system, before, after, shortest))
     found = [*ending, *_onsets(system, before, after, ending, shortest)]
     first = min(found, key=lambda change: (not change.strict, change.part), default=None)
     if isinstance(first, Begins) and first.site.row is GRAZING:
-        return _or_end(first, before, after, ending)
+        return _or_end(first, before, after, ending, ends_below)
     return first
 
 
-def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> Begins:
+def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], ends_below: float) -> Begins:
     """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
 
     In a guess depth goes before length.
@@ -67,7 +70,13 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends]) -> 
     assert isinstance(at, Extremum)
     now, then = (o.mesh.segment_lengths(o.phases)[i] for o in (before, after))
     inside = np.mod(at.phase - after.phases[i], after.mesh.period) <= then
-    return replace(begins, otherwise=end) if inside and now < ENDS_BELOW else begins
+    return replace(begins, otherwise=end) if inside and now < ends_below else begins
+
+
+def _alone(ending: list[Ends]) -> list[Ends]:
+    """What ends, without swaps within slips that end as a whole."""
+    whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
+    return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
 
 
 def _onsets(
@@ -124,7 +133,7 @@ def _ending(
     now, then = (excursion.size(system, orbit) / unit for orbit in (before, after))
     if then >= now or (row is CORNER and now <= row.least):
         return None
-    half = VANISHING * now
+    half = now if row.gradual else VANISHING * now
     size, last = row.size_below(half), False
     if row is IMPACT and size >= half:
         return None
@@ -134,7 +143,7 @@ def _ending(
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now
         size = min(LAST, half) if last else size
-    if then > (max(half, size) if row.power == ROOT and not last else size):
+    if then > (max(half, size) if row.power == ROOT and not (last or row.gradual) else size):
         return None
     final = last or size <= row.least
     part = row.part(now, then, size)

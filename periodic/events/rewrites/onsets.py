@@ -19,6 +19,7 @@ from periodic.events.rewrites.table import (
     IMPACT,
     SWITCHING_SLIDING,
 )
+from periodic.events.rewrites.twins import with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.violations import Breach, Violation, largest, limits
@@ -125,7 +126,10 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         new = (EventNode(k, -side), early), (stop, late)
         row, left = ADDING_SLIDING, SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
-    return Site(row, k, at, Clearance(k, side, at.phase, left), value, added)
+    held_at = Clearance(k, side, at.phase, left)
+    if surface.kind == Kind.SLIDER:
+        return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
+    return Site(row, k, at, held_at, value, added)
 
 
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:

@@ -27,8 +27,8 @@ from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
 from periodic.system import System
 
 ALIKE = 1e-3
@@ -119,8 +119,7 @@ class Ends:
     @property
     def condition(self) -> SideCondition:
         """How small it becomes."""
-        index = self.excursion.index
-        return Speed(index, self.size) if self.site.row is IMPACT else Length(index, self.size)
+        return self.excursion.held(self.size)
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield the orbit without it, and without what is as small elsewhere by symmetry."""

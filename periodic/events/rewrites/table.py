@@ -9,11 +9,13 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     adding-sliding         nothing, in 0       (0 +)(+ 0)        clearance        length
     crossing-sliding       (+ -)               (+ 0)(0 -)        limit            length
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
+    the same about w       w, in 0             (0 +) w (+ 0)     limit            length
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
 
-w are events of friction at which an excursion turns back, or an impact in its midst. What begins is of no
+w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
+joint where one is pulled most. What begins is of no
 size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
 
 References
@@ -45,6 +47,7 @@ class Row:
 
     name: in the literature. touches: whether a switch just touches its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
+    gradual: whether steps shorten so much on the way that each size is looked at as it is passed.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Row:
     power: float
     sizes: tuple[float, ...] = SHORT
     spare: tuple[float, ...] = ()
+    gradual: bool = False
 
     @property
     def least(self) -> float:
@@ -73,6 +77,9 @@ GRAZING = Row(name="grazing", touches=True, power=ROOT)
 IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER)
 GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
 ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
+ADDING_ABOUT = Row(
+    name="adding-sliding about another event", touches=False, power=ROOT, sizes=FLAT, gradual=True
+)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)

@@ -21,7 +21,7 @@ from periodic.tracing.watch import Watch
 NAME = "stationary"
 """What the point is called where it is looked for along the branch."""
 
-STEP = 1e-4
+ARCLENGTH_STEP = 1e-4
 """Arclength of the difference that stands for a derivative along the branch."""
 
 PRECISION = 1e-7
@@ -100,7 +100,10 @@ def _slope(functional: Functional) -> Callable[[Solution], float]:
 
     def value(solution: Solution) -> float:
         problem = solution.problem
-        ends = [functional(problem.system, tangent(problem, solution, h)) for h in (STEP, -STEP)]
-        return (ends[0] - ends[1]) / (2 * STEP)
+        ends = [
+            functional(problem.system, tangent(problem, solution, h))
+            for h in (ARCLENGTH_STEP, -ARCLENGTH_STEP)
+        ]
+        return (ends[0] - ends[1]) / (2 * ARCLENGTH_STEP)
 
     return value

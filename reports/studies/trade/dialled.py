@@ -18,7 +18,7 @@ from reports.studies.trade.methods import problems
 from symbolic.parts.equations import Names
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 TIGHTEST = 1e-11
 """Tolerance of the references, and ten times as much where that is not reached."""

@@ -20,10 +20,10 @@ from symbolic.equations.jumps.sliding import Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
 
-ITERATIONS = 20
+ZERO_ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
 
-CLOSE = 1e-10
+ZERO_VALUE = 1e-10
 """Value of a switch that is as good as 0."""
 
 EQUAL = 1e-8
@@ -138,10 +138,10 @@ def _on_surface(packed: Packed, switch: ca.SX) -> tuple[Array, Array, Array]:
     function = ca.Function("surface", arguments, [switch, gradient])
     state, phase, parameter = Samples(packed).points[0]
     with np.errstate(all="ignore"):
-        for _ in range(ITERATIONS):
+        for _ in range(ZERO_ITERATIONS):
             value, slope = (np.array(a) for a in function(state, phase, parameter))
             change = value * slope / (slope**2).sum(axis=0)
             state, phase = state - change[:-1], phase - change[-1:]
         value = np.array(function(state, phase, parameter)[0])
-    there = np.flatnonzero(np.abs(value.ravel()) < CLOSE)
+    there = np.flatnonzero(np.abs(value.ravel()) < ZERO_VALUE)
     return state[:, there], phase[:, there], parameter

@@ -257,7 +257,7 @@ def _built_in() -> dict[str, type[Part]]:
 def _objects() -> tuple[type, ...]:
     """Public dataclasses beside the parts, that parts may hold, and the laws of contact of the user's."""
     public = importlib.import_module("symbolic")
-    given = [getattr(door, name) for door in (public, films) for name in door.__all__]
+    given = [getattr(namespace, name) for namespace in (public, films) for name in namespace.__all__]
     given += contact_laws().values()
     given += [value for module in _own for value in vars(module).values()]
     chosen = {v.__name__: v for v in given if dataclasses.is_dataclass(v) and inspect.isclass(v)}

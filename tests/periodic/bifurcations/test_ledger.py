@@ -11,7 +11,7 @@ from support.equations import growing
 
 import periodic as per
 import symbolic as sym
-from periodic.bifurcations import turning
+from periodic.bifurcations import turningpoint
 from periodic.bifurcations.ledger import Entry, gaps
 from periodic.correction.solution import Solution
 from periodic.tracing.steps.stepper import Stepper
@@ -108,12 +108,12 @@ def test_base_that_a_new_mesh_carries_past_a_special_point(monkeypatch: pytest.M
 
     def carried(stepper: Stepper, new: Solution, due: bool) -> Solution:
         met.append(new)
-        same = len(met) < 2 or turning.unstable(met[-2]) == turning.unstable(new)
+        same = len(met) < 2 or turningpoint.unstable(met[-2]) == turningpoint.unstable(new)
         return remeshed(stepper, new, due) if same else met[-2]
 
     monkeypatch.setattr(Stepper, "remeshed", carried)
     branch = per.trace(growing(), "mu", (0.0, 0.34))
-    assert len({turning.unstable(solution) for solution in met}) == 2
+    assert len({turningpoint.unstable(solution) for solution in met}) == 2
     assert places(branch, Label.TORUS) == pytest.approx([0.30], rel=1e-7)
 
 

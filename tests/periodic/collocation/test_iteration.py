@@ -14,7 +14,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.native import call, iteration
 from periodic.collocation.native.estimate import estimated
 from periodic.correction.arclength import ArclengthConstraint
@@ -25,7 +25,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 Array = NDArray[np.float64]
 NEWTON = NewtonSettings()

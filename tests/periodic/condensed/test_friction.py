@@ -7,7 +7,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.condensed import passing
+from periodic.condensed import modalsaltation
 from periodic.condensed.linearised import Linearised
 from periodic.condensed.settling import settled
 from periodic.condensed.variations import CondensedVariations
@@ -62,10 +62,10 @@ def test_forces_at_an_event_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> N
     """Assert that saltation is not made of forces that a last Newton step still moved."""
     system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
     orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
-    assert len(Linearised.about(system, orbit, ()).passages) == 2
-    monkeypatch.setattr(passing, "ITERATIONS", 1)
+    assert len(Linearised.about(system, orbit, ()).saltations) == 2
+    monkeypatch.setattr(modalsaltation, "ITERATIONS", 1)
     with pytest.raises(np.linalg.LinAlgError, match="forces at an event"):
-        _ = Linearised.about(system, orbit, ()).passages
+        _ = Linearised.about(system, orbit, ()).saltations
 
 
 def test_refused() -> None:

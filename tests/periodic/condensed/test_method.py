@@ -18,7 +18,7 @@ from periodic.condensed.operator import Condensed
 from periodic.harmonic.split import SeriesLeading
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.tracing.suited import suited
+from periodic.tracing.methodchoice import chosen_method
 
 
 @cache
@@ -123,7 +123,7 @@ def test_increments_are_periodic() -> None:
     """Assert that what answers a step ends where it begins: of the equations, and of states that lack."""
     system, orbit = cantilever(1, cubic), branch(1)[2].orbit
     method = per.Collocation().at(1e-6)
-    problem, method = suited(method, per.Problem(system, "Omega", (3.0, 8.0)))
+    problem, method = chosen_method(method, per.Problem(system, "Omega", (3.0, 8.0)))
     operator = method.linearise(problem.system, orbit, problem.free)
     assert isinstance(operator, Condensed)
     held = [per.Amplitude("tip").linearise(problem.system, orbit, problem.free)]

@@ -237,7 +237,7 @@ def test_full_disk_to_the_end(tmp_path: Path) -> None:
 
 def test_file_is_written_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the file of a map under way can be read, and says what is not done."""
-    monkeypatch.setattr(stores, "LEAST", 0.0)
+    monkeypatch.setattr(stores, "LEAST_SECONDS", 0.0)
     monkeypatch.setattr(stores, "RARELY", 0.0)
     store, seen = tmp_path / "map.nc", []
 
@@ -262,7 +262,7 @@ def test_file_is_written_again_when_that_costs_little(
     monkeypatch.setattr(stores, "packed", slowly)
     with stores.Store(tmp_path / "map.nc", {}, False) as store:
         store.write(xr.Dataset(), False)
-        rest = max(stores.LEAST, stores.RARELY)
+        rest = max(stores.LEAST_SECONDS, stores.RARELY)
         for later, due in ((0.9 * rest, False), (0.2 * rest, True)):
             clock[0] += later
             assert store.due() is due

@@ -11,7 +11,7 @@ import symbolic as sym
 from periodic.orbit import extrema
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)

@@ -16,7 +16,7 @@ import periodic as per
 import symbolic as sym
 from periodic.orbit.layout import layout_of
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 SCENE = "vitrea79-810N"
 METHODS = {

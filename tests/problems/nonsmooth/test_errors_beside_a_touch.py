@@ -10,9 +10,9 @@ from support.drawn.contact import drawn
 
 import periodic as per
 from periodic.correction import error
-from periodic.correction.refinement import carried
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.refinement.adaptation import carried
 from periodic.tracing.continuation import Continuation, Step
 
 BRIEF = 2e-3

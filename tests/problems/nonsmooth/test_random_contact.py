@@ -19,15 +19,14 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 import periodic as per
 from periodic import Reason
 from periodic.bifurcations.locate import special_points
-from periodic.bifurcations.turning import Found
+from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
 from periodic.events.noderows import event_rows
-from periodic.events.rewrites import first
 from periodic.events.rewrites.rewrite import Ends
 from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 from periodic.tracing import continuation
 
@@ -170,7 +169,7 @@ def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: py
     case = drawn("chains", 1019)
     monkeypatch.setattr(continuation, "special_points", _never_final)
     if ends_below is not None:
-        monkeypatch.setattr(first, "ENDS_BELOW", ends_below)
+        monkeypatch.setattr(per.Collocation, "ends_below", ends_below)
     branch = traced(case)
     beside = [p for p in branch.special_points if abs(p.parameter - BESIDE) < 1e-10]
     assert min(briefest(branch)) < 9e-5

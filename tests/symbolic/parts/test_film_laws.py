@@ -15,7 +15,7 @@ import periodic as per
 import symbolic as sym
 from symbolic.scenes.building import build, disc_model
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 
 SPEED, RADIUS, CROWN, VISCOSITY, PIEZO = 360 * RPM, 0.051, 0.102, 0.890, 25.9e-9

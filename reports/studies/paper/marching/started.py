@@ -15,7 +15,7 @@ from symbolic.arrays import Array
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import disc_model
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values
 

@@ -13,11 +13,11 @@ import numpy as np
 
 import periodic as per
 from periodic.correction.newton import Correction, correct
-from periodic.correction.refinement import refined, remeshed
 from periodic.correction.solver import Solver
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined, remeshed
 from reports.studies.trade.methods.problems import Problem, nearby
 
 INTERPOLATED = 100.0

@@ -17,7 +17,7 @@ from reports.benchmarks.work import chain_model
 from symbolic.integration.flow import Flow
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build, disc_model
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values
 
