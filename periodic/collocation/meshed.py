@@ -130,6 +130,11 @@ class MeshMethod(Discretisation):
         """Return where a switch touches its level on the way, or two event nodes meet."""
         return first_change(system, before, after, self.shortest, self.ends_below)
 
+    def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
+        """The error of an orbit that slips where it should be held, or the reverse: infinite; else 0."""
+        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
+
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
@@ -137,11 +142,6 @@ class MeshMethod(Discretisation):
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)
-
-    def _missing(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
-        """What of the orbit's error is that it slips where it should be held, or the reverse."""
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
         """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""

@@ -156,7 +156,7 @@ class Collocation(MeshMethod):
         error = found.error
         if error is UNKNOWN:
             return error
-        missing = self._missing(system, orbit, error)
+        missing = self._misheld(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)

@@ -9,7 +9,7 @@ import numpy as np
 from periodic.condensed.linearised import answer
 from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
-from periodic.events.modes import sides
+from periodic.events.modes import sides, twins
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
 from periodic.events.tying import exact_crossings
@@ -147,6 +147,7 @@ def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bo
 
 def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
     """The same, where one joint's stop or passage tears off another at once both at one phase."""
+    records = _side_by_side(motion, records)
     sliding = {joint.index: joint for joint in motion.joints if joint.slides}
     own = [each for each in records if each.surface in sliding]
     causes = [each for each in own if each.before != STUCK]
@@ -156,6 +157,18 @@ def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
         torn = (cause for cause in near if _tears(motion, cause, each, sliding[each.surface]))
         cause = next(torn, each)
         found.append(replace(each, phase=cause.phase))
+    return found
+
+
+def _side_by_side(motion: Motion, records: list[Changed]) -> list[Changed]:
+    """The same, where joints with one guard stop at one phase."""
+    switches = {joint.index: joint.switch for joint in motion.joints}
+    found = list[Changed]()
+    for each in records:
+        same = twins(motion.system, switches[each.surface]) if each.after == STUCK else []
+        stops = [other for other in found if other.after == STUCK and abs(each.step - other.step) <= 1]
+        first = next((other for other in stops if switches[other.surface] in same[1:]), each)
+        found.append(replace(each, phase=first.phase))
     return found
 
 

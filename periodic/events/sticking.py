@@ -41,11 +41,12 @@ def passages(system: System, orbit: Orbit, least: float) -> list[Passage]:
 
     least: change of a switch by which a stretch of sticking matters.
     """
-    held = [surface.switch for surface in of_kind(system, Kind.SLIDING)]
+    held, sliders = ([s.switch for s in of_kind(system, kind)] for kind in (Kind.SLIDING, Kind.SLIDER))
     if held and orbit.mesh.events and not any(v.breach is Breach.MODE for v in between_nodes(system, orbit)):
-        own = [j for k in held for j in _own(system, orbit, k)]
-        return [(orbit.mesh.events[j], float(orbit.phases[j]), 1.0) for j in own]
-    return [passage for k in held for passage in _passages(system, orbit, k, least)]
+        sliders, held = [*sliders, *held], []
+    own = [j for k in sliders for j in _own(system, orbit, k)]
+    kept = [(orbit.mesh.events[j], float(orbit.phases[j]), 1.0) for j in own]
+    return kept + [passage for k in held for passage in _passages(system, orbit, k, least)]
 
 
 def _own(system: System, orbit: Orbit, switch: int) -> list[int]:

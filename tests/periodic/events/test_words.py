@@ -60,7 +60,7 @@ def test_modes_after_event_nodes() -> None:
 
 
 def test_files_keep_modes(sticking: per.Point, tmp_path: Path) -> None:
-    """Assert that a saved branch has the modes of its event nodes; without any they are told from the order."""
+    """Assert that a saved branch has the modes of its event nodes; else they follow from their order."""
     branch = per.trace(dry(), "Omega", (0.4, 0.5), control=per.ArclengthControl(max_points=2))
     branch.save(tmp_path / "dry.nc")
     found = per.Branch.load(tmp_path / "dry.nc")[0].orbit.mesh.events

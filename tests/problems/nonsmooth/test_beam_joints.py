@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from reference.joints import Coulomb, Jointed
+from reference.joints import Coulomb, Jointed, Slider
 from reference.joints.judging import judged
 from reference.joints.model import Joint
 
@@ -64,10 +64,31 @@ class Beam:
 
 
 def test_two_joints() -> None:
-    """Assert branches of two joints, in either way."""
+    """Assert a branch of two joints, one of which holds for a while."""
     beam = Beam(
         lambda tip, middle: [sym.CoulombFriction(tip, 0.002), sym.CoulombFriction(middle, 0.002)],
         [Coulomb(row(TIP), 0.002), Coulomb(row(MIDDLE), 0.002)],
     )
-    branch = beam.check(2.2, 2.25)
+    branch = beam.check(2.2, 2.21)
     assert any(event.modes for event in branch[0].orbit.mesh.events)
+
+
+def test_slider_and_joint() -> None:
+    """Assert a branch of an elastic slider without creep, and of a joint that stops as well."""
+    beam = Beam(
+        lambda tip, middle: [sym.Jenkins(tip, 3.0, 0.003, creep=None), sym.CoulombFriction(middle, 0.004)],
+        [Slider(row(TIP), 3.0, 0.003), Coulomb(row(MIDDLE), 0.004)],
+    )
+    assert len(beam.check(2.2, 2.205)[0].orbit.phases) == 8
+
+
+def test_two_sliders() -> None:
+    """Assert a branch of two elastic sliders without creep."""
+    beam = Beam(
+        lambda tip, middle: [
+            sym.Jenkins(tip, 3.0, 0.003, creep=None),
+            sym.Jenkins(middle, 3.0, 0.002, creep=None),
+        ],
+        [Slider(row(TIP), 3.0, 0.003), Slider(row(MIDDLE), 3.0, 0.002)],
+    )
+    assert len(beam.check(2.2, 2.205)[0].orbit.phases) == 8

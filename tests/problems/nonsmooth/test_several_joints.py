@@ -1,4 +1,4 @@
-"""Several joints that stick on coupled masses: through their whole range from both ends, judged event by event.
+"""Several joints that stick on coupled masses: through their range from both ends, judged event by event.
 
 Models are those of the survey (`tests/support/drawn/joints.py`), the judge is `tests/reference/joints`.
 """
@@ -41,7 +41,7 @@ def both_ways() -> list[per.Branch]:
 
 
 def test_both_ways_alike(both_ways: list[per.Branch]) -> None:
-    """Assert that both come to their ends, past the same grazings, and are the same at whole values to 1e-6."""
+    """Assert that both come to their ends, past the same grazings, and are the same there to 1e-6."""
     up, down = both_ways
     assert up.stop.reason is down.stop.reason is per.Reason.BOUND
     there, back = (sorted({round(p.parameter, 5) for p in b.labelled(per.Label.GRAZING)}) for b in both_ways)
@@ -53,7 +53,7 @@ def test_both_ways_alike(both_ways: list[per.Branch]) -> None:
 
 
 def test_what_is_held_all_along_is_followed(both_ways: list[per.Branch]) -> None:
-    """Assert that where a joint does not slip all along, its mass rests at the place that the parameter says."""
+    """Assert that the mass of a joint that never slips rests."""
     held = [p for branch in both_ways for p in branch if p.orbit.mesh.modes and not slips(p, "y")]
     for point in held:
         tau = point.orbit.grid.left / point.parameter
