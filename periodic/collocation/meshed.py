@@ -21,7 +21,7 @@ from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import motions, tying
-from periodic.events.modes import completed, group, of_held
+from periodic.events.modes import completed, group, of_held, of_kind
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, violations, word
@@ -31,7 +31,7 @@ from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.refinement.equidistribution import redistribute
-from periodic.system import System
+from periodic.system import Kind, System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
@@ -133,7 +133,16 @@ class MeshMethod(Discretisation):
     def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
         """The error of an orbit that slips where it should be held, or the reverse: infinite; else 0."""
         own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        if self._unknown(system, orbit):
+            return np.inf
         return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
+
+    @staticmethod
+    def _unknown(system: System, orbit: Orbit) -> bool:
+        """Whether an elastic slider has no mode all along: then it creeps, as in none of its modes."""
+        modes = dict(orbit.mesh.modes)
+        own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
+        return any(not group(system, orbit.mesh, switch) for switch in own)
 
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""

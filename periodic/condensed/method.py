@@ -22,7 +22,6 @@ from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events.modes import group, of_kind
 from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -32,7 +31,7 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.multipliers import Spectrum
-from periodic.system import Kind, System, jumps_of, slides_of
+from periodic.system import System, jumps_of, slides_of
 
 BRIEF_CONTACT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
@@ -111,8 +110,9 @@ class CondensedCollocation(MeshMethod):
             PARAMETER_SHARE * operator.rounding if brief and isinstance(operator, CondensedOperator) else 0.0
         )
         found = deferred(*given, lengths=True, digits=digits)
-        if self._unknown(problem.system, correction.orbit):
-            return replace(found, orbit=np.inf)
+        missing = self._misheld(problem.system, correction.orbit, found)
+        if missing:
+            return replace(found, orbit=missing)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
@@ -120,15 +120,7 @@ class CondensedCollocation(MeshMethod):
         if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
-        named["orbit"] = max(found.orbit, self._misheld(problem.system, correction.orbit, found))
         return ContactError(**named, variation=variation)
-
-    @staticmethod
-    def _unknown(system: System, orbit: Orbit) -> bool:
-        """Whether an elastic slider has no mode all along: then it creeps, as in none of its modes."""
-        modes = dict(orbit.mesh.modes)
-        own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
-        return any(not group(system, orbit.mesh, switch) for switch in own)
 
     def settles(self, system: System) -> bool:
         """Return whether motion may stick: settling is cheap in modes, and sticks."""

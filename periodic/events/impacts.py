@@ -14,6 +14,7 @@ from periodic.events.modes import modes_in, of_kind
 from periodic.events.rates import before, rate_before
 from periodic.events.saltation import mapped, saltation
 from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -35,8 +36,14 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
     return [
         _jump(system, orbit, i, free)
         for i, event in enumerate(orbit.mesh.events)
-        if event.switch in jumping or {k for k, _ in event.modes} & jumping
+        if (event.switch in jumping or {k for k, _ in event.modes} & jumping) and not _settling(system, event)
     ]
+
+
+def _settling(system: System, event: EventNode) -> bool:
+    """Whether an event node is no more than elastic sliders that come to be held: no rate jumps there."""
+    sliders = {surface.switch for surface in of_kind(system, Kind.SLIDER)}
+    return event.switch in sliders and {k for k, _ in event.modes} <= sliders
 
 
 def carrying(system: System) -> list[int]:

@@ -9,6 +9,7 @@ decides. See `periodic.system.SurfaceLike`.
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
@@ -33,6 +34,12 @@ LOOKS = 3
 
 SHALLOW = 0.05
 """How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
+
+
+_KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
+    weakref.WeakKeyDictionary()
+)
+"""Modes by meshes, with the system whose they are."""
 
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
@@ -118,20 +125,34 @@ def sides(system: System, orbit: Orbit) -> Array:
 
     1 and -1 are the signs of its guard, STUCK says that it is held at 0; where it is 0 the state decides.
     """
-    own, mesh = [s for s in surfaces_of(system) if s.column is not None], orbit.mesh
-    found = np.zeros((mesh.ntst, len(own)))
+    own = [s for s in surfaces_of(system) if s.column is not None]
+    if not own:
+        return np.zeros((orbit.mesh.ntst, 0))
+    found = _by_nodes(system, orbit.mesh, own).copy()
     for surface in own:
-        found[:, cast(int, surface.column)] = _along(system, orbit, surface)
+        column = cast(int, surface.column)
+        if np.isnan(found[0, column]):
+            found[:, column] = _whole(system, orbit, surface)
     return found
 
 
-def _along(system: System, orbit: Orbit, surface: SurfaceLike) -> Array:
+def _by_nodes(system: System, mesh: Mesh, own: Sequence[SurfaceLike]) -> Array:
+    """The modes that a mesh says, in each interval; NaN where it says none. They are kept with it."""
+    kept = _KEPT.get(mesh)
+    if kept is None or kept[0]() is not system:
+        found = np.stack([_along(mesh, surface) for surface in own], axis=1)
+        found = found[:, np.argsort([cast(int, surface.column) for surface in own], kind="stable")]
+        kept = weakref.ref(system), found
+        _KEPT[mesh] = kept
+    return kept[1]
+
+
+def _along(mesh: Mesh, surface: SurfaceLike) -> Array:
     """The mode of a surface in each interval."""
-    mesh = orbit.mesh
     changes = [(int(j), mode_after(surface, e)) for j, e in zip(mesh.starts, mesh.events, strict=True)]
     changes = [(j, mode) for j, mode in changes if mode is not None]
     whole = changes[-1][1] if changes else dict(mesh.modes).get(surface.switch)
-    found = np.full(mesh.ntst, _whole(system, orbit, surface) if whole is None else whole, dtype=float)
+    found = np.full(mesh.ntst, np.nan if whole is None else whole, dtype=float)
     for j, mode in changes:
         found[j:] = mode
     return found
