@@ -10,6 +10,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.collocation import meshed
 from periodic.collocation import method as collocation
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate
@@ -47,7 +48,8 @@ def test_slip_by_less_than_the_error(
     own = method.error(problem, correction, tangent, spectrum)
     assert orbit.mesh.events and COARSE < 3 * own.orbit < FINE
     place = Violation(Breach.MODE, 0, 0, 1, part * own.orbit)
-    monkeypatch.setattr(collocation, "mode_violations", lambda system, orbit: [place])
+    for module in (collocation, meshed):
+        monkeypatch.setattr(module, "mode_violations", lambda system, orbit: [place])
     found = method.error(problem, correction, tangent, spectrum)
     assert np.isfinite(found.orbit) == refined
     refinement = method.refine(problem.system, orbit, found)
