@@ -85,7 +85,7 @@ def _behind_saddle(within: WithinStep, new: Solution, ds: float, found: list[Fou
 
     The product of all 1 - mu_i mu_j changes sign at both, as where real mu_i = 1/mu_j no multiplier passes.
     """
-    if TORUS not in codim2.sought(new, False):
+    if unstable(within.base) == unstable(new) or TORUS not in codim2.sought(new, False):
         return []
     named = [entry(point.solution, point.label) for point in found]
     if not gaps([entry(within.base, Label.NONE), *named, entry(new, Label.NONE)], turns=False):
@@ -100,7 +100,7 @@ def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> fl
     """Return a distance at which the test has another sign than at both ends, where their unstable
     multipliers are not as many."""
     (low, high), count, sign = (0.0, ds), unstable(within.base), within.base.once(TORUS.value)
-    if sign * new.once(TORUS.value) <= 0 or unstable(new) == count:
+    if sign * new.once(TORUS.value) <= 0:
         return None
     for _ in range(TRIALS):
         middle = (low + high) / 2

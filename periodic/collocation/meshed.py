@@ -24,7 +24,7 @@ from periodic.events import motions, tying
 from periodic.events.modes import completed, group, of_held, of_kind
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
-from periodic.events.violations import Breach, Violation, violations, word
+from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
@@ -119,7 +119,7 @@ class MeshMethod(Discretisation):
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
-        found = violations(system, correction.orbit)
+        found = refusals(system, correction.orbit)
         wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
         if wrong is not None:
             return replace(correction, outcome=wrong)

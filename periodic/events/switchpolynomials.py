@@ -161,6 +161,16 @@ class SwitchPolynomials:
 
         It shares the nodes of other switches that are equal to it.
         """
+        if switch not in self._directed:
+            self._directed[switch] = self._directions_of(switch)
+        return self._directed[switch]
+
+    @cached_property
+    def _directed(self) -> dict[int, list[int]]:
+        """The same by switch, as far as they have been asked for."""
+        return {}
+
+    def _directions_of(self, switch: int) -> list[int]:
         values, found = self.knots[:, :, switch], []
         surface = surface_of(self.system, switch)
         near = SHARED * float(np.abs(values).max())

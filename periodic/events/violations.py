@@ -67,6 +67,15 @@ def at_nodes(system: System, orbit: Orbit) -> list[Violation]:
     return [violation for i in range(len(orbit.phases)) for violation in _at_node(system, orbit, i)]
 
 
+def refusals(system: System, orbit: Orbit) -> list[Violation]:
+    """Return the violations for which an orbit is refused at once: at event nodes, and through impacts."""
+    impacts = [surface.switch for surface in surfaces_of(system) if surface.kind == Kind.IMPACT]
+    if not impacts:
+        return at_nodes(system, orbit)
+    dense = SwitchPolynomials(system, orbit)
+    return at_nodes(system, orbit) + [v for switch in impacts for v in _through(dense, switch)]
+
+
 def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
     """Return the violations of the modes between event nodes; `otherwise` as in `violations`."""
     if not system.switches:
