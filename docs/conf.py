@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+import importlib
 from importlib.metadata import version as installed
 from pathlib import Path
+from types import ModuleType
 
 HERE = Path(__file__).parent
+
+NAMESPACES = {
+    "symbolic.films": "films and their laws",
+    "symbolic.functions": "of symbols",
+    "periodic.plots": "pictures of orbits and curves",
+    "periodic.maps": "what design maps are made of",
+    "periodic.extend": "what extensions are written with",
+}
+"""What few users call, and how its pages of the reference are headed."""
 
 project = "orbitrace"
 author = "The orbitrace authors"
@@ -59,28 +70,37 @@ sphinx_gallery_conf = {
 
 
 def reference() -> None:
-    """Write the pages of the reference: a list of what each package exports, parts apart."""
+    """Write the pages of the reference: a list of what stands in each namespace, parts apart."""
     import periodic
     import symbolic
-    from symbolic import functions
 
     def page(name: str, title: str, module: str, names: list[str]) -> None:
         lines = [title, "=" * len(title), "", f".. currentmodule:: {module}", "", ".. autosummary::"]
-        lines += ["   :toctree: generated", "", *(f"   {item}" for item in names), ""]
+        lines += ["   :toctree: generated", "", *(f"   {item}" for item in sorted(names)), ""]
         text, file = "\n".join(lines), HERE / "reference" / f"{name}.rst"
         file.parent.mkdir(exist_ok=True)
         if not file.exists() or file.read_text("utf-8") != text:
             file.write_text(text, "utf-8")
+        listed.update(f"{module}.{item}" for item in names)
+
+    def front(package: ModuleType) -> list[str]:
+        return [name for name in dir(package) if not isinstance(getattr(package, name), ModuleType)]
 
     def is_part(name: str) -> bool:
         found = getattr(symbolic, name)
         return isinstance(found, type) and issubclass(found, symbolic.Part)
 
-    names = [name for name in symbolic.__all__ if name != "functions"]
-    page("parts", "Parts", "symbolic", sorted(filter(is_part, names)))
+    listed: set[str] = set()
+    names = front(symbolic)
+    page("parts", "Parts", "symbolic", [name for name in names if is_part(name)])
     page("symbolic", "symbolic: what the equations are", "symbolic", [n for n in names if not is_part(n)])
-    page("functions", "symbolic.functions: of symbols", "symbolic.functions", sorted(functions.__all__))
-    page("periodic", "periodic: what a periodic orbit is", "periodic", sorted(periodic.__all__))
+    page("periodic", "periodic: what a periodic orbit is", "periodic", front(periodic))
+    for namespace, title in NAMESPACES.items():
+        module = importlib.import_module(namespace)
+        page(namespace.rpartition(".")[2], f"{namespace}: {title}", namespace, module.__all__)
+    for file in (HERE / "reference" / "generated").glob("*.rst"):
+        if file.stem not in listed:  # of a name that there was once
+            file.unlink()
 
 
 reference()

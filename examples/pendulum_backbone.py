@@ -15,8 +15,8 @@ pendulum = sym.compile(
         parameters={"c": 0.0},
     )
 )
-still = per.equilibria(pendulum, "c", (0.0, 1.0), start=0.0)[0].orbit
-guess = per.mode(pendulum, still, "c")
+still = per.trace(pendulum, "c", (0.0, 1.0), start=0.0, method=per.Equilibrium())[0].orbit
+guess = per.normal_mode(pendulum, still, "c")
 branch = per.trace(pendulum, "omega", (0.4, 1.0), guess=guess, determined={"c": per.Conservative()})
 axes = per.plot(branch)
 key = max(point.maximum["q"] for point in branch)  # rad, at 0.4 of the small oscillations' frequency

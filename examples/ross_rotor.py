@@ -14,7 +14,7 @@ import symbolic as sym
 
 matrices = sym.read_matrices("ross_rotor.npz")
 diagram = sym.campbell(matrices, np.linspace(1, 400, 400), count=4)
-axes = per.plot_campbell(diagram)
+axes = per.plots.campbell(diagram)
 rotor = sym.Structure(matrices, at={"disc": (8, 9), "left": (0, 1)}, damping=0.02)
 bearing = sym.CubicSpring(rotor["left"][0], 1e11) + sym.CubicSpring(rotor["left"][1], 1e11)
 system = sym.compile(rotor + bearing + sym.Unbalance(*rotor["disc"], m=32.0, eccentricity=2e-5))

@@ -1,6 +1,6 @@
 """What the equations are: parts that add up to models, scenes of such models, and their compilation."""
 
-from . import functions
+from . import films, functions
 from .equations.assembly import Assembly
 from .equations.model import Model, Part, combine
 from .equations.variables import Coordinate, Parameter, Variable, coordinate, coordinates, parameter
@@ -21,27 +21,11 @@ from .parts.contact.palmgren import PalmgrenLaw
 from .parts.contact.rigidstop import RigidStop
 from .parts.contact.stop import Stop
 from .parts.equations import Equations
-from .parts.films.cavitating import CavitatingFilm
-from .parts.films.explicit import ExplicitSqueezeFilm
-from .parts.films.flattening import AmplitudeReduction, FlattenedWaviness, LineReduction, PointReduction
-from .parts.films.law import FilmLaw, PowerFilm
-from .parts.films.line import LineFilm
 from .parts.films.lubricated import LubricantFilm
-from .parts.films.quasistatic import QuasistaticFilm
-from .parts.films.regimes import FilmRegime, RegimeFilm, film_regime
-from .parts.films.regressions import (
-    Compliance,
-    ConstantThickness,
-    HamrockDowsonThickness,
-    RegressionThickness,
-    Rolling,
-)
-from .parts.films.series import SeriesFilm
 from .parts.films.squeeze import SqueezeFilm
-from .parts.films.thickness import CalibratedThickness, GivenThickness, SteadyThickness, ThicknessLaw
-from .parts.films.thirdorder import ThirdOrder
 from .parts.friction.coulomb import CoulombFriction
 from .parts.friction.jenkins import Iwan, Jenkins
+from .parts.friction.load import NormalLoad
 from .parts.friction.tanh import TanhFriction
 from .parts.gears.error import TransmissionError
 from .parts.gears.mesh import GearMesh
@@ -59,9 +43,9 @@ from .parts.rotors.internal import InternalDamping
 from .parts.rotors.rub import Rub
 from .parts.rotors.unbalance import Unbalance
 from .parts.structure import Structure
-from .scenes.door import scene
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
+from .scenes.loading import scene
 from .scenes.model.catalogue import register_part
 from .scenes.names import scene_names
 from .structures.beam import beam
@@ -73,23 +57,18 @@ from .structures.matrices import Matrices
 from .structures.reduction import Reduction, craig_bampton, residual_modes
 from .structures.ross import ross_matrices
 from .structures.shaft import ShaftDisc, shaft
-from .system.compile import compile
+from .system.compile import compile as compile
 from .system.compiled import CompiledSystem
 from .system.split import condensed, structure_of
 
 __all__ = [
-    "AmplitudeReduction",
     "Assembly",
     "Backlash",
     "BaseMotion",
-    "CalibratedThickness",
     "Campbell",
-    "CavitatingFilm",
     "CompiledSystem",
     "CompilerError",
-    "Compliance",
     "ConstantForce",
-    "ConstantThickness",
     "ContactDamping",
     "ContactLaw",
     "ContactPair",
@@ -101,17 +80,11 @@ __all__ = [
     "Damper",
     "ElasticContact",
     "Equations",
-    "ExplicitSqueezeFilm",
-    "FilmLaw",
-    "FilmRegime",
-    "FlattenedWaviness",
     "FourierSeries",
     "FrequencyResponse",
     "Gap",
     "GearMesh",
-    "GivenThickness",
     "GyroscopicMoment",
-    "HamrockDowsonThickness",
     "Harmonic",
     "HarmonicForce",
     "Hertz",
@@ -124,50 +97,39 @@ __all__ = [
     "Jenkins",
     "JournalBearing",
     "Kernels",
-    "LineFilm",
-    "LineReduction",
     "LubricantFilm",
     "Mass",
     "Matrices",
     "Model",
     "Modes",
     "NoRestError",
+    "NormalLoad",
     "OneSidedSpring",
     "PalmgrenLaw",
     "Parameter",
     "Part",
     "PeriodicForce",
     "PiecewiseLinearSpring",
-    "PointReduction",
-    "PowerFilm",
     "Preload",
     "Profile",
-    "QuasistaticFilm",
     "RaceWave",
     "RampedWaviness",
     "ReducedMass",
     "Reduction",
-    "RegimeFilm",
-    "RegressionThickness",
     "RigidStop",
-    "Rolling",
     "RollingBearing",
     "Rub",
     "Samples",
-    "SeriesFilm",
     "ShaftDisc",
     "Simulation",
     "SimulationInterrupted",
     "Spring",
     "SqueezeFilm",
     "SqueezeFilmDamper",
-    "SteadyThickness",
     "Stop",
     "Structure",
     "Support",
     "TanhFriction",
-    "ThicknessLaw",
-    "ThirdOrder",
     "TransmissionError",
     "Unbalance",
     "Variable",
@@ -176,12 +138,11 @@ __all__ = [
     "beam",
     "campbell",
     "combine",
-    "compile",
     "condensed",
     "coordinate",
     "coordinates",
     "craig_bampton",
-    "film_regime",
+    "films",
     "flexibility",
     "functions",
     "modal_energy",
@@ -200,5 +161,4 @@ __all__ = [
     "simulate",
     "structure_of",
 ]
-
 __version__: str

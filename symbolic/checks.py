@@ -11,7 +11,7 @@ import numpy as np
 
 T = TypeVar("T")
 
-LONGEST = 60
+LONGEST_QUOTE = 60
 """Values longer than this are cut in a sentence."""
 
 
@@ -23,7 +23,7 @@ def refusal(field: str, value: object, allowed: str) -> ValueError:
 def shown(value: object) -> str:
     """Return a value as a sentence shows it: on one line, texts in quotes, not too long."""
     text = " ".join((str(value) if isinstance(value, np.generic) else repr(value)).split())
-    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    return text if len(text) <= LONGEST_QUOTE else text[: LONGEST_QUOTE - 3] + "..."
 
 
 def finite(field: str, value: object) -> float:

@@ -16,8 +16,8 @@ DELAY = 1.0
 
 def watched() -> bool:
     """Return whether somebody looks on."""
-    told = os.environ.get(VARIABLE, "").strip()
-    return told != "0" if told else "ipykernel" in sys.modules or sys.stderr.isatty()
+    setting = os.environ.get(VARIABLE, "").strip()
+    return setting != "0" if setting else "ipykernel" in sys.modules or sys.stderr.isatty()
 
 
 def counted(total: int, what: str, unit: str) -> Iterator[int]:

@@ -6,11 +6,11 @@ import html
 from collections.abc import Iterable, Sequence
 
 MANY = 12
-"""Names of a list that are told, and rows of a table that are shown at once."""
+"""Most names that a list gives, and most rows of a table that is not folded up."""
 
 
-def told(names: Iterable[str]) -> str:
-    """Return names in a line, of many the first and how many there are."""
+def listed(names: Iterable[str]) -> str:
+    """Return names in one line; of more than MANY the first and their number."""
     known = list(names)
     shown = ", ".join(known[:MANY]) or "none"
     return shown if len(known) <= MANY else f"{shown}, ... ({len(known)})"

@@ -9,14 +9,14 @@ import numpy as np
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import Complex
-from periodic.stability.winding import passages
+from periodic.stability.multipliers import Complex
+from periodic.stability.winding import pair_crossings
 
 NEGATIVE = 1e-3
 """Real multipliers nearer to 0 than this are too far from -1."""
 
 
-def passing(found: Complex, at: int) -> float:
+def product_test(found: Complex, at: int) -> float:
     """prod (1 - at mu) / (1 + |mu|) of given multipliers, at = 1 or -1.
 
     Each factor is over its size, so that none overflows. Of real multipliers only those past `at` change the
@@ -26,7 +26,7 @@ def passing(found: Complex, at: int) -> float:
 
 
 def nearest(found: Complex, at: int) -> float:
-    """The two factors of `passing` that are nearest 0, with its sign: a pair about to pass.
+    """The two factors of `product_test` that are nearest 0, with its sign: a pair about to pass.
 
     The product of all dips wherever one of many pairs passes.
     """
@@ -40,14 +40,14 @@ def _factors(found: Complex, at: int) -> list[complex]:
 
 def dips(base: Solution, new: Solution, at: int) -> list[tuple[float, float]]:
     """Where pairs turn past `at` between two orbits, and what `nearest` is there if they stay pairs."""
-    found = passages(base.spectrum, new.spectrum, at)
+    found = pair_crossings(base.spectrum, new.spectrum, at)
     return [(place, ((1 - modulus) / (1 + modulus)) ** 2) for place, modulus in found]
 
 
 def doubling(solution: Solution) -> float:
     """prod (mu + 1) / (1 + |mu|); 0 where it is not known."""
     spectrum = solution.spectrum
-    return passing(spectrum.nontrivial, -1) if spectrum.known else 0.0
+    return product_test(spectrum.nontrivial, -1) if spectrum.known else 0.0
 
 
 def known(solution: Solution) -> bool:
@@ -68,7 +68,7 @@ def doubles_twice(base: Solution, new: Solution) -> bool:
     """
     ends = [end.spectrum.multipliers for end in (base, new)]
     negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]
-    return max(negative) > 1 or bool(passages(base.spectrum, new.spectrum, -1))
+    return max(negative) > 1 or bool(pair_crossings(base.spectrum, new.spectrum, -1))
 
 
 DOUBLING = TestFunction(

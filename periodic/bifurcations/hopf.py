@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.bifurcations.switching import FAR, SwitchError, switched
+from periodic.bifurcations.switching import FIRST_DISTANCE, SwitchError, switched
 from periodic.conditions.phase import Conservative, PhaseCondition
 from periodic.correction.condition import Condition
 from periodic.equilibrium.linearise import rows_at
@@ -29,7 +29,7 @@ ON_AXIS = 1e-4
 """Largest real part of a pair that counts as imaginary, as a part of its modulus."""
 
 NEARER = (1.0, 0.25, 1 / 16)
-"""Where the first orbit is looked for, in units of FAR."""
+"""Where the first orbit is looked for, in units of FIRST_DISTANCE."""
 
 
 def eigenvalues(system: System, orbit: Orbit, frequency: str = "omega") -> NDArray[np.complex128]:
@@ -83,7 +83,7 @@ def hopf(
     frequency : str
         Name of the parameter omega with d/dt = omega d/dtau.
     distance : float, optional
-        From the equilibrium, root mean square of the scaled states; default FAR or less.
+        From the equilibrium, root mean square of the scaled states; default FIRST_DISTANCE or less.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def hopf(
     return _oscillation(system, orbit, float(nearest.imag), frequency, parameter, determined, distance)
 
 
-def mode(
+def normal_mode(
     system: System,
     orbit: Orbit,
     damping: str,
@@ -159,7 +159,7 @@ def mode(
 def _pairs(system: System, orbit: Orbit, frequency: str) -> NDArray[np.complex128]:
     """The eigenvalues with positive imaginary part."""
     if not orbit.equilibrium:
-        raise ValueError("orbit is no equilibrium; it must be one, of a branch that `equilibria` traced")
+        raise ValueError("orbit is no equilibrium; it must be one, of a branch by method=Equilibrium()")
     found = eigenvalues(system, orbit, frequency)
     oscillating = found[found.imag > 0]
     if not len(oscillating):
@@ -183,7 +183,7 @@ def _oscillation(
     origin = constant(uniform(Scheme(), NTST), orbit.nodes[0], orbit.algebraic[0, 0], values, orbit.layout)
     direction = _linear(system, at_rest, origin)
     last: SwitchError | None = None
-    for length in [FAR * part for part in NEARER] if distance is None else [distance]:
+    for length in [FIRST_DISTANCE * part for part in NEARER] if distance is None else [distance]:
         try:
             return switched(system, origin, direction, parameter, determined, length)
         except SwitchError as error:

@@ -13,15 +13,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.doubling import known as known_spectrum
 from periodic.bifurcations.fold import STEEP
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
 
-PASSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
+CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
 
 PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
@@ -54,8 +54,8 @@ class Entry:
         Whether it is one.
     conservative : bool
         Whether multipliers come in pairs mu, 1/mu.
-    touch : bool
-        Whether it sits on a touch, where multipliers jump: its own are those on one side.
+    grazing : bool
+        Whether it sits on a grazing, where multipliers jump: its own are those on one side.
     """
 
     label: Label
@@ -66,10 +66,10 @@ class Entry:
     blur: float = 0.0
     equilibrium: bool = False
     conservative: bool = False
-    touch: bool = False
+    grazing: bool = False
 
     @property
-    def passing(self) -> int | None:
+    def crossing(self) -> int | None:
         """How many pass there; None where that is not known, as where orbits shrink to an equilibrium.
 
         At folds of conservative orbits none pass but the two that are 1.
@@ -77,7 +77,7 @@ class Entry:
         if self.label is Label.HOPF and not self.equilibrium:
             return None
         none = self.label in (*PLAIN, Label.GRAZING) or (self.conservative and self.label is Label.FOLD)
-        return 0 if none else PASSING.get(self.label)
+        return 0 if none else CROSSING.get(self.label)
 
     @property
     def unstable(self) -> set[int]:
@@ -87,9 +87,9 @@ class Entry:
     @property
     def beside(self) -> set[int]:
         """How many besides those that pass there."""
-        passing = (self.passing or 0) * (2 if self.conservative else 1)
+        crossing = (self.crossing or 0) * (2 if self.conservative else 1)
         order = np.abs(self.growth).argsort()
-        return self._outside(self.growth[order[passing:]], self.noise)
+        return self._outside(self.growth[order[crossing:]], self.noise)
 
     @staticmethod
     def _outside(growth: np.ndarray, noise: float) -> set[int]:
@@ -104,15 +104,15 @@ class Entry:
             return self.unstable if before & self.unstable else set()
         if self.label in PLAIN:
             return before & self.unstable
-        passing = self.passing
-        if passing is None:
+        crossing = self.crossing
+        if crossing is None:
             return set(range(len(self.growth) + 1))
-        if self.touch:
-            return {n + side * passing for n in before for side in (-1, 1)}
+        if self.grazing:
+            return {n + side * crossing for n in before for side in (-1, 1)}
         few = self.beside
-        more = {count + passing for count in few}
+        more = {count + crossing for count in few}
         stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
-        up, down = {n + passing for n in before & few}, {n - passing for n in before & more}
+        up, down = {n + crossing for n in before & few}, {n - crossing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
 
@@ -161,10 +161,10 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
     """Return what is not accounted for between the points of a branch, in order along it.
 
     turns: whether turns of the parameter have labels there, as folds of a branch have. One that is named at a
-    touch may lie just before it.
+    grazing may lie just before it.
     """
     entries, found = _on_touches(entries), []
-    folded = {entry.value for entry in entries if entry.touch and entry.label is Label.FOLD}
+    folded = {entry.value for entry in entries if entry.grazing and entry.label is Label.FOLD}
     both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
     for (last, entry), (before, after), turning in both:
         if not entry.after(before, turning):
@@ -175,12 +175,12 @@ def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
 
 
 def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
-    """The entries, those at a touch marked so: a GR, and what is named right after it at the same orbit."""
+    """The entries, those at a grazing marked so: a GR, and what is named right after it at the same orbit."""
     found: list[Entry] = []
     for entry in entries:
         last = found[-1] if found else None
-        same = last is not None and last.touch and entry.value == last.value
-        found.append(replace(entry, touch=True) if same or entry.label is Label.GRAZING else entry)
+        same = last is not None and last.grazing and entry.value == last.value
+        found.append(replace(entry, grazing=True) if same or entry.label is Label.GRAZING else entry)
     return found
 
 

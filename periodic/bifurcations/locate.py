@@ -11,16 +11,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from periodic.bifurcations import codim2
-from periodic.bifurcations.across import crossing
+from periodic.bifurcations.branchcrossing import crossing
 from periodic.bifurcations.fold import FOLD, moves, turns
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.stretch import RejectedError, Stretch, second_change
+from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
-from periodic.bifurcations.turning import Found, is_one, named, shrinks
-from periodic.correction.refinement import refined
+from periodic.bifurcations.torus import TORUS
+from periodic.bifurcations.turningpoint import Found, is_one, named, shrinks, unstable
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import TRIALS, RejectedError, WithinStep, second_change
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.refinement.adaptation import refined
 
 STANDING = 1e-5
 """A branch that begins with so small a part of its later slope begins at a turn."""
@@ -57,32 +59,68 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
 
     A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). Raises RejectedError.
     """
-    stretch = Stretch(solver, base, {0.0: base, ds: new}, ds)
+    within = WithinStep(solver, base, {0.0: base, ds: new}, ds)
     from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    folds = [] if from_turn else _folds(stretch, new, ds, sought)
+    folds = [] if from_turn else _folds(within, new, ds, sought)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *folds, Found(Label.NONE, ds, new)]
     _check_ways(pieces)
-    found = turned = [named(stretch, turn, new, ds) for turn in folds]
+    found = turned = [named(within, turn, new, ds) for turn in folds]
     for test in (*codim2.sought(new, bool(folds) or from_turn), *sought.tests):
-        met = _where(stretch, new, ds, test, sought.course)
+        met = _where(within, new, ds, test, sought.course)
         found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
-    found = found + _at_values(stretch, pieces, sought)
-    found = sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
+    found = _in_order(found + _at_values(within, pieces, sought))
+    found = _in_order(found + _behind_saddle(within, new, ds, found))
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
     return found[: final[0] + 1] if final else found
 
 
-def _at_values(stretch: Stretch, pieces: list[Found], sought: Sought) -> list[Found]:
+def _in_order(found: list[Found]) -> list[Found]:
+    """Those that have a label, in order along the branch."""
+    return sorted((f for f in found if f.label is not Label.NONE), key=lambda item: item.distance)
+
+
+def _behind_saddle(within: WithinStep, new: Solution, ds: float, found: list[Found]) -> list[Found]:
+    """Locate NS that the ledger lacks: a neutral saddle within the step hides them.
+
+    The product of all 1 - mu_i mu_j changes sign at both, as where real mu_i = 1/mu_j no multiplier passes.
+    """
+    if unstable(within.base) == unstable(new) or TORUS not in codim2.sought(new, False):
+        return []
+    named = [entry(point.solution, point.label) for point in found]
+    if not gaps([entry(within.base, Label.NONE), *named, entry(new, Label.NONE)], turns=False):
+        return []
+    between = _between_pair_and_saddle(within, new, ds)
+    if between is None:
+        return []
+    return [point for span in ((0.0, between), (between, ds)) for point in _located(within, span, ds, TORUS)]
+
+
+def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> float | None:
+    """Return a distance at which the test has another sign than at both ends, where their unstable
+    multipliers are not as many."""
+    (low, high), count, sign = (0.0, ds), unstable(within.base), within.base.once(TORUS.value)
+    if sign * new.once(TORUS.value) <= 0:
+        return None
+    for _ in range(TRIALS):
+        middle = (low + high) / 2
+        solution = within.at(middle)
+        if sign * solution.once(TORUS.value) < 0:
+            return middle
+        low, high = (middle, high) if unstable(solution) == count else (low, middle)
+    return None
+
+
+def _at_values(within: WithinStep, pieces: list[Found], sought: Sought) -> list[Found]:
     """The points at values of the parameter that were asked for, and at a bound."""
-    bounds, found = stretch.solver.problem.bounds, []
+    problem, found = within.solver.problem, []
     starts = [sought.since, *(turn.solution.value for turn in pieces[1:-1])]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = end.solution.value
-        bound = bounds[1] if last > first else bounds[0]
+        bound = problem.high if last > first else problem.low
         for value, label in [*((v, Label.USER) for v in sought.values), (bound, Label.END)]:
             if first < value <= last or last <= value < first:
-                found.append(_at_value(stretch, begin, end, value, label))
+                found.append(_at_value(within, begin, end, value, label))
     return found
 
 
@@ -99,60 +137,60 @@ def _check_ways(pieces: list[Found]) -> None:
             raise RejectedError("the step ends on another part of the branch")
 
 
-def _folds(stretch: Stretch, new: Solution, ds: float, sought: Sought) -> list[Found]:
+def _folds(within: WithinStep, new: Solution, ds: float, sought: Sought) -> list[Found]:
     """Locate the folds within a step, those that are more than an error of the parameter.
 
     One that cannot be told from the change of pattern at its end is there, or is named with what lies beyond.
     """
-    base = stretch.base
+    base = within.base
     if FOLD.value(base) * FOLD.value(new) < 0 and not turns(base, new, ds):
         return []
     if sought.final and FOLD.value(base) != 0 and FOLD.value(new) == 0:
         turned = base.tangent.parameter * new.tangent.parameter < 0
         return [Found(Label.FOLD, ds, new)] if turned else []
-    return _where(stretch, new, ds, FOLD, sought.course)
+    return _where(within, new, ds, FOLD, sought.course)
 
 
-def _where(stretch: Stretch, new: Solution, ds: float, test: TestFunction, course: Course) -> list[Found]:
+def _where(within: WithinStep, new: Solution, ds: float, test: TestFunction, course: Course) -> list[Found]:
     """Locate where a test function changes sign within a step, if it does.
 
     Raises RejectedError where it vanishes at the step's end, having fallen to it; it is also 0 where it is
     not known.
     """
-    base, value = stretch.base, test.value
+    base, value = within.base, test.value
     ends = [base.once(value), new.once(value)]
     if ends[0] * ends[1] < 0:
-        return _located(stretch, (0.0, ds), ds, test)
-    if ends[0] != 0 and ends[1] == 0 and 0 < value(stretch.at(SHORTER * ds)) / ends[0] < LEFT:
+        return _located(within, (0.0, ds), ds, test)
+    if ends[0] != 0 and ends[1] == 0 and 0 < value(within.at(SHORTER * ds)) / ends[0] < LEFT:
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not (test.twice(base, new) or course.returns(test, base, new, ds)):
         return []
-    between = _between(stretch, new, ds, test)
+    between = _between(within, new, ds, test)
     if between is None:
         return []
-    return [found for span in ((0.0, between), (between, ds)) for found in _located(stretch, span, ds, test)]
+    return [found for span in ((0.0, between), (between, ds)) for found in _located(within, span, ds, test)]
 
 
-def _between(stretch: Stretch, new: Solution, ds: float, test: TestFunction) -> float | None:
+def _between(within: WithinStep, new: Solution, ds: float, test: TestFunction) -> float | None:
     """Return a distance at which a test function has another sign than at both ends of a step, if any."""
     local = test.local or test.value
-    sign = np.sign(local(stretch.base))
+    sign = np.sign(local(within.base))
 
     def value(distance: float) -> float:
-        return float(sign * local(stretch.at(distance)))
+        return float(sign * local(within.at(distance)))
 
     ends = {0.0: value(0.0), ds: value(ds)}
-    touching = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
-    dips = test.dips(stretch.base, new) or [(touching, np.nan)]
+    vertex = 1 / (1 + np.sqrt(ends[ds] / ends[0]))
+    dips = test.dips(within.base, new) or [(vertex, np.nan)]
     found = (second_change(value, ends, place * ds, expected) for place, expected in dips)
     return next((place for place in found if place is not None), None)
 
 
-def _located(stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:
+def _located(within: WithinStep, span: tuple[float, float], ds: float, test: TestFunction) -> list[Found]:
     """Locate the zero of a test function between two distances from the base, on an accurate mesh."""
-    solver, base, crossed = stretch.solver, stretch.base, test is not FOLD
-    ends = [stretch.at(end) for end in span]
-    distance, solution = _root(stretch, span, ds, test)
+    solver, base, crossed = within.solver, within.base, test is not FOLD
+    ends = [within.at(end) for end in span]
+    distance, solution = _root(within, span, ds, test)
     turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.units(solution.orbit))
     if solution.orbit.equilibrium and turned < ALIGNED:
         raise RejectedError("a special point of another branch was met")
@@ -175,19 +213,19 @@ def _alike(solver: Solver, old: Solution, new: Solution) -> bool:
 
 
 def _root(
-    stretch: Stretch, span: tuple[float, float], ds: float, test: TestFunction
+    within: WithinStep, span: tuple[float, float], ds: float, test: TestFunction
 ) -> tuple[float, Solution]:
     """Return distance and solution of the zero of a test function between two distances from the base."""
-    ends = [stretch.at(end).once(test.value) for end in span]
-    found = crossing(stretch, span, test) if test.singular and ends[0] * ends[1] < 0 else None
-    if found is None and test.singular and stretch.base.orbit.equilibrium and ends[0] * ends[1] < 0:
+    ends = [within.at(end).once(test.value) for end in span]
+    found = crossing(within, span, test) if test.singular and ends[0] * ends[1] < 0 else None
+    if found is None and test.singular and within.base.orbit.equilibrium and ends[0] * ends[1] < 0:
         raise RejectedError("the step leads to another branch, which crosses this one")
-    return found or stretch.root(span, test.placed, test.precision * ds, aside=test is not FOLD)
+    return found or within.root(span, test.placed, test.precision * ds, aside=test is not FOLD)
 
 
 def _again(solver: Solver, near: Solution, ds: float, test: TestFunction) -> Solution:
     """Locate the zero of a test function about a solution near it."""
-    around = Stretch(solver, near, {0.0: near})
+    around = WithinStep(solver, near, {0.0: near})
     for reach in (0.05 * ds, 0.5 * ds):
         ends = [test.placed(around.at(side)) for side in (-reach, reach)]
         if ends[0] * ends[1] < 0:
@@ -209,10 +247,10 @@ def _accepted(solver: Solver, solution: Solution) -> Solution:
     return solution
 
 
-def _at_value(stretch: Stretch, begin: Found, end: Found, value: float, label: Label) -> Found:
+def _at_value(within: WithinStep, begin: Found, end: Found, value: float, label: Label) -> Found:
     """Locate a parameter value in a monotone piece, then solve at exactly that value."""
-    solver, ends = stretch.solver, (begin.distance, end.distance)
-    distance, near = stretch.root(ends, lambda s: s.value - value, 1e-4 * (ends[1] - ends[0]))
+    solver, ends = within.solver, (begin.distance, end.distance)
+    distance, near = within.root(ends, lambda s: s.value - value, 1e-4 * (ends[1] - ends[0]))
     parameter = near.orbit.parameter.copy()
     parameter[solver.problem.index] = value
     sign = float(np.sign(near.tangent.parameter)) or 1.0

@@ -24,7 +24,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
-FAR = 0.02
+FIRST_DISTANCE = 0.02
 """Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
 
 NO_SIZE = 1e-6
@@ -58,8 +58,8 @@ def doubled(
     determined : mapping of str to Condition, optional
         As in `trace`.
     distance : float, optional
-        From the orbit, root mean square of the scaled states; default FAR times the largest peak to peak (of
-        an orbit at rest FAR).
+        From the orbit, root mean square of the scaled states; default FIRST_DISTANCE times the largest peak
+        to peak (of an orbit at rest FIRST_DISTANCE).
 
     Returns
     -------
@@ -156,10 +156,37 @@ def switched(
     determined: Mapping[str, Condition],
     distance: float | None,
 ) -> Orbit:
-    """Solve on the arclength constraint some way along a direction. Raises SwitchError."""
+    """Return the orbit some way along a direction, solved on the arclength constraint.
+
+    Parameters
+    ----------
+    system : System
+        The equations.
+    origin : Orbit
+        Where another branch begins.
+    direction : Increment
+        The new branch's tangent there, of any length.
+    parameter : str
+        The parameter of the branch.
+    determined : mapping of str to Condition
+        Further free parameters with the conditions that determine them.
+    distance : float or None
+        From the origin, root mean square of the scaled states; None for FIRST_DISTANCE times the orbit's own
+        size.
+
+    Returns
+    -------
+    Orbit
+        An orbit of the new branch: a guess for `trace`.
+
+    Raises
+    ------
+    SwitchError
+        Where none is found.
+    """
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     size = origin.span()
-    length = FAR * (size if size > NO_SIZE else 1.0) if distance is None else distance
+    length = FIRST_DISTANCE * (size if size > NO_SIZE else 1.0) if distance is None else distance
     parameters = np.append(direction.parameter, np.zeros(len(determined)))
     unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
     direction = replace(direction, parameters=parameters).scaled(unit)
@@ -173,7 +200,20 @@ def switched(
 
 
 def repeated(orbit: Orbit, times: int) -> Orbit:
-    """Return the same orbit gone through several times."""
+    """Return the same orbit gone through several times.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The orbit.
+    times : int
+        How many times.
+
+    Returns
+    -------
+    Orbit
+        The orbit over so many of its periods.
+    """
     mesh, ntst = orbit.mesh, len(orbit.nodes) - 1
     if mesh.events:
         breaks = mesh.breaks * times
@@ -181,7 +221,7 @@ def repeated(orbit: Orbit, times: int) -> Orbit:
         breaks = (np.append(np.concatenate([(k + mesh.breaks[0][:-1]) / times for k in range(times)]), 1.0),)
     return replace(
         orbit,
-        mesh=Mesh(mesh.scheme, breaks, mesh.events * times, times * mesh.period),
+        mesh=Mesh(mesh.scheme, breaks, mesh.events * times, times * mesh.period, mesh.modes),
         nodes=np.concatenate([*[orbit.nodes[:ntst]] * (times - 1), orbit.nodes]),
         stages=np.concatenate([orbit.stages] * times),
         algebraic=np.concatenate([orbit.algebraic] * times),

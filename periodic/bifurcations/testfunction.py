@@ -15,10 +15,10 @@ from periodic.bifurcations.label import Label
 from periodic.correction.solution import Solution
 
 PRECISION = 1e-10
-"""Of places along the branch, in steps."""
+"""Error to which a place along the branch is located, in steps."""
 
 LEFT = 0.5
-"""A function that is as a parabola predicts, and keeps this part of its least value, does not change sign."""
+"""A function whose parabola keeps this part of the least value at the ends does not change sign in a step."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,12 +38,13 @@ class TestFunction:
     twice : callable
         Whether the function may change sign twice between two solutions at which it has the same.
     dips : callable
-        Where it may do so, as parts of the step, and what it is there if it does not; by default where a
-        parabola would touch 0.
+        Places, as parts of the step, where it may do so, and its values there if it does not; by default
+        where a parabola would touch 0.
     local : callable, optional
         A function of the same sign that is to be followed there, smooth about a change of sign.
     sharp : callable, optional
-        The function where `value` is 0 for its noise: it places a change of sign that is beyond doubt.
+        The same function without the threshold below which `value` is set to 0: a certain change of sign is
+        located by it.
     touches : callable
         Whether a turn of the branch, between a base and a new solution, is of that kind.
     singular : bool
@@ -97,7 +98,7 @@ def margins(solution: Solution, tests: Sequence[TestFunction]) -> dict[str, floa
 
 @dataclass(frozen=True)
 class Course:
-    """What the margins were at a solution before the base of a step, `gone` before it.
+    """The margins at the solution before the base of a step, at a distance `gone`.
 
     A parabola through the values there and at both ends of the step tells how near to 0 a function comes in
     between, also where it is the same at both ends.

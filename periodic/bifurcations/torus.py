@@ -11,7 +11,7 @@ from periodic.bifurcations.doubling import known
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.stability.spectrum import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
 from periodic.stability.winding import meetings
 
 LARGE = 1e300

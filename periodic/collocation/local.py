@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.condensation import solve_stages
+from periodic.collocation.elimination import solve_stages
 from periodic.collocation.residual import Rows, eliminate, finite
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
 
-ITERATIONS = 25
+LOCAL_ITERATIONS = 25
 HARD = 1e-6
 """Intervals whose first local increment is larger than this are solved."""
-CLOSE = 1e-9
+LOCAL_INCREMENT = 1e-9
 """Local increments at which an interval is solved."""
 
 
@@ -53,12 +53,12 @@ def relax(system: System, orbit: Orbit) -> Orbit:
     )
     stages, algebraic = orbit.stages.copy(), orbit.algebraic.copy()
     index = np.arange(orbit.mesh.ntst)
-    for iteration in range(ITERATIONS):
+    for iteration in range(LOCAL_ITERATIONS):
         try:
             size = _iterate(system, orbit, pieces)
         except (FloatingPointError, np.linalg.LinAlgError):
             break
-        done = size < (HARD if iteration == 0 else CLOSE)
+        done = size < (HARD if iteration == 0 else LOCAL_INCREMENT)
         if iteration:
             stages[index[done]], algebraic[index[done]] = pieces.stages[done], pieces.algebraic[done]
         going = ~done

@@ -3,57 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import ClassVar
 
 import numpy as np
 
-from periodic.checks import whole
-from periodic.collocation import kinks, touch
-from periodic.collocation.condensation import condensation
-from periodic.collocation.event import event_rows
-from periodic.collocation.jumping import graze, impacts, slide, turn
-from periodic.collocation.kinks import Crossing, KinkSettings
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.multipliers.substeps import SteppedCorrection, stepping
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
-from periodic.collocation.sides import group
-from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, demand, evenly, wanted_ntst
-from periodic.correction.newton import Correction, Linearised, NewtonSettings, in_order, linearised
-from periodic.correction.outcome import EventsCrossedError, Outcome
+from periodic.correction.newton import Correction, LinearisedEquations, NewtonSettings, in_order, linearised
+from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
-from periodic.linear.operator import LinearSolver, Operator
+from periodic.correction.refinement import Refinement
+from periodic.events import impacts, tying
+from periodic.events.noderows import event_rows
+from periodic.events.tying import Crossing, KinkSettings
+from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
-from periodic.orbit.construction import at_rest, transfer
-from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.demand import demand, evenly, wanted_ntst
+from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
-from periodic.stability.spectrum import Spectrum
-from periodic.system import System, slides_of
-
-DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
-"""Collocation points in each interval down to a tolerance."""
+from periodic.stability.multipliers import Spectrum
+from periodic.system import Kind, System, surfaces_of
 
 ASIDE = (1.0, 0.0, 10.0)
-"""How far before its kink an event node begins on a new mesh (rad), in tolerances; tried in turn."""
+"""Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
 
 SHALLOWER = (10.0, 100.0)
 """How much shallower event nodes are tried where a new mesh fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Collocation(Discretisation):
+class Collocation(MeshMethod):
     """Orthogonal collocation R(x', x, z, tau, p) = 0 at ncol points in each of ntst intervals.
 
     Parameters
@@ -65,11 +59,11 @@ class Collocation(Discretisation):
     kinks : KinkSettings, optional
         When the mesh is tied to a passage of a switch; default what the tolerance asks for.
     solver : callable
-        The linear solver: condensation interval by interval, see `periodic.linear.operator.LinearSolver`.
+        The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
         Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
-        alone; by default where that pays. Results are those of all states all the same, but of many
-        multipliers the leading ones.
+        alone; by default where that pays. Results are still of all states, but of the multipliers, if they
+        are many, only the leading ones.
     tolerance : float
         What meshes are made for; set by the trace.
 
@@ -79,69 +73,15 @@ class Collocation(Discretisation):
     Doedel, Keller & Kernevez, Int. J. Bifurcation and Chaos 1 (1991) 745.
     """
 
-    scheme: Scheme | None = None
-    ntst: int = 24
-    ntst_min: int = 8
-    ntst_max: int = 1000
-    kinks: KinkSettings | None = None
-    solver: LinearSolver = condensation
-    condense: bool | None = None
-    tolerance: float = 1e-7
-
-    ends_below: ClassVar[float] = touch.SHORT[-1]
-    """Length (rad) of an excursion below which a touch within it that is foreseen may be its end."""
-
-    def __post_init__(self) -> None:
-        if not (self.condense is None or isinstance(self.condense, bool)):
-            raise ValueError(f"condense is {self.condense!r}; it must be True, False or None")
-        check_intervals(self.ntst, self.ntst_min, self.ntst_max)
-        check_scheme(self.scheme)
-        if self.kinks is not None and not isinstance(self.kinks, KinkSettings):
-            raise ValueError(f"kinks is {self.kinks!r}; it must be KinkSettings(...)")
-        if not callable(self.solver):
-            raise ValueError(f"solver is {self.solver!r}; it must be a function that makes an Operator")
-
-    @property
-    def shortest(self) -> float:
-        """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
-        return 0.005 * self.tolerance
-
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
-        """The same with other schemes: Newton's way from a rest is a matter of luck."""
+        """The same with other schemes: whether Newton converges from rest depends on the scheme."""
         schemes = (Scheme(Family.RADAU, 5), Scheme(Family.GAUSS, 4), Scheme(Family.RADAU, 3))
         return tuple(replace(self, scheme=scheme) for scheme in schemes)
 
-    def at(self, tolerance: float) -> Collocation:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance."""
-        return replace(
-            self,
-            scheme=self.scheme or scheme_for(tolerance),
-            kinks=(self.kinks or KinkSettings()).at(tolerance),
-            tolerance=tolerance,
-        )
-
-    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
-        """Return the orbit at rest, or one carried to this scheme, its hard intervals solved locally."""
-        scheme = self.scheme or Scheme()
-        if near is None:
-            return at_rest(system, uniform(scheme, self.ntst), parameter)
-        if near.equilibrium:
-            near = transfer(near, uniform(scheme, self.ntst), near.phases)
-        old = near.mesh
-        mesh = Mesh(scheme, old.breaks, old.events, old.period)
-        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
-        return relax(system, self._tied(system, adopted))
-
-    def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        slides = slides_of(system)
-        if not slides or any(group(system, orbit.mesh, k) for k in slides):
-            return orbit
-        settings = (self.kinks or KinkSettings()).at(self.tolerance)
-        events, phases = kinks.placed(system, orbit, kinks.wanted(system, orbit, settings))
-        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-        return transfer(orbit, mesh, phases)
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance."""
+        return scheme_for(tolerance)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the collocation equations and those of the event nodes."""
@@ -178,11 +118,11 @@ class Collocation(Discretisation):
         free: tuple[int, ...],
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
-    ) -> Linearised:
+    ) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
-        Event nodes are as far beside their levels as rounding may leave them: it is nothing to the orbit, but
-        to the multipliers where a contact is shallow.
+        Event nodes are put off their levels by as much as rounding may: that does not change the orbit
+        noticeably, but the multipliers where a contact is shallow.
         """
         off = aside(orbit, event_rows(system, orbit, free))
         given = (system, orbit, free, conditions, settings)
@@ -192,25 +132,12 @@ class Collocation(Discretisation):
     @property
     def _plain(self) -> bool:
         """Whether its equations are those of the compiled iteration."""
-        return self.solver is condensation and type(self) is Collocation
-
-    def accepted(self, system: System, correction: Correction) -> Correction:
-        """Return it as failed where an event node is not a crossing in its own direction."""
-        if not impacts.arrived(system, correction.orbit):
-            return replace(correction, outcome=Outcome.GRAZING)
-        if not impacts.free(system, correction.orbit, self.tolerance):
-            return replace(correction, outcome=Outcome.THROUGH_STOP)
-        if not impacts.crossed(system, correction.orbit):
-            return replace(correction, outcome=Outcome.SLIDES)
-        if not kinks.genuine(system, correction.orbit):
-            return replace(correction, outcome=Outcome.EVENTS_CROSSED)
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return SteppedCorrection(**given, system=system, equations=self.linearise)
+        return self.solver is elimination
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
 
-        Past its kink a switch hardly changes, and Newton has nothing to hold on to.
+        Past its kink a switch hardly changes, and the row of the event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in ASIDE if deep.any() else (0.0,):
@@ -229,32 +156,22 @@ class Collocation(Discretisation):
         error = found.error
         if error is UNKNOWN:
             return error
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        missing = np.inf if any(abs(place.value) > own for place in slide.wrong(system, orbit)) else 0.0
+        missing = self._misheld(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unseen = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unseen, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
+
+    def settles(self, system: System) -> bool:
+        """Return whether several joints may stick, or sliders are held: in time they find how."""
+        held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
+        return len(held) > 1 or Kind.SLIDER in held
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""
         if len(orbit.mesh.exact_ends) == 0:
             return 0.0
         return of_states(orbit, spectrum) + of_events(orbit, event_rows(system, orbit, ()), spectrum)
-
-    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
-        """Return where a switch touches its level on the way, or two event nodes meet."""
-        if not system.switches:
-            return None
-        found = [part.change(system, before, after, self.shortest) for part in (touch, graze, slide, turn)]
-        first = min((c for c in found if c is not None), key=lambda c: (not c.strict, c.part), default=None)
-        if not isinstance(first, touch.Birth):
-            return first
-        return touch.or_meeting(system, first, before, after, self.ends_below)
-
-    def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
-        """Return the event nodes where the equations change; None where the orbit passes others."""
-        return None if slide.wrong(system, orbit) else touch.pattern(system, orbit)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the intervals one by one."""
@@ -269,16 +186,16 @@ class Collocation(Discretisation):
 class CollocationRefinement(Refinement):
     """Meshes for an orbit of `Collocation`."""
 
-    def __init__(self, method: Collocation, system: System, orbit: Orbit, error: ErrorEstimate) -> None:
+    def __init__(self, method: MeshMethod, system: System, orbit: Orbit, error: ErrorEstimate) -> None:
         super().__init__(orbit, error)
         self.method, self.system = method, system
 
     @cached_property
     def wanted(self) -> list[Crossing]:
-        """The crossings to tie the mesh to, at levels that the orbit is accurate enough for."""
-        settings, meaningful = self._settings, kinks.DEEPEST * min(self.error.orbit, 1.0)
+        """The crossings to tie the mesh to, at levels not below the error of the orbit."""
+        settings, meaningful = self._settings, tying.DEEPEST * min(self.error.orbit, 1.0)
         deepest = max(settings.deepest or 0.0, meaningful)
-        return kinks.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
+        return tying.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
 
     @property
     def _settings(self) -> KinkSettings:
@@ -287,23 +204,23 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return kinks.fits(self.wanted, self.orbit)
+        return tying.fits(self.wanted, self.orbit)
 
     @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
-        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._misplaced
+        return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode
 
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
         brief = "the motion sticks or slips there for too short a while to be followed"
-        return brief if self._misplaced else super().shortfall
+        return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
-    def _misplaced(self) -> bool:
+    def _in_wrong_mode(self) -> bool:
         """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(slide.wrong(self.system, self.orbit))
+        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -311,7 +228,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._misplaced:
+        if self._in_wrong_mode:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -319,7 +236,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._misplaced:
+        if self._in_wrong_mode:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
@@ -333,7 +250,7 @@ class CollocationRefinement(Refinement):
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
         for chosen in self._choices():
-            tied, phases = kinks.placed(self.system, self.orbit, chosen)
+            tied, phases = tying.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -353,24 +270,4 @@ class CollocationRefinement(Refinement):
         levels = [c.event.level for c in self.wanted if c.event.level > 0]
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
-            yield kinks.wanted(self.system, self.orbit, shallower)
-
-
-def scheme_for(tolerance: float) -> Scheme:
-    """Return the scheme for a tolerance."""
-    points = (points for least, points in DEGREES.items() if tolerance >= least)
-    return Scheme(Family.RADAU, next(points, max(DEGREES.values())))
-
-
-def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
-    """Raise ValueError for numbers of intervals that are none, or not in order."""
-    for name, value in {"ntst": ntst, "ntst_min": ntst_min, "ntst_max": ntst_max}.items():
-        whole(name, value)
-    if not ntst_min <= ntst <= ntst_max:
-        raise ValueError(f"ntst is {ntst}; it must lie from ntst_min = {ntst_min} to ntst_max = {ntst_max}")
-
-
-def check_scheme(scheme: object) -> None:
-    """Raise ValueError for what is no scheme, nor left open."""
-    if scheme is not None and not isinstance(scheme, Scheme):
-        raise ValueError(f"scheme is {scheme!r}; it must be Scheme(family, ncol)")
+            yield tying.wanted(self.system, self.orbit, shallower)

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System
@@ -68,7 +68,7 @@ class Evaluated:
         ends = (exact[(exact >= begin) & (exact < end)] - begin) * ncol + ncol - 1
         if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
             if line.d_state.shape[1:] != (line.residual.shape[1], n):
-                return line  # it is refused where it is condensed
+                return line  # it is refused where stages are eliminated
             late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate[ends])
             line.residual[ends] += BEFORE * late
         return line

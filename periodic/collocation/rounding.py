@@ -9,22 +9,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.collocation.rates import rate_before
+from periodic.events.rates import rate_before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 EPSILON = float(np.finfo(float).eps)
 TERMS = 4
-"""How many times the rounding of the terms that cancel in it a switch may be off its level at the most."""
+"""Largest error of a switch at its level, in roundings of the terms that cancel in it."""
 
 
 UNTOLD = 0.1
-"""Part of a contact's length that when it begins may be off by, above which its multipliers are not known."""
+"""Error of a contact's beginning, in parts of its length, above which the multipliers are not known."""
 
 LIKELY = 2
-"""How many times it may well be."""
+"""Likely error of a switch at its level, in the same roundings."""
 
 
 def aside(orbit: Orbit, rows: list[Row]) -> Array:

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
-from periodic.condensed.variations import CondensedVariations
+from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.scheme import Array
 
 FEWEST = 24
@@ -24,8 +26,19 @@ TURN = 0.8
 DEEPEST = 40
 """How often an interval is halved for this."""
 
-NEAR = 0.3
+NEAR_CIRCLE = 0.3
 """Moduli between this part of the radius and its inverse are those of poles near the circle."""
+
+
+class Beside(Protocol):
+    """Motions beside an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
+
+    @property
+    def given(self) -> SplitLinearisation:
+        """The system about the orbit, with all modes."""
+
+    def repeating(self, multiplier: complex) -> CondensedRepeating:
+        """Return the equations of the motions that are multiplied by a number."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +47,13 @@ class Circle:
 
     Parameters
     ----------
-    variations : CondensedVariations
+    variations : Beside
         The motions beside the orbit.
     radius : float
         Of the circle.
     """
 
-    variations: CondensedVariations
+    variations: Beside
     radius: float = 1.0
 
     @property
@@ -55,7 +68,7 @@ class Circle:
 
         Raises FloatingPointError where one lies on the circle, to rounding.
         """
-        near = self.poles[(np.abs(self.poles) > NEAR * self.radius) & (self.poles.imag > 0)]
+        near = self.poles[(np.abs(self.poles) > NEAR_CIRCLE * self.radius) & (self.poles.imag > 0)]
         angles = np.unique(np.concatenate([np.linspace(0, np.pi, FEWEST + 1), np.angle(near)]))
         places = [(float(angle), self._value(float(angle))) for angle in angles]
         turn = sum(self._turn(*ends, DEEPEST) for ends in pairwise(places))

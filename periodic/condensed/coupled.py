@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.modal.flexibility import Flexibility
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -29,7 +29,7 @@ class Coupled:
 
     Parameters
     ----------
-    given : Linearised
+    given : SplitLinearisation
         The system about its orbit.
     flexibility : Flexibility
         What forces do to the states of the linear part.
@@ -38,7 +38,7 @@ class Coupled:
         they begin with nothing.
     """
 
-    def __init__(self, given: Linearised, flexibility: Flexibility, *, wraps: complex) -> None:
+    def __init__(self, given: SplitLinearisation, flexibility: Flexibility, *, wraps: complex) -> None:
         orbit, local = given.orbit, given.local
         self.given, self.flexibility, self.wraps = given, flexibility, wraps
         self.kind = np.result_type(float if flexibility.real else complex, wraps)
@@ -60,7 +60,7 @@ class Coupled:
         return len(self.others) > 0
 
     @cached_property
-    def felt(self) -> NDArray[np.int_]:
+    def coupled_states(self) -> NDArray[np.int_]:
         """Which of the linear part's states forces depend on; all of them where there are own states."""
         if self._own:
             return np.arange(len(self.places))
@@ -68,11 +68,11 @@ class Coupled:
         return np.flatnonzero(by_place.any(axis=(0, 1)))
 
     def _by_active(self) -> Array:
-        """States that are felt by the active forces, where equations are: (R, s, C a ka)."""
+        """States that the active forces are coupled to, where equations are: (R, s, C a ka)."""
         if self.count == 0:
-            return np.zeros((self.points, len(self.felt), 0))
-        found = self.flexibility.part(self.felt, self.active, self.held, everywhere=self._own)
-        return np.asarray(found.reshape(-1, len(self.felt), self.count))
+            return np.zeros((self.points, len(self.coupled_states), 0))
+        found = self.flexibility.part(self.coupled_states, self.active, self.held, everywhere=self._own)
+        return np.asarray(found.reshape(-1, len(self.coupled_states), self.count))
 
     @cached_property
     def _rows_of_forces(self) -> Array:
@@ -124,14 +124,14 @@ class Coupled:
         found[each[first], :, -1, -1] += self.wraps * begun[first]
         return found.reshape(*rates.shape[:2], self.points, -1)
 
-    def _inner(self, rows: Array, at: NDArray[np.int_], felt: Array) -> Array:
+    def _inner(self, rows: Array, at: NDArray[np.int_], response: Array) -> Array:
         """Rows at some points, (R, r, w) of (1, d rate, d state, dy), as rows in u, (R r, size).
 
-        felt: states that are felt there by the active forces, (R, s, C a ka).
+        response: states that are coupled there to the active forces, (R, s, C a ka).
         """
         n, others = self.n, self.others
-        by_place = rows[:, :, [1 + n + self.places[k] for k in self.felt]]
-        inner = by_place @ felt
+        by_place = rows[:, :, [1 + n + self.places[k] for k in self.coupled_states]]
+        inner = by_place @ response
         if len(others):
             own = self._rate_blocks(rows[:, :, 1 + others], at)
             own[np.arange(len(at)), :, at] += rows[:, :, 1 + n + others]
@@ -161,12 +161,12 @@ class Coupled:
 
     def assembled(self) -> Array:
         """Return them, to be kept by who asks."""
-        matrix, felt = np.empty((self.size, self.size), dtype=self.kind), self._by_active()
-        here = felt[self.at] if len(self.at) < len(felt) else felt
+        matrix, response = np.empty((self.size, self.size), dtype=self.kind), self._by_active()
+        here = response[self.at] if len(self.at) < len(response) else response
         np.negative(self._inner(self._rows_of_forces, self.at, here), out=matrix[: self.count])
         matrix[np.arange(self.count), np.arange(self.count)] += 1.0
         if len(self.others):
-            matrix[self.count :] = self._inner(self.given.local.own, np.arange(self.points), felt)
+            matrix[self.count :] = self._inner(self.given.local.own, np.arange(self.points), response)
         return matrix
 
     @cached_property

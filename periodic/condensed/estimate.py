@@ -20,18 +20,18 @@ from numpy.typing import NDArray
 
 from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
-from periodic.condensed.operator import Condensed
+from periodic.condensed.operator import CondensedOperator
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
-from periodic.correction.error import LEAST_SPAN, SMALL, UNKNOWN, ErrorEstimate
-from periodic.correction.newton import Linearise, Linearised, NewtonSettings, newton_step
+from periodic.correction.error import LEAST_SPAN, LEAST_VALUE, UNKNOWN, ErrorEstimate
+from periodic.correction.newton import Linearise, LinearisedEquations, NewtonSettings, newton_step
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 
@@ -45,12 +45,14 @@ class ContactError(ErrorEstimate):
     variation: float = 0.0
 
 
-def applies(operator: Condensed) -> bool:
+def applies(operator: CondensedOperator) -> bool:
     """Return whether the estimate is for such an orbit: without own states and event nodes."""
     return not len(operator.given.others) and not len(operator.orbit.phases)
 
 
-def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum: Spectrum) -> ErrorEstimate:
+def estimate(
+    problem: Problem, operator: CondensedOperator, tangent: Increment, spectrum: Spectrum
+) -> ErrorEstimate:
     """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
     orbit = operator.orbit
     across = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
@@ -65,9 +67,9 @@ def estimate(problem: Problem, operator: Condensed, tangent: Increment, spectrum
     part = operator.given.part
     smooth = answer.stages[:, :, list(part.states)] - missing.on_own(states)
     between = np.abs(missing.gap + states + missing.on_fine(smooth))
-    heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
-    apart = max(between[:, :, heard].max(initial=0.0), float(np.abs(answer.nodes).max()))
-    largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
+    displacements = [k for k, state in enumerate(part.states) if state not in part.velocities]
+    apart = max(between[:, :, displacements].max(initial=0.0), float(np.abs(answer.nodes).max()))
+    largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
     parameter = float(abs(answer.parameter) / largest)
     return ErrorEstimate(float(apart) / max(orbit.span(), LEAST_SPAN), multiplier, parameter)
 
@@ -81,7 +83,7 @@ class OneSided:
 
     def __init__(self, linearise: Linearise) -> None:
         self.linearise = linearise
-        self.known: tuple[Linearised, NDArray[np.int_]] | None = None  # the first, and its contacts
+        self.known: tuple[LinearisedEquations, NDArray[np.int_]] | None = None  # the first, and its contacts
 
     def __call__(
         self,
@@ -90,15 +92,15 @@ class OneSided:
         free: tuple[int, ...],
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
-    ) -> Linearised:
+    ) -> LinearisedEquations:
         """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
         step = newton_step(self.linearise, system, orbit, free, conditions, settings)
         operator, kernel = step.operator, step.kernel
-        assert isinstance(operator, Condensed) and kernel is not None
+        assert isinstance(operator, CondensedOperator) and kernel is not None
         held = operator.system.held
         if self.known is not None and not np.array_equal(held, self.known[1]):
             return self.known[0]
-        found = Linearised(operator.orbit, step.increment, kernel, operator.fundamental)
+        found = LinearisedEquations(operator.orbit, step.increment, kernel, operator.fundamental)
         self.known = self.known or (found, held)
         return found
 
@@ -110,7 +112,7 @@ class _Missing:
     the forces that are missing do to the places.
     """
 
-    def __init__(self, problem: Problem, operator: Condensed) -> None:
+    def __init__(self, problem: Problem, operator: CondensedOperator) -> None:
         given, fine = operator.given, bisect(operator.orbit)
         self.given, self.places, forces = given, list(given.part.states), list(given.part.forces)
         scheme = fine.mesh.scheme

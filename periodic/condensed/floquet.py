@@ -17,13 +17,13 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.condensed.chain import Added, Chain, pays
 from periodic.condensed.coupled import Coupled
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.recursion import Added, IntervalRecursion, pays
 from periodic.condensed.subspace import invariant
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum
+from periodic.stability.multipliers import Complex, Pair, Spectrum
 
 LEADING = 8
 """Multipliers that are kept of many."""
@@ -40,21 +40,21 @@ LASTING = 0.6
 ALONE = 1e-6
 """Distance of a number from a multiplier of the modes left alone at which they are the same."""
 
-SMALL = 64
+ALL_KEPT_UP_TO = 64
 """Up to so many states all of them are computed and kept."""
 
 
 @dataclass(frozen=True)
-class Floquet:
+class ModalFloquet:
     """Free motion about an orbit, in the real coordinates (Re z, Im z, s), redundant ones left out.
 
     Parameters
     ----------
-    given : Linearised
+    given : SplitLinearisation
         The system about its orbit.
     """
 
-    given: Linearised
+    given: SplitLinearisation
 
     @cached_property
     def kept(self) -> NDArray[np.int_]:
@@ -68,12 +68,12 @@ class Floquet:
         return Coupled(self.given, self.given.from_rest, wraps=0.0)
 
     @cached_property
-    def chain(self) -> Chain | None:
+    def chain(self) -> IntervalRecursion | None:
         """The same interval by interval, where that pays or forces jump."""
-        given = self.given.passages
-        if not given and not pays(self._system, min(len(self.kept), SMALL)):
+        given = self.given.saltations
+        if not given and not pays(self._system, min(len(self.kept), ALL_KEPT_UP_TO)):
             return None
-        return Chain(self._system, given)
+        return IntervalRecursion(self._system, given)
 
     @cached_property
     def free(self) -> tuple[Array, Array]:
@@ -86,7 +86,7 @@ class Floquet:
     def driven(self, right: Array | None, basis: Array, passed: Added | None = None) -> tuple[Array, Array]:
         """Return the same of motions from a basis (coordinates, r), driven by right-hand sides (., r).
 
-        `passed` as in `Chain.run`.
+        `passed` as in `IntervalRecursion.run`.
         """
         assert self.chain is not None
         begun = basis[len(basis) - len(self.given.others) :]
@@ -200,7 +200,7 @@ class Floquet:
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
         if self.chain is not None:
-            if self.given.passages:
+            if self.given.saltations:
                 return self.driven(None, basis, {})[1]
             square = basis.shape[0] == basis.shape[1]
             return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]
@@ -255,11 +255,11 @@ class Leading:
 
     Parameters
     ----------
-    floquet : Floquet
+    floquet : ModalFloquet
         Free motion about the orbit.
     """
 
-    floquet: Floquet
+    floquet: ModalFloquet
 
     @cached_property
     def basis(self) -> Array:
@@ -270,7 +270,7 @@ class Leading:
     @property
     def _all(self) -> bool:
         """Whether it is the whole space, in its own coordinates."""
-        return len(self.floquet.kept) <= SMALL
+        return len(self.floquet.kept) <= ALL_KEPT_UP_TO
 
     @property
     def monodromy(self) -> Array:
@@ -336,7 +336,9 @@ class LeadingSpectrum(Spectrum):
         Of all multipliers in the sums of their powers, of the leading ones each from the nearest.
         """
         both = (self.multipliers, np.linalg.eigvals(monodromy))
-        if self.leading is None or len(self.leading.floquet.kept) <= max(SMALL, len(self.multipliers)):
+        if self.leading is None or len(self.leading.floquet.kept) <= max(
+            ALL_KEPT_UP_TO, len(self.multipliers)
+        ):
             count = int((np.abs(self.multipliers) > LASTING).sum())
             largest = [values[np.argsort(-np.abs(values))[:count]] for values in both]
             sums = [[(values**power).sum() for power in (1, 2)] for values in largest]

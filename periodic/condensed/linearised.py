@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.condensed.modal.flexibility import Flexibility
 from periodic.condensed.modal.moments import Complex
-from periodic.condensed.modal.reduction import audible, reduced, reduced_slope
+from periodic.condensed.modal.reduction import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes
+from periodic.condensed.modalsaltation import ModalSaltation, saltations
 from periodic.condensed.native.response import response_of
-from periodic.condensed.passing import Passage, passages
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, jumps_of, linear_of
@@ -36,10 +36,10 @@ class Local:
     rows: NDArray[np.int_]
 
 
-def unheard(system: System) -> tuple[int, ...]:
-    """Return the states of the linear part that need not be right between mesh points.
+def exempt(system: System) -> tuple[int, ...]:
+    """Return the states of the linear part that are exempt from interpolation between mesh points.
 
-    All modes are heard in velocities; but where equations jump with a speed it counts where it vanishes.
+    These are velocities, to which all modes contribute, without those at whose zero the equations jump.
     """
     part, jumps = linear_of(system), list(jumps_of(system))
     if part is None or not jumps:
@@ -79,15 +79,15 @@ def answer(
     if part is None:
         raise ValueError("the system has no linear part; condensation needs one")
     whole = part.modes(parameter)
-    heard = [k for k, state in enumerate(part.states) if state not in part.velocities]
+    displacements = [k for k, state in enumerate(part.states) if state not in part.velocities]
     # where forces jump, modes that follow them at once would make the motion jump
-    kept = audible(whole, heard, mesh.period, 0.0 if jumps_of(system) else tolerance)
+    kept = retained_modes(whole, displacements, mesh.period, 0.0 if jumps_of(system) else tolerance)
     changes = [reduced_slope(whole, part.slope(parameter, k), kept) for k in free]
     return response_of(system, reduced(whole, kept), mesh.scheme, orbit.grid, mesh.period), changes
 
 
 @dataclass(frozen=True)
-class Linearised:
+class SplitLinearisation:
     """A split system about an orbit.
 
     Parameters
@@ -114,7 +114,9 @@ class Linearised:
     system: System
 
     @classmethod
-    def about(cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0) -> Linearised:
+    def about(
+        cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0
+    ) -> SplitLinearisation:
         """Return it with the modes that matter at a tolerance, with all of them by default.
 
         Raises ValueError for a system without a linear part, and as `condense` does.
@@ -125,9 +127,9 @@ class Linearised:
         return cls(orbit, part, response, changes, local_rows(system, part, orbit, free), system)
 
     @cached_property
-    def passages(self) -> list[Passage]:
+    def saltations(self) -> list[ModalSaltation]:
         """The events at which forces jump. Raises numpy.linalg.LinAlgError."""
-        return passages(self.system, self.part, self.orbit, self.response)
+        return saltations(self.system, self.part, self.orbit, self.response)
 
     @cached_property
     def others(self) -> NDArray[np.int_]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 
-from periodic.condensed.chain import cheaper
-from periodic.condensed.floquet import LEADING, SMALL
+from periodic.condensed.floquet import ALL_KEPT_UP_TO, LEADING
+from periodic.condensed.recursion import cheaper
 
 REAL, COMPLEX = 8.0, 16.0
 """Bytes of a number."""
@@ -73,7 +73,7 @@ class Memory:
     def _each(self) -> float:
         """Bytes of the motion in an interval, of which tables are made on the halved mesh as well."""
         a, c = self.points, self._coordinates
-        followed = c if c <= SMALL else 2 * LEADING
+        followed = c if c <= ALL_KEPT_UP_TO else 2 * LEADING
         tables = COMPLEX * self.modes * a * (self.forces + self.places)
         tables += REAL * a**2 * self.forces * self.places
         rows = a * (self.forces + self.own) * (1.0 if self.own else self.active)

@@ -9,19 +9,20 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.event import event_rows
-from periodic.collocation.method import Collocation, scheme_for
+from periodic.collocation.meshed import MeshMethod, scheme_for
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.condensed.linearised import Linearised, unheard
-from periodic.condensed.operator import Condensed
+from periodic.condensed.linearised import SplitLinearisation, exempt
+from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
+from periodic.condensed.settling import followed
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
+from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
@@ -29,22 +30,22 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
-from periodic.system import System, jumps_of
+from periodic.stability.multipliers import Spectrum
+from periodic.system import System, jumps_of, slides_of
 
-SHORT = 0.05
+BRIEF_CONTACT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
 
-FELT = 0.1
-"""The part of it by which the parameter is off, about: fast modes have a small share of a motion."""
+PARAMETER_SHARE = 0.1
+"""Error of the parameter in parts of the rounding in the states: fast modes have little part in a motion."""
 
 
 @dataclass(frozen=True)
-class CondensedCollocation(Collocation):
+class CondensedCollocation(MeshMethod):
     """Collocation for a system with a linear part (`periodic.system.Split`).
 
     Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
-    fast its modes; event nodes, error estimate and meshes are those of `Collocation`, whose settings it has.
+    fast its modes; event nodes are those of `Collocation`, whose settings it has.
     """
 
     ntst: int = 12
@@ -52,21 +53,19 @@ class CondensedCollocation(Collocation):
 
     ends_below: ClassVar[float] = 0.1
 
-    def at(self, tolerance: float) -> CondensedCollocation:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance.
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance.
 
         Unknowns are few and forces smooth: one point more in an interval than where all states are unknown.
         """
-        more = Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
-        chosen = super().at(tolerance)
-        return replace(self, scheme=self.scheme or more, kinks=chosen.kinks, tolerance=tolerance)
+        return Scheme(Family.RADAU, min(scheme_for(tolerance).ncol + 1, 7))
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the equations of the places, and those of the event nodes."""
         if not in_order(orbit):
             raise EventsCrossedError
-        given = Linearised.about(system, orbit, free, self.tolerance)
-        return Condensed(given, event_rows(system, orbit, free))
+        given = SplitLinearisation.about(system, orbit, free, self.tolerance)
+        return CondensedOperator(given, event_rows(system, orbit, free))
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
@@ -78,7 +77,7 @@ class CondensedCollocation(Collocation):
         if near is None or near.equilibrium:
             return super().guess(system, parameter, near)
         old = near.mesh
-        mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period)
+        mesh = Mesh(self.scheme or Scheme(), old.breaks, old.events, old.period, old.modes)
         found = replace(transfer(near, mesh, near.phases), parameter=parameter)
         forces = algebraic_at(system, found, found.stage_phases.ravel())
         return replace(found, algebraic=forces.reshape(found.algebraic.shape))
@@ -87,51 +86,65 @@ class CondensedCollocation(Collocation):
         """Yield the orbit on the other mesh."""
         yield transfer(orbit, mesh, phases)
 
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return a guess with the events of the orbit's own motion, where that can be followed."""
+        motion = followed(system, orbit)
+        return None if motion is None else self.guess(system, motion.parameter, motion)
+
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by what is missing on the halved mesh, or by a Newton step there.
 
-        Velocities of the places, in which all modes are heard, count at mesh points: there they are exact for
-        the forces, however fast they change between them.
+        Velocities of the places, to which all modes contribute, count at mesh points alone: there they are
+        exact for the forces, however fast they change in between.
         """
         operator = correction.operator
-        if isinstance(operator, Condensed) and applies(operator):
+        if isinstance(operator, CondensedOperator) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
-        quiet = self._quiet(problem.system, operator)
+        exempted = self._exempted(problem.system, operator)
         beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, quiet, beside
-        brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < SHORT
-        digits = FELT * operator.rounding if brief and isinstance(operator, Condensed) else 0.0
+        given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
+        brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < BRIEF_CONTACT
+        digits = (
+            PARAMETER_SHARE * operator.rounding if brief and isinstance(operator, CondensedOperator) else 0.0
+        )
         found = deferred(*given, lengths=True, digits=digits)
+        missing = self._misheld(problem.system, correction.orbit, found)
+        if missing:
+            return replace(found, orbit=missing)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
         named = {f.name: getattr(found, f.name) for f in fields(found)}
-        if isinstance(operator, Condensed):
+        if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
         return ContactError(**named, variation=variation)
 
+    def settles(self, system: System) -> bool:
+        """Return whether motion may stick: settling is cheap in modes, and sticks."""
+        return bool(slides_of(system))
+
     @staticmethod
-    def _quiet(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
+    def _exempted(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
         """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
-        if not isinstance(operator, Condensed):
+        if not isinstance(operator, CondensedOperator):
             return None
         found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
-        found[:, list(unheard(system))] = True
+        found[:, list(exempt(system))] = True
         if jumps_of(system):
             found[operator.system.held] = False
         return found
 
     def _brief(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
-        given = Linearised.about(system, orbit, free, self.tolerance)
-        return Condensed(given, event_rows(system, orbit, free), brief=True)
+        given = SplitLinearisation.about(system, orbit, free, self.tolerance)
+        return CondensedOperator(given, event_rows(system, orbit, free), brief=True)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""
         operator = correction.operator
-        leading = operator.leading if isinstance(operator, Condensed) else None
+        leading = operator.leading if isinstance(operator, CondensedOperator) else None
         return LeadingSpectrum(correction.fundamental, trivial, leading)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:

@@ -8,12 +8,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from periodic.condensed.chain import pays
 from periodic.condensed.coupled import Coupled, folded
-from periodic.condensed.floquet import Floquet, Leading
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.floquet import Leading, ModalFloquet
+from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.recursion import pays
+from periodic.linear import bordered
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -21,12 +21,12 @@ from periodic.orbit.scheme import Array
 
 
 @dataclass(frozen=True)
-class Condensed:
+class CondensedOperator:
     """The linearised equations of a split system; see `periodic.linear.operator.Operator`.
 
     Parameters
     ----------
-    given : Linearised
+    given : SplitLinearisation
         The system about the orbit.
     own : sequence of Row
         The rows of the event nodes.
@@ -34,7 +34,7 @@ class Condensed:
         Whether of the fundamental matrices the last is enough.
     """
 
-    given: Linearised
+    given: SplitLinearisation
     own: Sequence[Row] = ()
     brief: bool = False
 
@@ -82,12 +82,8 @@ class Condensed:
 
     def _at_once(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
         """Forces and own states, (size, columns), and dy."""
-        system = self.system
-        matrix, constant = self._bordered(rows)
-        aim = np.concatenate([system.right[:, :1], -constant[:, None]]) * right[:1]
-        aim[system.size + len(self.own) :] += right[1:]
-        found = _finite(np.linalg.solve(matrix, aim))
-        return found[: system.size], found[system.size :]
+        found, size = bordered.solve(self._bordered(rows), right), self.system.size
+        return found[:size], found[size:]
 
     def _by_interval(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
         """The same by what the period begins with, the only unknowns beside dy."""
@@ -97,27 +93,26 @@ class Condensed:
         driven, left = floquet.driven(system.right, np.zeros((count, system.right.shape[1])))
         inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
         outer = outer + inner @ driven
-        matrix = np.block([[np.eye(count) - ends, -left[:, 1:]], [inner @ unknowns, outer[:, 1:]]])
-        aim = np.concatenate([left[:, :1], -outer[:, :1]]) * right[:1]
-        aim[count + len(self.own) :] += right[1:]
-        found = _finite(np.linalg.solve(matrix, aim))
+        closed = [-left[:, :1], np.eye(count) - ends, -left[:, 1:]]
+        found = bordered.solve(np.block([closed, [outer[:, :1], inner @ unknowns, outer[:, 1:]]]), right)
         given = np.concatenate([right[:1], found[count:]])
         return unknowns @ found[:count] + driven @ given, found[count:]
 
     @cached_property
-    def _floquet(self) -> Floquet:
+    def _floquet(self) -> ModalFloquet:
         """Free motion beside the orbit."""
-        return Floquet(self.given)
+        return ModalFloquet(self.given)
 
-    def _bordered(self, rows: Sequence[Row]) -> tuple[Array, Array]:
-        """The equations with the rows of event nodes and side conditions, and these rows' constants."""
+    def _bordered(self, rows: Sequence[Row]) -> Array:
+        """The equations with the rows of event nodes and side conditions, constants first."""
         system = self.system
         inner, outer = system.restricted([folded(self.orbit, row) for row in (*self.own, *rows)])
         size = system.size
-        matrix = np.empty((size + len(inner), size + outer.shape[1] - 1))
-        matrix[:size, :size], matrix[:size, size:] = system.matrix, -system.right[:, 1:]
-        matrix[size:, :size], matrix[size:, size:] = inner, outer[:, 1:]
-        return matrix, outer[:, 0]
+        every = np.empty((size + len(inner), size + outer.shape[1]))
+        every[:size, 0], every[size:, 0] = -system.right[:, 0], outer[:, 0]
+        every[:size, 1 : 1 + size], every[:size, 1 + size :] = system.matrix, -system.right[:, 1:]
+        every[size:, 1 : 1 + size], every[size:, 1 + size :] = inner, outer[:, 1:]
+        return every
 
     def answered(self, rows: Sequence[Row], states: Array) -> Increment:
         """Return the increment by which an orbit answers what is missing of the places' states, (N, a, s).
@@ -128,10 +123,11 @@ class Condensed:
         flat = states.reshape(system.points, -1)
         missed = [folded(orbit, row)[0][:, system.places] for row in (*self.own, *rows)]
         aim: list[Any] = [
+            [0.0],
             system.asked(flat[system.at, :, None])[:, 0],
             [-float(np.vdot(m, flat)) for m in missed],
         ]
-        found = _finite(np.linalg.solve(self._bordered(rows)[0], np.concatenate(aim)))
+        found = bordered.solve(self._bordered(rows), np.concatenate(aim)[:, None])[:, 0]
         outer = found[system.size :]
         stages = system.stages(found[: system.size, None], np.append(0.0, outer)[:, None])[..., 0]
         stages[:, system.places] += flat
@@ -169,9 +165,3 @@ class Condensed:
     def fundamental(self) -> Array:
         """The same in the subspace's own basis, (N+1, r, r)."""
         return self.leading.monodromy[None] if self.brief else self.leading.fundamental
-
-
-def _finite(found: NDArray[Any]) -> Array:
-    if not np.isfinite(found).all():
-        raise np.linalg.LinAlgError("the bordered matrix is singular")
-    return found

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from periodic.collocation.method import CollocationRefinement
 from periodic.condensed.estimate import ContactError
-from periodic.condensed.linearised import answer, local_rows, unheard
+from periodic.condensed.linearised import answer, exempt, local_rows
 from periodic.condensed.memory import Memory
 from periodic.correction.error import SAFETY
-from periodic.correction.meshes import AIM
 from periodic.orbit.mesh import EventNode, Mesh
-from periodic.orbit.redistribution import SPLIT, density, spread
 from periodic.orbit.scheme import Array
+from periodic.refinement.demand import AIM
+from periodic.refinement.equidistribution import SPLIT, density, spread
 from periodic.system import jumps_of, linear_of
 
 FINER, COARSER = 2.5, 2.0
@@ -52,7 +52,7 @@ class CondensedRefinement(CollocationRefinement):
     @property
     def _limited(self) -> bool:
         """Whether the orbit needs more intervals than there is memory for."""
-        if self._misplaced or self._most == self.method.ntst_max:
+        if self._in_wrong_mode or self._most == self.method.ntst_max:
             return False
         wanted = float(self._wanted @ self.orbit.grid.width) if self.system.switches else super()._ntst
         return wanted > self._most
@@ -115,17 +115,17 @@ class CondensedRefinement(CollocationRefinement):
         """Intervals a rad that are wanted in each interval, (N,)."""
         orbit, width, error = self.orbit, self.orbit.grid.width, self.error
         active = self._active
-        wanted = self._density(self._felt)
+        wanted = self._density(self._resolved)
         if jumps_of(self.system):
-            heard = [k for k in self._felt if k not in unheard(self.system)]
-            wanted = np.where(active, wanted, self._density(heard))
+            retained = [k for k in self._resolved if k not in exempt(self.system)]
+            wanted = np.where(active, wanted, self._density(retained))
         lacking = SAFETY * error.multiplier if error.curable > error.motion else 0.0
         beside = min(lacking, SAFETY * error.variation) if isinstance(error, ContactError) else lacking
         own = max(error.motion, lacking if lacking > 2 * beside else 0.0)
         points, share = orbit.mesh.scheme.ncol, wanted * width
         typical = max(float(share[part].mean()) for part in (active, ~active) if part.any())
-        times, shown = (self._times(each, points + 1) for each in (own, error.motion))
-        wanted *= (np.where(active, times, shown) if active.any() else times) / typical
+        times, for_motion = (self._times(each, points + 1) for each in (own, error.motion))
+        wanted *= (np.where(active, times, for_motion) if active.any() else times) / typical
         wanted = np.maximum(wanted, FEWEST * max(times, 1.0) / orbit.mesh.period)
         if not active.any():
             return wanted
@@ -151,11 +151,11 @@ class CondensedRefinement(CollocationRefinement):
         return np.abs(rows[:, :, 1 : 1 + 2 * orbit.nodes.shape[1]])
 
     @property
-    def _felt(self) -> list[int]:
-        """States that are heard or that forces depend on."""
-        n, quiet = self.orbit.nodes.shape[1], unheard(self.system)
+    def _resolved(self) -> list[int]:
+        """States that a mesh resolves: those that are not exempt, and those that forces depend on."""
+        n, exempted = self.orbit.nodes.shape[1], exempt(self.system)
         by_state = self._forces[:, :, n:].max(axis=(0, 1), initial=0.0) > 0
-        return [k for k in range(n) if by_state[k] or k not in quiet]
+        return [k for k in range(n) if by_state[k] or k not in exempted]
 
     @property
     def _active(self) -> NDArray[np.bool_]:

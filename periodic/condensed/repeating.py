@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from periodic.condensed.coupled import Coupled, folded
-from periodic.condensed.linearised import Linearised, answer
+from periodic.condensed.linearised import SplitLinearisation, answer
 from periodic.condensed.modal.flexibility import Flexibility
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.slopes import slopes
@@ -26,7 +26,7 @@ from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, differentiable
 
-STEP = 1e-4
+PARAMETER_STEP = 1e-4
 """Relative step in parameters of differences of the linear part's derivatives."""
 
 
@@ -38,7 +38,7 @@ class CondensedRepeating:
     ----------
     system : System
         The equations.
-    given : Linearised
+    given : SplitLinearisation
         The same about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change; only where the multiplier is 1.
@@ -47,7 +47,7 @@ class CondensedRepeating:
     """
 
     system: System
-    given: Linearised
+    given: SplitLinearisation
     free: tuple[int, ...]
     mu: complex
 
@@ -134,8 +134,8 @@ class CondensedRepeating:
         if source is not None:
             pull = pull + folded(given.orbit, source, (1 / self.mu).real)[0]
         pull = pull[:, coupled.places]
-        felt = coupled.flexibility.pulled(self._by_interval(pull))
-        driven = np.where(coupled.passive, felt.reshape(coupled.points, -1), 0.0)
+        by_force = coupled.flexibility.pulled(self._by_interval(pull))
+        driven = np.where(coupled.passive, by_force.reshape(coupled.points, -1), 0.0)
         onto = np.zeros_like(onto, dtype=driven.dtype)
         onto[:, forces] = driven
         return np.concatenate([own, weights + _solved(line, onto)], axis=1), pull
@@ -200,7 +200,8 @@ class CondensedRepeating:
         parameter = self.given.orbit.parameter
         moved = tangent.parameter != 0
         return float(
-            STEP * (np.maximum(np.abs(parameter), STEP)[moved] / np.abs(tangent.parameter[moved])).min()
+            PARAMETER_STEP
+            * (np.maximum(np.abs(parameter), PARAMETER_STEP)[moved] / np.abs(tangent.parameter[moved])).min()
         )
 
 

@@ -1,25 +1,23 @@
-"""A motion of a split system that is left to settle: modes exact over each step, forces constant in it.
-
-It gives guesses of orbits that stick and slip, with their event nodes.
-"""
+"""The word of a motion of a split system in time: guesses of orbits that stick and slip, with event nodes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.kinks import exact_crossings
-from periodic.collocation.sides import STUCK, linearise
-from periodic.collocation.touch import ordered
+from periodic.condensed.linearised import answer
+from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
+from periodic.events.modes import sides, twins
+from periodic.events.motions import word_of
+from periodic.events.rewrites.sites import ordered
+from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
-from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import FORCED, Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.sampling import sampled
-from periodic.orbit.scheme import Array
-from periodic.system import System, jumps_of, linear_of, slides_of
+from periodic.refinement.equidistribution import redistribute
+from periodic.system import HELD, STUCK, System, linear_of
 
 STEPS = 512
 """Steps in a period that settles."""
@@ -36,12 +34,6 @@ PERIODS = 60
 STILL = 1e-3
 """A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
-ITERATIONS = 8
-"""Newton steps in a step in time."""
-
-CLOSE = 1e-10
-"""Increment at which a step in time is solved."""
-
 INTERVALS = 192
 """Intervals of the guess."""
 
@@ -54,178 +46,137 @@ def settled(system: System, start: Orbit) -> Orbit | None:
 
     None where it does not settle within PERIODS, or cannot be followed.
     """
-    motion = Motion(system, start.parameter, start.nodes[0], start.algebraic[0, 0])
     try:
+        motion = Motion.at_rest(system, start.parameter, start.nodes[0], start.algebraic[0, 0])
+        motion.pace(STEPS)
         for _ in range(PERIODS):
-            side = motion.side.copy()
+            side = motion.side
             motion.period()
             states, same = np.array(motion.states), np.array_equal(side, motion.side)
             if same and np.abs(states[-1] - states[0]).max() <= STILL * np.ptp(states, axis=0).max():
-                motion.pace(FINE)
+                motion.pace(FINE, SHORTEST)
                 motion.period()
-                return motion.orbit()
+                return orbit_of(motion)
     except FAILURES:
         return None
     return None
 
 
-@dataclass
-class Motion:
-    """A motion in time from rest.
+def followed(system: System, orbit: Orbit) -> Orbit | None:
+    """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
-    Parameters
-    ----------
-    system : System
-        A system with a linear part.
-    parameter : ndarray, shape (p,)
-        Its parameters.
-    state, unknown : ndarray
-        Own states to begin with (n,), and guesses of the unknowns (m,).
+    It may violate its word: that of the motion does not.
     """
+    part = linear_of(system)
+    if part is None or orbit.mesh.period != FORCED:
+        return None
+    try:
+        response, _ = answer(system, orbit, orbit.parameter, ())
+        history = response.history(np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)]))
+        k = _amid_segment(orbit)
+        side = sides(system, orbit)[k]
+        side = np.where(side == HELD, STUCK, side)
+        begun = orbit.nodes[k], orbit.algebraic[k, 0], response.modes, history[k], side
+        motion = Motion(system, orbit.parameter, *begun, begin=float(orbit.grid.left[k]))
+        motion.pace(FINE, SHORTEST)
+        motion.period()
+        return orbit_of(motion)
+    except FAILURES:
+        return None
 
-    system: System
-    parameter: Array
-    state: Array
-    unknown: Array
-    states: list[Array] = field(default_factory=list, init=False)
-    unknowns: list[Array] = field(default_factory=list, init=False)
-    events: list[tuple[EventNode, float]] = field(default_factory=list, init=False)
 
-    def __post_init__(self) -> None:
-        part = linear_of(self.system)
-        assert part is not None
-        self.places, self.forces = list(part.states), list(part.forces)
-        self.own = np.setdiff1d(np.arange(len(self.state)), self.places)
-        self.z = np.zeros(len(part.modes(self.parameter).exponents), dtype=complex)
-        self.side = np.zeros(len(jumps_of(self.system)))
-        self.pace(STEPS)
+def _amid_segment(orbit: Orbit) -> int:
+    """The mesh point about the middle of the longest segment."""
+    mesh = orbit.mesh
+    if not mesh.events:
+        return 0
+    segment = int(np.argmax(mesh.segment_lengths(orbit.phases)))
+    return int(mesh.starts[segment]) + (len(mesh.breaks[segment]) - 1) // 2
 
-    def pace(self, steps: int) -> None:
-        """Take so many steps in a period from now on."""
-        part = linear_of(self.system)
-        assert part is not None
-        modes, self.width, self.steps = part.modes(self.parameter), FORCED / steps, steps
-        turned = modes.exponents * self.width
-        with np.errstate(all="ignore"):
-            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
-        self.grown, self.kicked = np.exp(turned), (self.width * mean)[:, None] * modes.inputs
-        self.outputs = modes.outputs
-        self.local = (modes.outputs @ self.kicked).real + modes.direct
 
-    def period(self) -> None:
-        """Follow it over a period, whose states, unknowns and events are kept."""
-        self.states, self.unknowns, self.events = [self.state], [self.unknown], []
-        for k in range(self.steps):
-            old, tau = self.side.copy(), (k + 1) * self.width
-            self._step(tau)
-            self._noted(old, tau - self.width / 2)
+def orbit_of(motion: Motion) -> Orbit:
+    """Return the last period of a motion as an orbit with its event nodes."""
+    system, state = motion.system, motion.states[-1]
+    guess = sampled(motion.phase, np.array(motion.states), np.array(motion.unknowns), motion.parameter)
+    records = _lasting(motion)
+    kinked = [(crossing.event, crossing.phase) for crossing in exact_crossings(system, guess)]
+    events, phases = ordered([*word_of(system, _together(motion, records)), *kinked], guess)
+    mesh = redistribute(guess, INTERVALS, events, phases, SHORTEST)
+    modes, parameter = list[tuple[int, int]](), motion.parameter.copy()
+    for joint in motion.joints:
+        if any(each.surface == joint.index for each in records):
+            continue
+        mode = int(motion.side[joint.column])
+        if mode == STUCK and joint.place is not None:
+            place, weights = joint.place
+            parameter[place], mode = float(np.dot(weights, state)), HELD
+        modes.append((joint.switch, mode))
+    found = transfer(guess, replace(mesh, modes=tuple(modes)), phases)
+    return replace(found, parameter=parameter)
 
-    def _step(self, tau: float) -> None:
-        """Take a step to a phase: what slides goes on, or is held, or else slips where that is not enough."""
-        slides = slides_of(self.system)
-        for _ in range(2 * len(slides) + 1):
-            x, unknown, parts = self._solved(tau)
-            values = self.system.switch(x[None], np.array([tau]), self.parameter)[0]
-            changed = False
-            for switch in slides:
-                i = jumps_of(self.system).index(switch)
-                if self.side[i] != STUCK and values[switch] * self.side[i] <= 0:
-                    self.side[i], changed = STUCK, True
-                elif self.side[i] == STUCK and abs(parts[i]) > 1:
-                    self.side[i], changed = np.sign(parts[i]), True
-            if not changed:
-                break
-        if not np.isfinite(x).all():
-            raise FloatingPointError("a motion in time is not finite")
-        self.z = self.grown * self.z + self.kicked @ unknown[self.forces]
-        self.state, self.unknown = x, unknown
-        self.states.append(x)
-        self.unknowns.append(unknown)
 
-    def _solved(self, tau: float) -> tuple[Array, Array, Array]:
-        """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
-        x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
-        shown, own = (self.outputs @ (self.grown * self.z)).real, len(self.own)
-        for _ in range(ITERATIONS):
-            x[self.places] = shown + self.local @ unknown[self.forces]
-            change = -np.linalg.solve(*self._equations(x, unknown, parts, tau)).astype(float)
-            x[self.own] += change[:own]
-            unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
-            parts[self.side == STUCK] += change[own + len(unknown) :]
-            if np.abs(change).max() < CLOSE * (1 + np.abs(unknown).max()):
-                break
-        x[self.places] = shown + self.local @ unknown[self.forces]
-        return x, unknown, parts
+def _lasting(motion: Motion) -> list[Changed]:
+    """The changes of mode without what is an error of the steps.
 
-    def _equations(self, x: Array, unknown: Array, parts: Array, tau: float) -> tuple[Array, Array]:
-        """Rows at the end of a step by own states, unknowns and parts of jumps, and what is left of them.
-
-        Where it is stuck a switch is 0, and the equations lie between those of its two sides.
-        """
-        system, at, stuck = self.system, np.array([tau]), np.flatnonzero(self.side == STUCK)
-        given = ((x - self.state) / self.width)[None], x[None], unknown[None], at, self.parameter
-        upper = np.where(self.side == STUCK, 1.0, self.side)
-        line, left = linearise(system, *given, upper[None]), []
-        for i in stuck:
-            lower = np.where(np.arange(len(upper)) == i, -1.0, upper)
-            left.append(linearise(system, *given, lower[None]).residual[0])
-        halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
-        residual = line.residual[0] + halves @ (parts[stuck] - 1)
-        driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
-        told = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
-        switches = [jumps_of(system)[i] for i in stuck]
-        held = system.switch(x[None], at, self.parameter)[0, switches]
-        gradient = system.switch_gradient(x[None], at, self.parameter)[0][0, switches]
-        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / self.width)[told], gradient])
-        unknowns = np.zeros((len(states), len(unknown)))
-        unknowns[: told.sum()] = line.d_algebraic[0][told]
-        unknowns[:, self.forces] += states[:, self.places] @ self.local
-        across = np.concatenate([halves[told], np.zeros((len(stuck), len(stuck)))])
-        rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
-        return rows, np.concatenate([residual[told], held])
-
-    def _noted(self, old: Array, tau: float) -> None:
-        """Keep the events of a step that began on other sides."""
-        for switch, (up, down) in slides_of(self.system).items():
-            i = jumps_of(self.system).index(switch)
-            if self.side[i] == old[i]:
+    Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
+    """
+    found = list(motion.events)
+    for joint in motion.joints:
+        own = [each for each in motion.events if each.surface == joint.index]
+        for first, second in zip(own, own[1:] + own[:1], strict=True):
+            if first not in found or second not in found or first is second:
                 continue
-            way = int(old[i]) if self.side[i] == STUCK else int(self.side[i])
-            if old[i] == STUCK:
-                event = EventNode(up if way > 0 else down, way)
-            else:
-                event = EventNode(switch, -way if self.side[i] == STUCK else way)
-            self.events.append((event, tau))
+            rest = [each for each in found if each not in (first, second)]
+            slips = first.before == STUCK and second.after == STUCK
+            if slips and (second.phase - first.phase) % FORCED < BRIEF:
+                found = rest
+            elif first.after == STUCK and second.before == STUCK and _passes(motion, joint, first, second):
+                passed = replace(first, after=second.after)
+                found = rest if passed.before == passed.after else [*rest, passed]
+    return found
 
-    @property
-    def _lasting(self) -> list[tuple[EventNode, float]]:
-        """The events without what is an error of the steps.
 
-        Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
-        """
-        gone, slides = set[int](), slides_of(self.system)
-        for switch, pair in slides.items():
-            own = [k for k, (event, _) in enumerate(self.events) if event.switch in (switch, *pair)]
-            for i, j in zip(own, own[1:] + own[:1], strict=True):
-                (first, begun), (second, ended) = self.events[i], self.events[j]
-                length = (ended - begun) % FORCED
-                if first.switch in pair and second.switch == switch and length < BRIEF:
-                    gone |= {i, j}
-                elif second.switch in pair and length < 1.5 * self.width and self._leads_on(switch, begun):
-                    gone |= {j} if first.direction == second.direction else {i, j}
-        return [each for k, each in enumerate(self.events) if k not in gone]
+def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bool:
+    """Whether a stop of one step is none, as rates on both sides of the jump have one sign there."""
+    if release.step > stop.step + 1 or not joint.slides:
+        return False
+    k = stop.step + 1
+    values = motion.values(motion.states[k], float(motion.phase[k]), motion.sides[k])
+    return not values[joint.up] < 0 < values[joint.down]
 
-    def _leads_on(self, switch: int, tau: float) -> bool:
-        """Whether rates on both sides of a jump have one sign at a phase of the last period."""
-        x, at = self.states[round(tau / self.width + 0.5)], np.array([tau])
-        values = self.system.switch(x[None], at, self.parameter)[0]
-        up, down = slides_of(self.system)[switch]
-        return not values[up] < 0 < values[down]
 
-    def orbit(self) -> Orbit:
-        """Return the last period as an orbit with its event nodes."""
-        phase = np.linspace(0.0, FORCED, self.steps + 1)
-        guess = sampled(phase, np.array(self.states), np.array(self.unknowns), self.parameter)
-        kinked = [(crossing.event, crossing.phase) for crossing in exact_crossings(self.system, guess)]
-        events, phases = ordered([*self._lasting, *kinked], guess)
-        return transfer(guess, redistribute(guess, INTERVALS, events, phases, SHORTEST), phases)
+def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
+    """The same, where one joint's stop or passage tears off another at once both at one phase."""
+    records = _side_by_side(motion, records)
+    sliding = {joint.index: joint for joint in motion.joints if joint.slides}
+    own = [each for each in records if each.surface in sliding]
+    causes = [each for each in own if each.before != STUCK]
+    found = [each for each in records if each not in own or each in causes]
+    for each in (each for each in own if each.before == STUCK):
+        near = [c for c in causes if 0 <= each.step - c.step <= 1 and c.surface != each.surface]
+        torn = (cause for cause in near if _tears(motion, cause, each, sliding[each.surface]))
+        cause = next(torn, each)
+        found.append(replace(each, phase=cause.phase))
+    return found
+
+
+def _side_by_side(motion: Motion, records: list[Changed]) -> list[Changed]:
+    """The same, where joints with one guard stop at one phase."""
+    switches = {joint.index: joint.switch for joint in motion.joints}
+    found = list[Changed]()
+    for each in records:
+        same = twins(motion.system, switches[each.surface]) if each.after == STUCK else []
+        stops = [other for other in found if other.after == STUCK and abs(each.step - other.step) <= 1]
+        first = next((other for other in stops if switches[other.surface] in same[1:]), each)
+        found.append(replace(each, phase=first.phase))
+    return found
+
+
+def _tears(motion: Motion, cause: Changed, release: Changed, joint: Joint) -> bool:
+    """Whether a joint that is held before another's change would not be held by the modes after it."""
+    k, held = cause.step, list[bool]()
+    for modes in (motion.sides[k], motion.sides[release.step + 1]):
+        side = np.where(np.arange(len(modes)) == joint.column, STUCK, modes)
+        values = motion.values(motion.states[k], float(motion.phase[k]), side)
+        held.append(bool(values[joint.up] < 0 < values[joint.down]))
+    return held[0] and not held[1]

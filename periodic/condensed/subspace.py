@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex
+from periodic.stability.multipliers import Complex
 
 SPARE = 3
 """Multipliers below those that are wanted which must be known too."""
@@ -29,15 +29,15 @@ MORE = 4
 BLOCK = 4
 """Vectors drawn at random whose images are in the subspace: what is driven by the places is in them."""
 
-MOST = 72
+LARGEST_SUBSPACE = 72
 """Largest size of the subspace."""
 
-CLOSE = 1e-12
+EIGENVECTOR_RESIDUAL = 1e-12
 """Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
 
 
 class Motions(Protocol):
-    """Free motion over a period; see `periodic.condensed.floquet.Floquet`."""
+    """Free motion over a period; see `periodic.condensed.floquet.ModalFloquet`."""
 
     @property
     def light(self) -> int: ...
@@ -81,7 +81,7 @@ def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
     drawn = np.random.default_rng(0).standard_normal((size, BLOCK))
     images = motions.once(np.concatenate([space, drawn], axis=1))
     images, more = images[:, :begun], images[:, begun:]
-    while space.shape[1] + more.shape[1] <= min(MOST, size):
+    while space.shape[1] + more.shape[1] <= min(LARGEST_SUBSPACE, size):
         more = _across(space, more)
         space = np.concatenate([space, more], axis=1)
         images = np.concatenate([images, motions.once(more)], axis=1)
@@ -89,7 +89,7 @@ def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
         first = np.argsort(-np.abs(values), kind="stable")[:wanted]
         values, found = values[first].astype(np.complex128), space @ vectors[:, first]
         left = images @ vectors[:, first] - found * values
-        wrong = np.linalg.norm(left, axis=0) > CLOSE * max(1.0, float(np.abs(values).max()))
+        wrong = np.linalg.norm(left, axis=0) > EIGENVECTOR_RESIDUAL * max(1.0, float(np.abs(values).max()))
         if not wrong.any():
             return values, found.astype(np.complex128)
         wrong &= values.imag >= 0

@@ -7,8 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.condensed.floquet import Floquet, Leading
-from periodic.condensed.linearised import Linearised
+from periodic.condensed.circle import Circle
+from periodic.condensed.floquet import Leading, ModalFloquet
+from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.orbit import Orbit
@@ -28,14 +29,14 @@ class CondensedVariations:
     ----------
     system : System
         The equations.
-    given : Linearised
+    given : SplitLinearisation
         The same about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change.
     """
 
     system: System
-    given: Linearised
+    given: SplitLinearisation
     free: tuple[int, ...]
 
     @staticmethod
@@ -44,8 +45,8 @@ class CondensedVariations:
 
         Raises ValueError where forces jump.
         """
-        given = Linearised.about(system, orbit, free)
-        if given.passages:
+        given = SplitLinearisation.about(system, orbit, free)
+        if given.saltations:
             raise ValueError(
                 "forces at the places jump, as those of friction that sticks; curves in two parameters and "
                 "derivatives of multipliers need a structure that is compiled with condense=False"
@@ -60,7 +61,11 @@ class CondensedVariations:
     @cached_property
     def multipliers(self) -> Complex:
         """The leading multipliers."""
-        return np.linalg.eigvals(Leading(Floquet(self.given)).fundamental[-1]).astype(np.complex128)
+        return np.linalg.eigvals(Leading(ModalFloquet(self.given)).fundamental[-1]).astype(np.complex128)
+
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`, of all modes."""
+        return Circle(self, radius).outside()
 
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu), dmu = -w' dK v / w' K_mu v with w' K = 0, K v = 0."""
@@ -84,5 +89,5 @@ class CondensedVariations:
         row = self.multiplier(i, complex(values[j]), free) + self.multiplier(j, complex(values[i]), free)
         value = float((values[i] * values[j]).real) - 1
         found = values[[i, j]]
-        told = np.stack([found.real, found.imag])
-        return Row(value + row.value, row.nodes, row.outer, row.stages), told
+        parts = np.stack([found.real, found.imag])
+        return Row(value + row.value, row.nodes, row.outer, row.stages), parts

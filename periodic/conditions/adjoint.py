@@ -18,13 +18,13 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.collocation.condensation import Condensed, condense
-from periodic.collocation.jumping.impacts import jumps
-from periodic.collocation.jumping.saltation import at_fixed_phase, saltation_gradient
+from periodic.collocation.elimination import EliminatedStages, eliminate_stages
 from periodic.collocation.residual import evaluated
 from periodic.conditions.curvature import beside, curvature
+from periodic.events.impacts import jumps
+from periodic.events.saltation import at_fixed_phase, saltation_gradient
 from periodic.linear.bordering import Chain, chain, onto_start
-from periodic.linear.pair import subspaces, within
+from periodic.linear.invariantpair import subspaces, within
 from periodic.linear.variation import Complex, Tangent
 from periodic.orbit.gradients import Points, collocation_points, gathered, solved
 from periodic.orbit.jump import Jump
@@ -44,7 +44,7 @@ class Linear:
     system: System
     orbit: Orbit
     free: tuple[int, ...]
-    condensed: Condensed
+    eliminated: EliminatedStages
     maps: Array
     jumps: Sequence[Jump] = ()
 
@@ -52,7 +52,7 @@ class Linear:
     def about(system: System, orbit: Orbit, free: tuple[int, ...]) -> Linear:
         """Linearise; `free` are the parameters that tangents may change."""
         found = jumps(system, orbit, free)
-        local = condense(system, orbit, evaluated(system, orbit, free), found)
+        local = eliminate_stages(system, orbit, evaluated(system, orbit, free), found)
         if local.perturbed is not None:
             n, k = orbit.nodes.shape[1], len(orbit.phases)
             step = np.zeros_like(local.step)
@@ -63,7 +63,7 @@ class Linear:
     @cached_property
     def fundamental(self) -> Array:
         """Fundamental matrices at the mesh points, shape (N+1, n, n)."""
-        return Chain(self.condensed).fundamental
+        return Chain(self.eliminated).fundamental
 
     @property
     def monodromy(self) -> Array:
@@ -89,6 +89,10 @@ class Linear:
     def multipliers(self) -> Complex:
         """All multipliers."""
         return self._eigen[0]
+
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`."""
+        return int((np.abs(self.multipliers) > radius).sum())
 
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu), d mu = w' dM v / w' v."""
@@ -121,14 +125,14 @@ class Linear:
         n, k = self.orbit.nodes.shape[1], len(self.orbit.phases)
         outer = np.concatenate([np.zeros(k), unknown[n:]])
         nodes = self.ways @ unknown
-        stages, algebraic = self.condensed.recover(nodes, outer, 0.0)
+        stages, algebraic = self.eliminated.recover(nodes, outer, 0.0)
         parameter = np.zeros_like(self.orbit.parameter)
         parameter[list(self.free)] = unknown[n:]
         return Tangent(nodes, stages, algebraic, parameter)
 
     def functional(self, row: Row) -> Array:
         """Return a row as a functional of (v_0, v_y)."""
-        return self.columns(onto_start(self.condensed.reduced(self.at_fixed_phase(row)), self.maps))
+        return self.columns(onto_start(self.eliminated.reduced(self.at_fixed_phase(row)), self.maps))
 
     def at_fixed_phase(self, row: Row) -> Row:
         """Return a row for tangents at fixed tau, by which event nodes at jumps are told."""
@@ -215,11 +219,11 @@ def _adjoint(linear: Linear, line: LinearisationLike, source: Row) -> tuple[Arra
 
     The latter, shape (N, n), for the states in which intervals end, behind their jump.
     """
-    orbit, condensed = linear.orbit, linear.condensed
+    orbit, between = linear.orbit, linear.eliminated
     count, ncol, n = orbit.stages.shape
     stages = np.zeros((count, ncol, n)) if source.stages is None else source.stages
-    step = condensed.step[:, :, 1 : 1 + n]
-    direct = np.einsum("jln,jlnw->jw", stages, condensed.stages[..., 1 : 1 + n])
+    step = between.step[:, :, 1 : 1 + n]
+    direct = np.einsum("jln,jlnw->jw", stages, between.stages[..., 1 : 1 + n])
     at_end = np.empty((count, n))
     later = source.nodes[-1]
     for j in range(count - 1, -1, -1):

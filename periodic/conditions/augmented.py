@@ -90,7 +90,7 @@ class HopfCondition(Condition):
 
 @dataclass
 class _Oscillating:
-    """The sum of a pair of eigenvalues is 0, of the one nearest the axis at the origin, then followed."""
+    """The sum of a pair of eigenvalues is 0: of the pair nearest the axis at the origin, then followed."""
 
     origin: Orbit
     near: Array | None = None

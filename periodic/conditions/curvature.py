@@ -10,13 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.sides import linearise, sides
+from periodic.events.modes import linearise, sides
 from periodic.orbit.gradients import Points, Slopes
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, differentiable, jumps_of
 
-STEP = 1e-5
+TANGENT_STEP = 1e-5
 """Step along a tangent, as a part of the tangent's size."""
 
 
@@ -43,7 +43,7 @@ def curvature(
     if not jumps_of(system):
         v = along.rate, along.state, along.algebraic, parameter
         return Slopes.of(exact.curvature(*points.arguments(orbit), weights, *v), free)
-    relative = parameter / np.maximum(np.abs(orbit.parameter), STEP)
+    relative = parameter / np.maximum(np.abs(orbit.parameter), TANGENT_STEP)
     size = max(float(np.abs(part).max(initial=0.0)) for part in (along.state, relative))
 
     def pulled(step: float) -> Slopes:
@@ -56,8 +56,8 @@ def curvature(
         at = replace(orbit, parameter=orbit.parameter + step * parameter)
         return _weighted(beside(system, at, moved, free), weights)
 
-    both = zip(*(vars(pulled(step / size)).values() for step in (STEP, -STEP)), strict=True)
-    return Slopes(*((ahead - back) * size / (2 * STEP) for ahead, back in both))
+    both = zip(*(vars(pulled(step / size)).values() for step in (TANGENT_STEP, -TANGENT_STEP)), strict=True)
+    return Slopes(*((ahead - back) * size / (2 * TANGENT_STEP) for ahead, back in both))
 
 
 def _weighted(line: LinearisationLike, weights: Array) -> Slopes:

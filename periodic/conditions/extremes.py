@@ -19,7 +19,7 @@ NEWTON = 4
 """Newton steps that bring a sampled extremum to where its output is stationary."""
 
 
-NEAR = 1e-3
+LONGEST_MOVE = 1e-3
 """How far (rad) such a step may go; an extremum at a kink is not stationary and stays where it is."""
 
 
@@ -129,7 +129,7 @@ def _stationary(system: System, orbit: Orbit, output: int, phase: float) -> floa
         first = (8 * (y[3] - y[1]) - (y[4] - y[0])) / 12
         second = (16 * (y[3] + y[1]) - (y[4] + y[0]) - 30 * y[2]) / 12
         move = -step * first / second if second != 0 else 0.0
-        if abs(found + move - phase) > NEAR:
+        if abs(found + move - phase) > LONGEST_MOVE:
             return phase
         found += move
         if abs(move) < 1e-3 * step:

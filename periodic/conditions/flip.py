@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.collocation.condensation import condensed
+from periodic.collocation.elimination import eliminated
 from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain
@@ -15,7 +15,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
 
-STEP = 3e-3
+MONODROMY_STEP = 3e-3
 """Length of the differences, which are of fourth order, as a part of the motion q."""
 
 NO_SIZE = 1e-6
@@ -25,7 +25,7 @@ DEPENDENT = 1e-8
 """Least cosine of left and right eigenvectors of a simple multiplier."""
 
 SETTLED = 1e-12
-ITERATIONS = 12
+VECTOR_ITERATIONS = 12
 
 
 def flip_coefficient(system: System, orbit: Orbit) -> float:
@@ -66,7 +66,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     polynomial(orbit)
     if len(orbit.phases) or linear_of(system) is not None:
         raise ValueError("orbit has event nodes, or its system is condensed; it must be a smooth one")
-    fundamental = chain(condensed(system, orbit, ()))[:, :, 1:]
+    fundamental = chain(eliminated(system, orbit, ()))[:, :, 1:]
     A = fundamental[-1]
     q, p = _critical(A), _critical(A.T)
     size = orbit.span() if orbit.span() > NO_SIZE else 1.0
@@ -75,9 +75,9 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     if abs(p @ q) < DEPENDENT * np.linalg.norm(p) * np.linalg.norm(q):
         raise FloatingPointError("the multiplier -1 is no simple one")
     p = p / (p @ q)
-    beside = {k: monodromy(system, orbit, k * STEP * q) for k in (-2, -1, 1, 2)} | {0: A}
-    first = (beside[-2] - 8 * beside[-1] + 8 * beside[1] - beside[2]) / (12 * STEP)
-    second = (-beside[-2] + 16 * beside[-1] - 30 * A + 16 * beside[1] - beside[2]) / (12 * STEP**2)
+    beside = {k: monodromy(system, orbit, k * MONODROMY_STEP * q) for k in (-2, -1, 1, 2)} | {0: A}
+    first = (beside[-2] - 8 * beside[-1] + 8 * beside[1] - beside[2]) / (12 * MONODROMY_STEP)
+    second = (-beside[-2] + 16 * beside[-1] - 30 * A + 16 * beside[1] - beside[2]) / (12 * MONODROMY_STEP**2)
     still = np.linalg.solve(np.eye(len(A)) - A, first @ q)
     return float(p @ (second @ q + 3 * first @ still)) / 6
 
@@ -96,8 +96,8 @@ def monodromy(system: System, orbit: Orbit, shift: Array) -> Array:
     """
     still, change = np.zeros(0), np.append(1.0, shift)
     allowed = SETTLED * max(orbit.span(), 1.0)
-    for _ in range(ITERATIONS):
-        local = condensed(system, orbit, ())
+    for _ in range(VECTOR_ITERATIONS):
+        local = eliminated(system, orbit, ())
         maps = chain(local)
         nodes = maps @ change
         stages, algebraic = local.recover(nodes, still, 1.0)

@@ -1,4 +1,4 @@
-"""The condition that holds an orbit at a touch: curves of grazing orbits in two parameters."""
+"""The condition that holds an orbit at a grazing: curves of grazing orbits in two parameters."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.collocation.conditions import Clearance
-from periodic.collocation.dense import Dense
 from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
+from periodic.events.sideconditions import Clearance
+from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -23,7 +23,7 @@ SHORT_OF = 1e-9
 class GrazingCondition(Condition):
     """A switch just touches its level (GR): an extremum of s(x, tau, p) over the period lies on it.
 
-    The orbit has no event node at the touch, as the GR point of a branch that it is traced from.
+    The orbit has no event node at the grazing, as the GR point of a branch that it is traced from.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class _Grazing:
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return the clearance, less what is left of it, and its gradient."""
         k = index_of_switch(system, self.switch)
-        dense = Dense(system, orbit)
+        dense = SwitchPolynomials(system, orbit)
         if self.held is None:
             both = [(side, e) for side in (-1, 1) for e in dense.minima(k, side)]
             side, extremum = min(both, key=lambda pair: abs(pair[1].value))

@@ -16,7 +16,7 @@ from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
 
-STEP = 1e-4
+GRADIENT_STEP = 1e-4
 """Step, in peak-to-peak values, of differences of a functional's derivative."""
 
 
@@ -122,7 +122,7 @@ class _Peak:
 
     def _bent(self, system: System, orbit: Orbit, tangent: Tangent, free: tuple[int, ...]) -> Row:
         """Return the second derivative of the functional along the tangent, by a central difference."""
-        size = STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
+        size = GRADIENT_STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
         ends = [self.functional.linearise(system, tangent.moved(orbit, h), free) for h in (size, -size)]
         row = (ends[0] + ends[1].scaled(-1.0)).scaled(1 / (2 * size))
         return Row(0.0, row.nodes, row.outer, row.stages)

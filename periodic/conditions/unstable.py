@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from periodic.checks import positive
-from periodic.condensed.circle import Circle
-from periodic.condensed.variations import CondensedVariations
 from periodic.conditions.variations import variations
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import Orbit
@@ -41,7 +37,4 @@ def unstable(system: System, orbit: Orbit, radius: float = 1.0) -> int:
         Where a multiplier lies on the circle, to rounding.
     """
     found = variations(system, as_read_by(system, orbit), ())
-    circle = positive("radius", radius)
-    if isinstance(found, CondensedVariations):
-        return Circle(found, circle).outside()
-    return int((np.abs(found.multipliers) > circle).sum())
+    return found.outside(positive("radius", radius))

@@ -25,7 +25,8 @@ class Beyond:
     """How an orbit goes on beyond a change: its mesh, the event nodes' phases, and the condition held there.
 
     touches: whether that orbit is the one at which a switch just touches its level. spare: whether it is
-    tried only where those before are none, or lie behind the change, beyond more folds than one.
+    tried only where those before are none, or lie behind the change, beyond more folds than one. parameter:
+    the parameters (p,) that it has, where they are not those of the orbit before.
     """
 
     mesh: Mesh
@@ -33,6 +34,7 @@ class Beyond:
     condition: SideCondition
     touches: bool
     spare: bool = False
+    parameter: Array | None = None
 
 
 class Change(Protocol):

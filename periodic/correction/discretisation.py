@@ -1,4 +1,4 @@
-"""The boundary to discretisations: how an orbit is represented, linearised, held against its error, refined.
+"""The boundary to discretisations: how an orbit is represented, linearised, refined, and its error estimated.
 
 A new one is one file: a class with the five methods of `Discretisation` that have no body here. Orbits are
 `periodic.orbit.orbit.Orbit` (or a subclass): values at mesh points and, in each interval, at the points of a
@@ -14,15 +14,15 @@ from typing import Protocol, Self, runtime_checkable
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
 from periodic.correction.error import ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum, Stability
+from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System
 
 
@@ -136,6 +136,21 @@ class Discretisation(Protocol):
             What to change of its mesh.
         """
 
+    def check(self, problem: Problem) -> None:
+        """Refuse a problem to which the method does not apply.
+
+        Parameters
+        ----------
+        problem : Problem
+            What is to be solved.
+
+        Raises
+        ------
+        ValueError
+            In one sentence.
+        """
+        return
+
     def corrected(
         self,
         system: System,
@@ -200,6 +215,21 @@ class Discretisation(Protocol):
         """
         return ()
 
+    def settles(self, system: System) -> bool:
+        """Return whether time integration until the motion settles is tried first where Newton fails.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+
+        Returns
+        -------
+        bool
+            True where it is cheap, and finds what Newton does not.
+        """
+        return False
+
     @property
     def stability(self) -> Stability:
         """What decides stability, and so which special points there are."""
@@ -207,16 +237,16 @@ class Discretisation(Protocol):
 
     @property
     def trusted(self) -> float:
-        """Error of the multipliers above which they tell no special points."""
+        """Error of the multipliers above which no special points are located by them."""
         return float("inf")
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
-        """Others with which a first orbit is looked for if Newton does not find it with this one."""
+        """Discretisations to try for the first orbit if Newton does not find it with this one."""
         return ()
 
     def at(self, tolerance: float) -> Self:
-        """Return the discretisation with what its settings leave open chosen for a tolerance.
+        """Return the discretisation with all settings that were left open chosen for a tolerance.
 
         Parameters
         ----------
@@ -234,6 +264,23 @@ class Discretisation(Protocol):
             Where its settings cannot meet the tolerance.
         """
         return self
+
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return an orbit with the events of its own motion, followed in time through its period.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            An orbit, or a guess of one, whose events may not be those of its motion.
+
+        Returns
+        -------
+        Orbit or None
+            A guess; None where the motion cannot be followed, or has the events that the orbit has already.
+        """
+        return None
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return a converged correction with its fundamental matrices, or as failed where it is spurious.

@@ -15,19 +15,29 @@ from numpy.typing import NDArray
 
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
-from periodic.correction.newton import USUAL, Linearise, Linearised, NewtonSettings, linearised, moved
+from periodic.correction.newton import (
+    USUAL,
+    Linearise,
+    LinearisedEquations,
+    NewtonSettings,
+    linearised,
+    moved,
+    stretched,
+)
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
 from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.stability.multipliers import Spectrum
+from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
-from periodic.stability.spectrum import Spectrum
-from periodic.stability.spectrum import apart as powers_apart
 from periodic.system import System
 
-Solved = Callable[[System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], Linearised]
+Solved = Callable[
+    [System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], LinearisedEquations
+]
 """What linearises the equations at an orbit and solves them; raises FAILURES."""
 
 LEAST_SPAN = 1e-6
@@ -57,6 +67,12 @@ class ErrorEstimate:
         What of it the orbit's own error makes, where the equations change at events.
     shares : ndarray, shape (N,), optional
         What each interval adds to the rest of it, relative to each other.
+    peaks : float
+        Largest error of an output's minimum or maximum over its peak to peak, of outputs that are no states:
+        a steep function of these, as the load of a contact is, has more than they have. NaN where it is not
+        known. No mesh is refined for it.
+    better : callable, optional
+        Returns the orbit on the halved mesh, of whose outputs that is said.
     """
 
     orbit: float
@@ -65,6 +81,8 @@ class ErrorEstimate:
     rounding: float = field(default=0.0, compare=False)
     by_orbit: float = field(default=0.0, compare=False)
     shares: Array | None = field(default=None, compare=False, repr=False, kw_only=True)
+    peaks: float = field(default=np.nan, compare=False, kw_only=True)
+    better: Callable[[], Orbit] | None = field(default=None, compare=False, repr=False, kw_only=True)
 
     @property
     def motion(self) -> float:
@@ -72,8 +90,21 @@ class ErrorEstimate:
         return SAFETY * max(self.orbit, self.parameter)
 
     def blur(self, value: float, scale: float) -> float:
-        """Return what a value of the parameter in a range of length `scale` is known to (SI)."""
-        return SAFETY * self.parameter * max(abs(value), SMALL * scale)
+        """Return what a value of the parameter is known to.
+
+        Parameters
+        ----------
+        value : float
+            The value (SI).
+        scale : float
+            Length of the range that it is in.
+
+        Returns
+        -------
+        float
+            Its error (SI).
+        """
+        return SAFETY * self.parameter * max(abs(value), LEAST_VALUE * scale)
 
     @property
     def worst(self) -> float:
@@ -101,22 +132,21 @@ UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 ROUNDED = 3.0
 """How many times the rounding expected of them multipliers may be off by rounding."""
 
-SMALL = 0.1
+LEAST_VALUE = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
 
 BEST = 2e-12
-"""Relative error of an orbit that rounding may leave; beside a touch it is far more in the multipliers."""
+"""Relative error of an orbit that rounding may leave; beside a grazing it is far more in the multipliers."""
 
 LAST_DIGITS = 4 * float(np.finfo(float).eps)
 """To how much of itself a parameter is known at the most."""
 
-STRAIGHT = 0.1
-"""Part of the way to a fold for which a branch is straight: with the parameter a part p of its direction, a
-fold is about p away."""
+REACH = 0.1
+"""Arclength along a branch up to which the orbit of the same parameter is looked for."""
 
-TURNING = 1e-3
-"""Part below which it is at one: no orbit beside it has that parameter to its last digits."""
+STRAIGHT = 2.0
+"""Factor by which d parameter / d arclength changes on the way there at the most: else a fold is as near."""
 
 
 def deferred(
@@ -133,15 +163,39 @@ def deferred(
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
-    `linearise` has the equations that it is held against on the halved mesh. Where they change at events, the
-    multipliers depend on when these are, so on the orbit's own error: they are those of the better orbit, at
-    the same parameter but about a fold; `kinked` says whether they do, by default whether the mesh has event
-    nodes. The states `only_at_points`, (N, n), count at the orbit's mesh points alone,
-    not between them. `solved` linearises and solves in one; by default
-    `periodic.correction.newton.linearised`, with `linearise`. `lengths` says whether the constraint holds the
-    lengths of brief excursions too, as it does in steps: at a fold beside a touch these change far more along
-    the branch than the states do. `digits` is to how much of itself the parameter is known of which the
-    effect on the multipliers is asked for: it is rounding.
+    Where the equations change at events, the multipliers depend on when these are, so on the orbit's own
+    error: they are those of the better orbit, at the same parameter but about a fold.
+
+    Parameters
+    ----------
+    linearise : callable
+        The equations that the orbit is held against on the halved mesh, as `Discretisation.linearise` has
+        them.
+    problem : Problem
+        What is solved.
+    orbit : Orbit
+        The converged orbit.
+    tangent : Increment
+        Tangent of the branch.
+    spectrum : Spectrum
+        The orbit's multipliers.
+    only_at_points : ndarray of bool, shape (N, n), optional
+        States that count at the orbit's mesh points alone, not between them.
+    solved : callable, optional
+        Linearises and solves in one; by default `periodic.correction.newton.linearised`, with `linearise`.
+    kinked : bool, optional
+        Whether the equations change at events; by default whether the mesh has event nodes.
+    lengths : bool
+        Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
+        beside a grazing these change far more along the branch than the states do.
+    digits : float
+        To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
+        is rounding.
+
+    Returns
+    -------
+    ErrorEstimate
+        Relative errors; infinite ones where the halved mesh cannot be solved on.
     """
     fine = bisect(orbit)
     onto = _onto(tangent, fine)
@@ -149,17 +203,15 @@ def deferred(
     across = ArclengthConstraint(fine, onto, 0.0, problem.units(fine), problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
     solve, shared = solved or partial(linearised, linearise), (problem.free, closing, USUAL)
+    on_branch = _OnBranch(problem, lambda near: solve(problem.system, near, *shared), size_of(orbit))
     try:
         found = solve(problem.system, fine, *shared)
         beside = found
         if len(orbit.mesh.exact_ends) if kinked is None else kinked:
-            onto_branch = found.increment + _along(found, problem, size_of(orbit))
-            better = moved(problem.system, problem.free, found.orbit, onto_branch)
-            beside = solve(problem.system, better, *shared)
+            beside = on_branch.at_same_parameter(found)
         multiplier, unknown = spectrum.apart(beside.fundamental[-1], beside.operator), 0.0
         if digits:
-            far = _last_digits(beside, problem, size_of(orbit), digits)
-            other = solve(problem.system, moved(problem.system, problem.free, beside.orbit, far), *shared)
+            other = on_branch.beyond(beside, digits * abs(problem.value(beside.orbit)))
             unknown = _powers(spectrum, other.fundamental[-1], beside.fundamental[-1])
     except FAILURES:
         return UNKNOWN
@@ -174,7 +226,8 @@ def deferred(
     apart = float(max(at_nodes.max(), between.max()))
     monodromy = beside.fundamental[-1]
     halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)
-    error = relative(problem, orbit, spectrum, halved)
+    better = partial(moved, problem.system, problem.free, found.orbit, change)
+    error = relative(problem, orbit, spectrum, halved, None if problem.wider else better)
     if not unknown:
         return error
     rounding, by_orbit = error.rounding + unknown, error.by_orbit + unknown
@@ -193,47 +246,86 @@ class Halved:
     monodromy: Array
 
 
-def relative(problem: Problem, orbit: Orbit, spectrum: Spectrum, found: Halved) -> ErrorEstimate:
+def relative(
+    problem: Problem,
+    orbit: Orbit,
+    spectrum: Spectrum,
+    found: Halved,
+    better: Callable[[], Orbit] | None = None,
+) -> ErrorEstimate:
     """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
-    largest = max(abs(problem.value(orbit)), SMALL * problem.scale)
+    largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
     by_orbit = _powers(spectrum, found.monodromy, found.fundamental[-1])
     rounding = by_orbit * min(1.0, BEST / max(own, parameter, BEST))
     sized = bool(problem.system.switches) and orbit.span() > LEAST_SPAN
     each = shares(spectrum.fundamental, found.fundamental) if sized else None
-    return ErrorEstimate(own, found.multiplier, parameter, rounding, by_orbit, shares=each)
+    return ErrorEstimate(own, found.multiplier, parameter, rounding, by_orbit, shares=each, better=better)
 
 
-def _along(found: Linearised, problem: Problem, size: float) -> Increment:
-    """The way along the branch from where a step across it leads to the orbit of the same parameter.
+@dataclass(frozen=True)
+class _OnBranch:
+    """The equations at better orbits of a branch than the one that they were linearised at.
 
-    None at a fold, where the orbit of the same parameter is far away, or there is none. The parameter is
-    known to rounding alone, which beside a touch moves a contact: it is added to the way but at a fold.
+    Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, d parameter /
+    (d parameter / d arclength), is followed where it is short and that rate stays what it is on it: a rate
+    that is small may be so because orbits change much with the parameter, as beside a grazing.
     """
-    kernel = found.kernel
-    part = _part(found, problem, size)
-    if part < TURNING:
-        return kernel.scaled(0.0)
-    shift, least = found.increment.parameter, LAST_DIGITS * abs(problem.value(found.orbit))
-    near = abs(shift) < STRAIGHT * part**2 * problem.scale
-    way = (shift if near else 0.0) + float(np.copysign(least, shift))
-    return kernel.scaled(-way / kernel.parameter)
 
+    problem: Problem
+    solve: Callable[[Orbit], LinearisedEquations]
+    size: float
 
-def _last_digits(found: Linearised, problem: Problem, size: float, digits: float) -> Increment:
-    """The way along the branch by which a parameter that is known to so much of itself may be off, but at a
-    fold."""
-    kernel = found.kernel
-    at_fold = _part(found, problem, size) < TURNING
-    return kernel.scaled(0.0 if at_fold else digits * abs(problem.value(found.orbit)) / kernel.parameter)
+    def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
+        """Return them at the orbit of the same parameter, at the nearest one beside a fold. Raises FAILURES.
 
+        The parameter is known to rounding alone, which beside a grazing moves a contact: it is added to the
+        way, to the side on which lengths of excursions change more by both.
+        """
+        shift = found.increment.parameter
+        least = float(np.copysign(LAST_DIGITS * abs(self.problem.value(found.orbit)), shift))
+        for far in (shift, 0.0):
+            both = (self._along(found, -(far + rounding)) for rounding in (least, -least))
+            ways = [found.increment + way for way in both if way is not None]
+            there = self._there(found, max(ways, key=partial(stretched, found.orbit))) if ways else None
+            if there is not None:
+                return there
+        return self.solve(self._moved(found, found.increment))
 
-def _part(found: Linearised, problem: Problem, size: float) -> float:
-    """The part of the branch's direction that the parameter is."""
-    kernel = found.kernel
-    still = replace(kernel, phases=np.zeros_like(kernel.phases))  # lengths of excursions tell of no fold
-    length = float(np.sqrt(still.dot(still, found.orbit, problem.units(found.orbit), size)))
-    return abs(kernel.parameter) / (length * problem.scale)
+    def beyond(self, found: LinearisedEquations, way: float) -> LinearisedEquations:
+        """Return them where the parameter is `way` more; `found` beside a fold."""
+        along = self._along(found, way)
+        there = None if along is None else self._there(found, along)
+        return found if there is None else there
+
+    def _along(self, found: LinearisedEquations, way: float) -> Increment | None:
+        """The way along the branch on which the parameter changes by so much; None where that is far.
+
+        It is where an excursion changes by more than its length, too.
+        """
+        kernel = found.kernel
+        if not self._length(found) * abs(way) <= REACH * abs(kernel.parameter) > 0:
+            return None
+        along = kernel.scaled(way / kernel.parameter)
+        return along if stretched(found.orbit, along) <= 1 else None
+
+    def _there(self, found: LinearisedEquations, way: Increment) -> LinearisedEquations | None:
+        """The same at the end of a way; None where the branch is not straight on it."""
+        try:
+            there = self.solve(self._moved(found, way))
+        except FAILURES:
+            return None
+        straight = 1 / STRAIGHT < there.kernel.parameter / found.kernel.parameter < STRAIGHT
+        return there if straight else None
+
+    def _moved(self, found: LinearisedEquations, by: Increment) -> Orbit:
+        return moved(self.problem.system, self.problem.free, found.orbit, by)
+
+    def _length(self, found: LinearisedEquations) -> float:
+        """Arclength of the kernel; lengths of excursions tell of no fold."""
+        kernel = found.kernel
+        still = replace(kernel, phases=np.zeros_like(kernel.phases))
+        return float(np.sqrt(still.dot(still, found.orbit, self.problem.units(found.orbit), self.size)))
 
 
 def _powers(spectrum: Spectrum, one: Array, two: Array) -> float:

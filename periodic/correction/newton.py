@@ -76,9 +76,26 @@ USUAL = NewtonSettings()
 class Correction:
     """Result of a Newton iteration: the last orbit, how it ended, and what the last linearisation gave.
 
-    fundamental: fundamental matrices at the mesh points, shape (N+1, n, n). kernel: the tangent of the
-    branch, of any length; None where no side condition closes the equations. operator: that linearisation.
-    gentle: whether it is known that perturbations do not grow fast within an interval.
+    Parameters
+    ----------
+    orbit : Orbit
+        The last orbit.
+    outcome : Outcome
+        How the iteration ended.
+    iterations : int
+        How many there were.
+    increment : float
+        Size of the last increment, relative.
+    residual : float
+        The largest residual of the last linearisation.
+    fundamental : ndarray, shape (N+1, n, n)
+        Fundamental matrices at the mesh points.
+    kernel : Increment or None
+        The tangent of the branch, of any length; None where no side condition closes the equations.
+    operator : Operator, optional
+        The last linearisation.
+    gentle : bool
+        Whether it is known that perturbations do not grow fast within an interval.
     """
 
     orbit: Orbit
@@ -109,7 +126,7 @@ class Way:
     residual is the largest one at that orbit, size the largest relative increment for the convergence test,
     length that for damping, and stretch the largest change of the distance between two event nodes, relative
     to it where that is less than 1 rad. depth is about the same by which the states' own increment is felt
-    there: beside a touch the square of a contact's length goes with them.
+    there: beside a grazing the square of a contact's length goes with them.
     """
 
     orbit: Orbit
@@ -277,7 +294,7 @@ def briefest(orbit: Orbit) -> float:
 
 
 @dataclass(frozen=True)
-class Linearised:
+class LinearisedEquations:
     """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n).
 
     operator: they themselves, where they are to be had.
@@ -297,12 +314,12 @@ def linearised(
     free: tuple[int, ...],
     conditions: Sequence[SideCondition],
     settings: NewtonSettings,
-) -> Linearised:
+) -> LinearisedEquations:
     """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
     step = newton_step(linearise, system, orbit, free, conditions, settings)
     kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
     operator = step.operator
-    return Linearised(operator.orbit, step.increment, kernel, operator.fundamental, operator)
+    return LinearisedEquations(operator.orbit, step.increment, kernel, operator.fundamental, operator)
 
 
 def in_order(orbit: Orbit) -> bool:
@@ -335,10 +352,10 @@ def sizes(
     change = moved_unknowns(system, orbit.algebraic, increment.algebraic) - orbit.algebraic
     unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
     left = float(unknowns.max()) ** 2
-    felt = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
-    if not np.isfinite(regular + left + felt):
+    weighted = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
+    if not np.isfinite(regular + left + weighted):
         return np.inf, np.inf
-    return max(regular, left), max(regular, felt)
+    return max(regular, left), max(regular, weighted)
 
 
 def moved_unknowns(system: System, algebraic: Array, increment: Array) -> Array:

@@ -64,7 +64,7 @@ class Problem:
         Name of the parameter that the branch is continued in.
     bounds : tuple of float
         Its range (SI), the first where branches begin by default. The distance of the two is the unit of
-        arclength in the parameter; `bounds` keeps them in rising order, `begin` the first.
+        arclength in the parameter.
     determined : mapping of str to Condition, optional
         Further free parameters by name, and the conditions that determine them: {"omega": PhaseCondition()}
         of an autonomous system, {"F": FoldCondition()} for a curve of folds in two parameters.
@@ -85,14 +85,11 @@ class Problem:
     determined: Mapping[str, Condition] = field(default_factory=dict)
     wider: Wider | None = field(default=None, repr=False)
     sizes: tuple[float, ...] = field(default=(), repr=False)
-    begin: float = field(init=False, repr=False, default=0.0)
 
     def __post_init__(self) -> None:
         check_system(self.system)
         index_of(self.system, self.parameter)
-        ends = _range(self.parameter, self.bounds)
-        object.__setattr__(self, "bounds", (min(ends), max(ends)))
-        object.__setattr__(self, "begin", ends[0])
+        object.__setattr__(self, "bounds", _range(self.parameter, self.bounds))
         named("determined", self.determined, "conditions")
         for name, condition in self.determined.items():
             if isinstance(condition, type) or not hasattr(condition, "at"):
@@ -105,6 +102,21 @@ class Problem:
                     f"it must be one or the other"
                 )
             index_of(self.system, name)
+
+    @property
+    def begin(self) -> float:
+        """The bound where branches begin by default."""
+        return self.bounds[0]
+
+    @property
+    def low(self) -> float:
+        """The lower bound."""
+        return min(self.bounds)
+
+    @property
+    def high(self) -> float:
+        """The upper bound."""
+        return max(self.bounds)
 
     @cached_property
     def index(self) -> int:
@@ -129,7 +141,7 @@ class Problem:
     @property
     def scale(self) -> float:
         """The unit of arclength in the continuation parameter."""
-        return self.bounds[1] - self.bounds[0]
+        return self.high - self.low
 
     def units(self, orbit: Orbit) -> float | Array:
         """Return the units of arclength in the free parameters: the range, and of others their own size.
@@ -166,11 +178,9 @@ class Problem:
         Returns
         -------
         Problem
-            The problem, whose branches begin where they did.
+            The problem.
         """
-        low, high = self.bounds
-        ends = (low, high) if self.begin == low else (high, low)
-        return replace(self, bounds=ends, sizes=tuple(abs(float(parameter[k])) for k in self.others))
+        return replace(self, sizes=tuple(abs(float(parameter[k])) for k in self.others))
 
     @cached_property
     def trivial(self) -> int:
@@ -198,12 +208,12 @@ class Problem:
         return side_conditions(self.conditions, self.others, origin)
 
     @property
-    def shown(self) -> System:
-        """The system that results are of."""
+    def full(self) -> System:
+        """The full system: the one that results are of."""
         return self.system if self.wider is None else self.wider.system
 
-    def seen(self, orbit: Orbit) -> Orbit:
-        """Return an orbit as one of the system that results are of.
+    def expand(self, orbit: Orbit) -> Orbit:
+        """Expand an orbit of the system that is solved to one of the full system.
 
         Parameters
         ----------
@@ -213,17 +223,17 @@ class Problem:
         Returns
         -------
         Orbit
-            The orbit that is shown.
+            The orbit with all states.
         """
         return orbit if self.wider is None else self.wider.expanded(orbit)
 
-    def solved(self, orbit: Orbit) -> Orbit:
-        """Return an orbit that is shown as one of the system that is solved.
+    def restrict(self, orbit: Orbit) -> Orbit:
+        """Restrict an orbit of the full system to one of the system that is solved.
 
         Parameters
         ----------
         orbit : Orbit
-            The orbit that is shown.
+            The orbit with all states.
 
         Returns
         -------

@@ -8,13 +8,13 @@ from functools import cached_property
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import Outcome
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,11 @@ class Solution:
         """The Floquet multipliers."""
         return self.discretisation.spectrum(self.correction, self.problem.trivial)
 
+    @property
+    def estimated(self) -> Solution:
+        """The one whose errors it is given."""
+        return self
+
     @cached_property
     def error(self) -> ErrorEstimate:
         """The errors of orbit and multipliers."""
@@ -125,6 +130,11 @@ class Between(Solution):
     """
 
     beside: Solution = field(repr=False)
+
+    @property
+    def estimated(self) -> Solution:
+        """The one beside it."""
+        return self.beside
 
     @property
     def error(self) -> ErrorEstimate:

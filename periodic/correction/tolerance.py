@@ -10,10 +10,10 @@ import numpy as np
 from periodic.checks import number
 from periodic.correction.newton import NewtonSettings
 
-LEAST, MOST = 1e-11, 1e-2
+FINEST, COARSEST = 1e-11, 1e-2
 """Between these lies a tolerance."""
 
-CLOSE = 1e-4
+MULTIPLIER_SHARE = 1e-4
 """How much closer to an orbit than a tolerance its multipliers are computed."""
 
 
@@ -68,10 +68,12 @@ class Tolerance:
         if isinstance(tol, cls):
             return tol
         if isinstance(tol, bool) or not isinstance(tol, int | float | np.number):
-            raise ValueError(f"tol is {tol!r}; it must be a number between {LEAST:g} and {MOST:g}")
+            raise ValueError(f"tol is {tol!r}; it must be a number between {FINEST:g} and {COARSEST:g}")
         orbit = float(tol)
-        if not LEAST <= orbit <= MOST:
-            raise ValueError(f"tol is {orbit}; it must lie between {LEAST:g} and {MOST:g}")
+        if not FINEST <= orbit <= COARSEST:
+            raise ValueError(f"tol is {orbit}; it must lie between {FINEST:g} and {COARSEST:g}")
         increment = max(1e-2 * orbit, 1e-10) ** 0.75
-        newton = NewtonSettings(tolerance=increment, close=CLOSE * orbit / increment, max_iterations=16)
+        newton = NewtonSettings(
+            tolerance=increment, close=MULTIPLIER_SHARE * orbit / increment, max_iterations=16
+        )
         return cls(orbit=orbit, newton=newton)

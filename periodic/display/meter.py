@@ -27,8 +27,8 @@ Advance = Callable[[int, str], None]
 
 def watched() -> bool:
     """Return whether somebody looks on: in a notebook, or where standard error is a terminal."""
-    told = os.environ.get(VARIABLE, "").strip()
-    return told != "0" if told else "ipykernel" in sys.modules or sys.stderr.isatty()
+    setting = os.environ.get(VARIABLE, "").strip()
+    return setting != "0" if setting else "ipykernel" in sys.modules or sys.stderr.isatty()
 
 
 @contextmanager

@@ -18,13 +18,13 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.equilibrium.linearise import Rows, rows_at
-from periodic.linear.pair import subspaces, within
+from periodic.linear.invariantpair import subspaces, within
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
 
-STEP = 1e-5
+DIFFERENCE_STEP = 1e-5
 """Step of central differences in scaled states, and in parameters as a part of their size."""
 
 NEUTRAL = 1e-6
@@ -97,7 +97,10 @@ def _gathered(
     n, m = orbit.nodes.shape[1], orbit.algebraic.shape[2]
     rows = rows_at(system, orbit, free)
     steps = np.concatenate(
-        [np.full(n + m, STEP), STEP * np.maximum(np.abs(orbit.parameter[list(free)]), STEP)]
+        [
+            np.full(n + m, DIFFERENCE_STEP),
+            DIFFERENCE_STEP * np.maximum(np.abs(orbit.parameter[list(free)]), DIFFERENCE_STEP),
+        ]
     )
 
     def beside(k: int, step: float) -> Rows:

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from periodic.linear import bordered
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
@@ -110,12 +111,9 @@ class Constant:
 
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
-        border = [flat(self.orbit, row) for row in rows]
-        matrix = np.vstack([self.rows.d_unknown, *border])
-        size = len(self.rows.residual)
-        aim = -np.append(self.rows.residual, [row.value for row in rows])[:, None] * right[:1]
-        aim[size:] += right[1:]
-        return tuple(direction(self.orbit, vector) for vector in np.linalg.solve(matrix, aim).T)
+        own = np.column_stack([self.rows.residual, self.rows.d_unknown])
+        border = [np.append(row.value, flat(self.orbit, row)) for row in rows]
+        return tuple(direction(self.orbit, u) for u in bordered.solve(np.vstack([own, *border]), right).T)
 
 
 def flat(orbit: Orbit, row: Row) -> Array:

@@ -13,9 +13,9 @@ import numpy as np
 
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import EXACT, ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import Correction
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.equilibrium.linearise import linearise
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -24,7 +24,7 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.stability.spectrum import Spectrum, Stability
+from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System, index_of
 
 PHASES = np.linspace(0.0, FORCED, 8) + 0.1
@@ -47,6 +47,18 @@ class Equilibrium(Discretisation):
     def stability(self) -> Stability:
         """Eigenvalues."""
         return Stability.EIGENVALUES
+
+    def check(self, problem: Problem) -> None:
+        """Refuse a frequency that is no parameter, and a branch over the frequency. Raises ValueError."""
+        names = [p.name for p in problem.system.parameters]
+        if self.frequency not in names:
+            raise ValueError(
+                f"frequency is {self.frequency!r}; it must be one of the parameters {', '.join(names)}"
+            )
+        if self.frequency == problem.parameter:
+            raise ValueError(
+                f"parameter is {self.frequency!r}, the frequency; equilibria do not depend on it"
+            )
 
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
         """Return the system's rest values, or the state with which an orbit begins, as an equilibrium.

@@ -16,11 +16,11 @@ from periodic.system import System, index_of
 
 Complex = NDArray[np.complex128]
 
-STEP = 1e-2
+DIFFERENCE_STEP = 1e-2
 """Length of the differences (scaled states), which are of fourth order."""
 
 SETTLED = 1e-14
-ITERATIONS = 20
+VECTOR_ITERATIONS = 20
 
 
 def first_lyapunov(system: System, orbit: Orbit, frequency: str = "omega") -> float:
@@ -58,7 +58,7 @@ def first_lyapunov(system: System, orbit: Orbit, frequency: str = "omega") -> fl
     Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.62.
     """
     if not orbit.equilibrium:
-        raise ValueError("orbit is no equilibrium; it must be one, of a branch that `equilibria` traced")
+        raise ValueError("orbit is no equilibrium; it must be one, of a branch by method=Equilibrium()")
     orbit = as_read_by(system, orbit)
     omega = float(orbit.parameter[index_of(system, frequency)])
 
@@ -90,21 +90,21 @@ def _eigenvector(matrix: Array) -> tuple[float, Complex]:
 
 def _slope(function: Callable[[Array], Array], along: Array) -> Array:
     """First derivative along a vector."""
-    a, b, c, d = (function(k * STEP * along) for k in (-2, -1, 1, 2))
-    return (a - 8 * b + 8 * c - d) / (12 * STEP)
+    a, b, c, d = (function(k * DIFFERENCE_STEP * along) for k in (-2, -1, 1, 2))
+    return (a - 8 * b + 8 * c - d) / (12 * DIFFERENCE_STEP)
 
 
 def _bend(function: Callable[[Array], Array], along: Array) -> Array:
     """Second derivative along a vector."""
-    a, b, c, d, e = (function(k * STEP * along) for k in (-2, -1, 0, 1, 2))
-    return (-a + 16 * b - 30 * c + 16 * d - e) / (12 * STEP**2)
+    a, b, c, d, e = (function(k * DIFFERENCE_STEP * along) for k in (-2, -1, 0, 1, 2))
+    return (-a + 16 * b - 30 * c + 16 * d - e) / (12 * DIFFERENCE_STEP**2)
 
 
 def _moving(system: System, orbit: Orbit, shift: Array) -> Rows:
     """The equations beside an equilibrium, linearised about the rates and unknowns that they give there."""
     n = orbit.nodes.shape[1]
     beside, rate = replace(orbit, nodes=orbit.nodes + shift), np.zeros(n)
-    for _ in range(ITERATIONS):
+    for _ in range(VECTOR_ITERATIONS):
         rows = rows_at(system, beside, (), rate)
         change = np.linalg.solve(rows.d_motion, -rows.residual)
         rate, beside = rate + change[:n], replace(beside, algebraic=beside.algebraic + change[n:])

@@ -16,6 +16,7 @@ import numpy as np
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.harmonic.series import NO_PHASES, FourierOrbit, transform
+from periodic.linear import bordered
 from periodic.linear.unknowns import Increment
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -90,7 +91,7 @@ class Balance:
 
     @property
     def fundamental(self) -> Array:
-        """Nothing is known of them: Hill's method has them, once the orbit is found."""
+        """Unknown here (NaN): Hill's method computes them once the orbit is found."""
         n = self.orbit.nodes.shape[1]
         return np.full((1, n, n), np.nan)
 
@@ -111,14 +112,9 @@ class Balance:
         matrix = projected(samples.d_rate, samples.d_state, orbit.frequency)
         size, q = len(matrix), samples.columns.shape[2] - 1 - 2 * n
         outer = np.tensordot(analysis, samples.columns[:, :, 1 + 2 * n :], 1).reshape(size, q)
-        border = [on_coefficients(orbit, row) for row in rows]
-        lower = np.array([np.append(row.nodes, row.outer) for row in border]).reshape(len(rows), size + q)
-        constant = np.append((analysis @ samples.columns[:, :, 0]).ravel(), [row.value for row in border])
-        aim = -constant[:, None] * right[:1]
-        aim[size:] += right[1:]
-        found = np.linalg.solve(np.vstack([np.hstack([matrix, outer]), lower]), aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        constant = (analysis @ samples.columns[:, :, 0]).reshape(size, 1)
+        own = np.hstack([constant, matrix, outer])
+        found = bordered.solve(np.vstack([own, *(on_coefficients(orbit, row) for row in rows)]), right)
         return tuple(self._recovered(*pair) for pair in zip(right[0], found.T, strict=True))
 
     def _recovered(self, constant: float, solution: Array) -> Increment:
@@ -137,10 +133,10 @@ class Balance:
         return Increment(nodes, states.reshape(shape), unknowns, NO_PHASES, outer, nodes)
 
 
-def on_coefficients(orbit: FourierOrbit, row: Row) -> Row:
-    """Return a row whose `nodes` are the gradient in the coefficients, (2H+1, n)."""
+def on_coefficients(orbit: FourierOrbit, row: Row) -> Array:
+    """Return a row's value and its gradient in the coefficients and the free parameters, (1+(2H+1)n+q,)."""
     n, basis = orbit.nodes.shape[1], transform(orbit.harmonics)
     gradient = basis.nodes.T @ row.nodes
     if row.stages is not None:
         gradient += basis.values.T @ row.stages.reshape(-1, n)
-    return Row(row.value, gradient, row.outer)
+    return np.concatenate([[row.value], gradient.ravel(), row.outer])

@@ -29,29 +29,29 @@ from periodic.system import System
 Complex = NDArray[np.complex128]
 
 DENSE = 64
-"""Of matrices up to this size all eigenvalues are found; of larger ones those near 0 (block Arnoldi)."""
+"""Largest matrices of which all eigenvalues are computed; of larger ones those near 0 (block Arnoldi)."""
 
 SHIFT = 0.2137
-"""Near which they are looked for, in units of w: real, and no likely exponent itself."""
+"""Shift of the shift-and-invert iteration, in units of w: real, and unlikely to be an exponent itself."""
 
 BLOCKS = (12, 18, 27, 40)
 """Sizes of the Krylov space in blocks, tried in turn."""
 
 BLOCK = 4
-"""A block has one vector for so many states, at least two."""
+"""States for each vector of a block, which has at least two."""
 
-CLOSE = 1e-11
+KRYLOV_RESIDUAL = 1e-11
 """Largest residual of an eigenvector from a Krylov space, relative to its eigenvalue."""
 
 DEPENDENT = 1e-4
 """Eigenvectors whose singular values spread more are replaced by Schur vectors."""
 
-NEAR = 1.5
-"""Centroids nearer to 0 than this tell where the window ends."""
+WINDOW = 1.5
+"""The ends of the window are chosen by the centroids that are nearer to 0 than this."""
 
 
 @dataclass(frozen=True)
-class Floquet:
+class FloquetForm:
     """Floquet's form of the fundamental matrices: coefficients of P (2H+1, n, n), and B (n, n).
 
     resolved: whether the exponents could be told from their copies.
@@ -118,13 +118,13 @@ def jacobian(system: System, orbit: FourierOrbit) -> Array:
     return result
 
 
-def floquet(system: System, orbit: FourierOrbit) -> Floquet:
+def floquet(system: System, orbit: FourierOrbit) -> FloquetForm:
     """Return Floquet's form of the fundamental matrices of an orbit. Raises as `jacobian` does."""
     n = orbit.nodes.shape[1]
     J = jacobian(system, orbit) / orbit.frequency
     matrix = projected(np.broadcast_to(-np.eye(n), J.shape), J, 1.0)
     found = _krylov(matrix, n) if len(matrix) > DENSE else _dense(matrix, n)
-    return Floquet(
+    return FloquetForm(
         found.vectors.reshape(-1, n, n), orbit.frequency * found.rate, orbit.mesh.period, found.resolved
     )
 
@@ -168,7 +168,7 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
         values, vectors = np.linalg.eig(inside)
         ritz = known @ vectors
         left = np.linalg.norm(images @ vectors - ritz * values, axis=0)
-        good = np.flatnonzero((left < CLOSE * np.abs(values)) & (np.abs(centroids(ritz, n)) < far))
+        good = np.flatnonzero((left < KRYLOV_RESIDUAL * np.abs(values)) & (np.abs(centroids(ritz, n)) < far))
         chosen = np.zeros(len(values), dtype=bool)
         chosen[good], resolved = in_window((1 / values[good]).imag, n)
         if resolved:
@@ -213,7 +213,7 @@ def in_window(places: Array, n: int) -> tuple[NDArray[np.bool_], bool]:
 
     Else the n nearest to its middle. The window ends in the widest gap between the places near 0, modulo 1.
     """
-    near = np.sort(np.mod(places[np.abs(places) <= NEAR], 1.0))
+    near = np.sort(np.mod(places[np.abs(places) <= WINDOW], 1.0))
     if len(near) == 0:
         near = np.zeros(1)
     gaps = np.diff(near, append=near[0] + 1)

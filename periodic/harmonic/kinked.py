@@ -9,26 +9,26 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.collocation.dense import exact
-from periodic.collocation.kinks import exact_crossings, placed
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.problem import Problem
+from periodic.events.modes import bends
+from periodic.events.tying import exact_crossings, placed
 from periodic.harmonic.series import NO_PHASES, FourierOrbit
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.refinement.equidistribution import redistribute
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 
 def has_kinks(system: System) -> bool:
     """Whether the equations have kinks that a mesh can be tied to."""
-    return bool(exact(system))
+    return bool(bends(system))
 
 
 def beside(

@@ -11,12 +11,12 @@ from periodic.checks import whole
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
-from periodic.correction.meshes import Refinement
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.harmonic.balance import Balance, sampled
-from periodic.harmonic.hill import Floquet, floquet
+from periodic.harmonic.hill import FloquetForm, floquet
 from periodic.harmonic.kinked import beside, has_kinks
 from periodic.harmonic.series import NO_PHASES, FourierOrbit, harmonics_of, mesh_for, series, tail
 from periodic.linear.operator import Operator
@@ -26,25 +26,25 @@ from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
 
 WAYS = (1.0, 0.5, 0.25)
-"""How far on the way to the harmonics needed an orbit is tried, in turn."""
+"""Parts of the way from the present to the needed number of harmonics, tried in turn."""
 
 AIM = 0.1
 """The part of the tolerance that a new number of harmonics aims at."""
 
 ROUGHLY = 1e-4
-"""Harmonics of a guess that are smaller, as a part of its peak to peak, are left to Newton."""
+"""A guess omits harmonics that are smaller than this part of its peak to peak."""
 
 KNOWN = 1e-2
-"""Error of the multipliers above which they tell no special points: those of few harmonics may jump."""
+"""Error of the multipliers above which they locate no special points; few harmonics make them jump."""
 
 HILL = 8
 """Fewest harmonics (of the excitation frequency) that Hill's method is given; the orbit's may be fewer."""
 
-LEAST = 3
+LEAST_HARMONICS = 3
 """Fewest harmonics that an orbit is given, unless it begins with fewer."""
 
 
@@ -52,7 +52,7 @@ LEAST = 3
 class FourierCorrection(Correction):
     """A correction that knows Floquet's form of its fundamental matrices."""
 
-    floquet: Floquet = field(kw_only=True)
+    floquet: FloquetForm = field(kw_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,8 +64,7 @@ class HarmonicBalance(Discretisation):
     harmonics : int
         Of the excitation frequency, to begin with. They become fewer or more as the tolerance asks for.
     most : int
-        At most so many; with most = harmonics = H there are never more than H, and a tolerance that they do
-        not meet is refused.
+        The largest number; with most = harmonics = H a tolerance that H harmonics do not meet is refused.
     tolerance : float
         What their number is chosen for; set by the trace.
 
@@ -183,7 +182,7 @@ class FourierRefinement(Refinement):
     @property
     def _wanted(self) -> int:
         method, orbit = self.method, self.series
-        least, most = min(LEAST, method.harmonics) * orbit.periods, method.most * orbit.periods
+        least, most = min(LEAST_HARMONICS, method.harmonics) * orbit.periods, method.most * orbit.periods
         return int(np.clip(needed(orbit, self.error.worst, AIM * method.tolerance), least, most))
 
     def refined(self) -> Mesh:
@@ -191,7 +190,7 @@ class FourierRefinement(Refinement):
         return mesh_for(self._wanted, self.series.mesh.period)
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
-        """Yield that mesh, then those on the way there."""
+        """Yield that mesh, then meshes with numbers of harmonics between the present one and that."""
         present, wanted = self.series.harmonics, self._wanted
         for part in WAYS:
             count = present + round(part * (wanted - present))
@@ -208,7 +207,7 @@ def _series(orbit: Orbit) -> FourierOrbit:
 
 
 def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
-    """The number of harmonics that brings an error to its goal, if the spectrum falls on as it has fallen.
+    """The number of harmonics that brings an error to its goal, if the spectrum decays on at the same rate.
 
     From half to twice as many as there are.
     """

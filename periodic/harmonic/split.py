@@ -16,8 +16,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.floquet import Floquet, Leading, LeadingSpectrum
-from periodic.condensed.linearised import Linearised, Local, local_rows
+from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
+from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
@@ -35,6 +35,7 @@ from periodic.harmonic.series import (
     series,
     transform,
 )
+from periodic.linear import bordered
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
@@ -43,7 +44,7 @@ from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import LinearPart, ModesLike, System, linear_of
 
 Complex = NDArray[np.complex128]
@@ -156,16 +157,8 @@ class SplitBalance:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
         orbit = self.orbit
         matrix, full = self._assembled
-        size, outer = len(matrix), full[:, 1:]
-        border = [on_coefficients(orbit, row) for row in rows]
-        lower = np.array([np.append(row.nodes, row.outer) for row in border])
-        lower = lower.reshape(len(rows), size + outer.shape[1])
-        constant = np.append(full[:, 0], [row.value for row in border])
-        aim = -constant[:, None] * right[:1]
-        aim[size:] += right[1:]
-        found = np.linalg.solve(np.vstack([np.hstack([matrix, outer]), lower]), aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        own = np.hstack([full[:, :1], matrix, full[:, 1:]])
+        found = bordered.solve(np.vstack([own, *(on_coefficients(orbit, row) for row in rows)]), right)
         return tuple(self._recovered(*pair) for pair in zip(right[0], found.T, strict=True))
 
     def _recovered(self, constant: float, solution: Array) -> Increment:
@@ -264,4 +257,4 @@ def _leading(system: System, correction: Correction) -> SeriesLeading:
     changes = [part.slope(orbit.parameter, index) for index in free]
     response = Response(part.modes(orbit.parameter), SCHEME, pieces.grid, mesh.period)
     local = local_rows(system, part, pieces, free)
-    return SeriesLeading(Floquet(Linearised(pieces, part, response, changes, local, system)))
+    return SeriesLeading(ModalFloquet(SplitLinearisation(pieces, part, response, changes, local, system)))

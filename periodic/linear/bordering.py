@@ -1,4 +1,4 @@
-"""The chain of intervals and its border: what is left of an orbit's linearised equations after condensation.
+"""The chain of intervals and its border: an orbit's linearised equations once the stages are eliminated.
 
 Intervals are chained to affine maps of (1, dx_0, dy); periodicity dx_N = dx_0 and the side conditions then
 give a dense system of size n + q for (dx_0, dy). The chain's linear part is the monodromy matrix.
@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.linear import bordered
 from periodic.linear.reduction import reduce
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
@@ -27,10 +28,10 @@ GROWTH = 1e6
 PLACES = 16
 """Between so many places at the most growth is looked at."""
 
-MOST = 1e150
+LARGEST_FUNDAMENTAL = 1e150
 """Largest fundamental matrices that are given: products of two are finite."""
 
-SMALL = 16
+PAIRED_UP_TO = 16
 """Up to so many states, neighbouring maps are multiplied in pairs: more products, but far fewer calls."""
 
 
@@ -41,7 +42,7 @@ class Compiled(Protocol):
         """Return the affine maps from the first mesh point to all."""
 
 
-class Condensed(Protocol):
+class Eliminated(Protocol):
     """Linearised equations with what is local eliminated: each mesh point follows from an earlier one.
 
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
@@ -73,61 +74,66 @@ class Condensed(Protocol):
 
 @dataclass(frozen=True)
 class Chain:
-    """Condensed equations as an operator, see `periodic.linear.operator.Operator`.
+    """Equations with what is local eliminated, as an operator, see `periodic.linear.operator.Operator`.
 
-    own: the rows of its event nodes, one for each phase of the orbit.
+    Parameters
+    ----------
+    eliminated : Eliminated
+        The equations between the mesh points, see `Eliminated`.
+    own : sequence of Row
+        The rows of its event nodes, one for each phase of the orbit.
     """
 
-    condensed: Condensed
+    eliminated: Eliminated
     own: Sequence[Row] = ()
 
     @property
     def orbit(self) -> Orbit:
         """The orbit that the equations are linearised at."""
-        return self.condensed.orbit
+        return self.eliminated.orbit
 
     @property
     def residual(self) -> float:
         """The largest residual."""
-        return self.condensed.residual
+        return self.eliminated.residual
 
     @cached_property
     def maps(self) -> Array:
         """The affine maps (1, dx_0, dy) -> dx_j, (N+1, n, 1+n+q); not finite where too large."""
         with np.errstate(over="ignore", invalid="ignore"):
-            return chain(self.condensed)
+            return chain(self.eliminated)
 
     @property
     def flow(self) -> Array | None:
         """dx/dtau at the joints, shape (N+1, n); None where states or equations jump."""
-        jumping = getattr(self.condensed, "perturbed", None) is not None
+        jumping = getattr(self.eliminated, "perturbed", None) is not None
         return None if jumping else self.orbit.end_rates[self._joints]
 
     @property
     def _joints(self) -> NDArray[np.int_]:
         """The mesh points that others follow from, and the last one."""
-        return np.append(np.unique(self.condensed.origin), len(self.condensed.origin))
+        return np.append(np.unique(self.eliminated.origin), len(self.eliminated.origin))
 
     @property
     def steps(self) -> Array:
         """How perturbations pass from joint to joint, each interval as a rule, shape (N, n, n)."""
-        perturbed: Array | None = getattr(self.condensed, "perturbed", None)
-        step, n = self.condensed.step, self.condensed.step.shape[1]
+        perturbed: Array | None = getattr(self.eliminated, "perturbed", None)
+        step, n = self.eliminated.step, self.eliminated.step.shape[1]
         return step[self._joints[1:] - 1, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
 
     @cached_property
     def fundamental(self) -> Array:
-        """Fundamental matrices at the mesh points, shape (N+1, n, n), those beyond MOST scaled to it."""
-        if getattr(self.condensed, "perturbed", None) is None:
+        """Fundamental matrices at the mesh points, (N+1, n, n), scaled to LARGEST_FUNDAMENTAL if larger."""
+        if getattr(self.eliminated, "perturbed", None) is None:
             found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
-            if self.growth <= MOST:
+            if self.growth <= LARGEST_FUNDAMENTAL:
                 return found
         return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
 
     @cached_property
     def growth(self) -> float:
         """How much motions grow at the most from one joint to another; of large systems from the first."""
-        if self.maps.shape[1] <= SMALL:
+        if self.maps.shape[1] <= PAIRED_UP_TO:
             return between_any(self.steps)
         found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
         return found if np.isfinite(found) else np.inf
@@ -135,8 +141,8 @@ class Chain:
     @property
     def effect(self) -> Array:
         """About how much the states change with each free parameter over a period, shape (q,)."""
-        step, k = self.condensed.step, len(self.orbit.phases)
-        intervals = np.count_nonzero(np.bincount(self.condensed.origin))
+        step, k = self.eliminated.step, len(self.orbit.phases)
+        intervals = np.count_nonzero(np.bincount(self.eliminated.origin))
         first = 1 + step.shape[1] + k
         return intervals * np.abs(step[:, :, first:]).max(axis=(0, 1), initial=0.0)
 
@@ -145,26 +151,21 @@ class Chain:
 
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
-        orbit, n, count = self.orbit, self.maps.shape[1], len(self.own)
+        orbit, n = self.orbit, self.maps.shape[1]
         if self.growth > GROWTH:
             maps, top = self._from_both_ends()
         else:
             maps, top = self.maps, self.maps[-1].copy()
             top[:, 1 : 1 + n] -= np.eye(n)
             top[:, 0] += orbit.nodes[-1] - orbit.nodes[0]
-        every = [self.condensed.reduced(row) for row in (*self.own, *rows)]
+        every = [self.eliminated.reduced(row) for row in (*self.own, *rows)]
         border = np.array([onto_start(row, maps) for row in every]).reshape(len(every), maps.shape[2])
-        matrix = np.concatenate([top, border])
-        aim = -matrix[:, :1] * right[:1]
-        aim[len(top) + count :] += right[1:]
-        found = np.linalg.solve(matrix[:, 1:], aim)
-        if not np.isfinite(found).all():
-            raise np.linalg.LinAlgError("the bordered matrix is singular")
+        found = bordered.solve(np.concatenate([top, border]), right)
         return tuple(self._recovered(maps, *pair) for pair in zip(right[0], found.T, strict=True))
 
     def _from_both_ends(self) -> tuple[Array, Array]:
         """The mesh points from both ends, and the equations of these: intervals and periodicity."""
-        joints, step, origin, orbit = self._joints, self.condensed.step, self.condensed.origin, self.orbit
+        joints, step, origin, orbit = self._joints, self.eliminated.step, self.eliminated.origin, self.orbit
         reduced, n = reduce(step[joints[1:] - 1]), orbit.nodes.shape[1]
         maps = np.empty((len(step) + 1, *reduced.maps.shape[1:]))
         maps[joints] = reduced.maps
@@ -179,24 +180,24 @@ class Chain:
 
     def _recovered(self, maps: Array, constant: float, found: Array) -> Increment:
         """The increment of the ends and dy."""
-        k, width = len(self.orbit.phases), self.condensed.step.shape[2] - 1 - maps.shape[1]
+        k, width = len(self.orbit.phases), self.eliminated.step.shape[2] - 1 - maps.shape[1]
         nodes, outer = constant * maps[:, :, 0] + maps[:, :, 1:] @ found, found[len(found) - width :]
-        stages, algebraic = self.condensed.recover(nodes, outer, constant)
+        stages, algebraic = self.eliminated.recover(nodes, outer, constant)
         return Increment.of(self.orbit, nodes, stages, algebraic, outer[:k], outer[k:])
 
 
-def chain(condensed: Condensed) -> Array:
+def chain(eliminated: Eliminated) -> Array:
     """Return the affine maps (1, dx_0, dy) -> dx_j, shape (N+1, n, 1+n+q)."""
-    count, n, width = condensed.step.shape
-    if condensed.compiled is not None and n <= SMALL:
-        return condensed.compiled.chain(condensed.step)
+    count, n, width = eliminated.step.shape
+    if eliminated.compiled is not None and n <= PAIRED_UP_TO:
+        return eliminated.compiled.chain(eliminated.step)
     first = np.zeros((1, n, width))
     first[0, :, 1 : 1 + n] = np.eye(n)
-    if n <= SMALL and np.array_equal(condensed.origin, np.arange(count)):
-        return np.concatenate([first, _chained(condensed.step)])
+    if n <= PAIRED_UP_TO and np.array_equal(eliminated.origin, np.arange(count)):
+        return np.concatenate([first, _chained(eliminated.step)])
     maps = np.concatenate([first, np.empty((count, n, width))])
     for j in range(count):
-        maps[j + 1 : j + 2] = _after(condensed.step[j : j + 1], maps[condensed.origin[j]][None])
+        maps[j + 1 : j + 2] = _after(eliminated.step[j : j + 1], maps[eliminated.origin[j]][None])
     return maps
 
 
@@ -241,10 +242,10 @@ def between_any(steps: Array) -> float:
 
 
 def _after_bounded(before: Array, step: Array) -> Array:
-    """A product of two matrices, scaled down to MOST if it is larger."""
+    """A product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
     product = step @ before
     size = float(np.abs(product).max())
-    return product if size <= MOST else product * (MOST / size)
+    return product if size <= LARGEST_FUNDAMENTAL else product * (LARGEST_FUNDAMENTAL / size)
 
 
 def onto_start(row: Row, maps: Array) -> Array:

@@ -14,7 +14,7 @@ STEEP = 5.0
 """Rates of the states, in sizes a rad, from which on an orbit with kinks is steep."""
 
 BRIEF = 0.02
-"""Excursions (rad) about as short are told apart by their lengths as well: beside a touch an orbit hardly
+"""Excursions (rad) about as short are told apart by their lengths as well: beside a grazing an orbit hardly
 changes while they grow by decades."""
 
 E_FOLD = 0.03
@@ -165,12 +165,17 @@ class Increment:
         return float(states) / size**2 + outer(self, other, scale) + float(lengths)
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
-        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points."""
+        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points.
+
+        With the event nodes where these are the same: beside a grazing excursions' lengths alone tell how far
+        along a branch an orbit is.
+        """
         at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later
         wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
         profile = np.stack([np.interp(wrapped, at, column) for column in self.profile.T], axis=1)
-        blank = parameter_only(new, self.parameter)
-        return type(self)(blank.nodes, blank.stages, blank.algebraic, blank.phases, self.parameters, profile)
+        blank, same = parameter_only(new, self.parameter), new.mesh.events == old.mesh.events and not later
+        phases = self.phases if same else blank.phases
+        return type(self)(blank.nodes, blank.stages, blank.algebraic, phases, self.parameters, profile)
 
     def save(self) -> dict[str, Array]:
         """Return the arrays by name."""

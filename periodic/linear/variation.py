@@ -75,6 +75,12 @@ class Variations(Protocol):
     def multipliers(self) -> Complex:
         """The multipliers that are known, in no order."""
 
+    def outside(self, radius: float) -> int:
+        """Return how many multipliers have a modulus larger than `radius`, those not known included.
+
+        Raises FloatingPointError where it cannot be told.
+        """
+
     def multiplier(self, which: int, factor: complex, free: tuple[int, ...]) -> Row:
         """Return the gradient of Re(factor mu) of a simple multiplier, by its index in `multipliers`."""
 

@@ -37,12 +37,12 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
         further, values = _column(_owner(task, name), [outcome.numbers.get(name) for outcome in outcomes])
         values = values.reshape(*shape, *values.shape[1:])
         data[name] = ((*over, *further), values, {"units": units.get(name, "")})
-    told: dict[str, Any] = {
+    statements: dict[str, Any] = {
         "status": np.array([_status(outcome) for outcome in outcomes], dtype=object),
         "reason": np.array([outcome.reason for outcome in outcomes], dtype=object),
         **{name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in TOLD[2:]},
     }
-    data |= {name: (over, values.reshape(shape), {}) for name, values in told.items()}
+    data |= {name: (over, values.reshape(shape), {}) for name, values in statements.items()}
     data["seconds"][2]["units"] = "s"
     known = {p.name: p.unit for p in task.system.parameters}
     axes = {name: (dim, np.array(v), {"units": known[name]}) for name, (dim, v) in laid.coordinates.items()}

@@ -107,7 +107,7 @@ class Run:
         return f"{why} after {len(self.found)} of {self.plan.total} cells, which are in its `found`{kept}"
 
 
-def map(  # noqa: A001
+def design_map(
     task: Task,
     grid: Mapping[str, Sequence[float]] | Grid | Adaptive,
     executor: Executor | int | None = None,

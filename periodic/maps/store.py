@@ -36,7 +36,7 @@ TABLE = """CREATE TABLE IF NOT EXISTS chunks
 RARELY = 20.0
 """How much longer than writing the file the work before takes, for it to be written between chunks."""
 
-LEAST = 10.0
+LEAST_SECONDS = 10.0
 """Seconds between two times, at least."""
 
 
@@ -181,7 +181,7 @@ class Store:
 
     def due(self) -> bool:
         """Whether it is time to write what there is so far."""
-        return perf_counter() - self._written > max(LEAST, RARELY * self._cost)
+        return perf_counter() - self._written > max(LEAST_SECONDS, RARELY * self._cost)
 
     def write(self, data: xr.Dataset, complete: bool) -> None:
         """Write the NetCDF file, in one move; when it is complete the journal goes.

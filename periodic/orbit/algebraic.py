@@ -8,9 +8,9 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
 
-ITERATIONS = 12
-CLOSE = 1e-10
-LONGEST = 5.0
+UNKNOWN_ITERATIONS = 12
+UNKNOWN_INCREMENT = 1e-10
+LONGEST_STEP = 5.0
 
 
 def solve_algebraic(
@@ -34,19 +34,19 @@ def solve_algebraic(
     Returns
     -------
     ndarray, shape (K, m)
-        z, after ITERATIONS iterations at most.
+        z, after UNKNOWN_ITERATIONS iterations at most.
     """
     n, algebraic = state.shape[1], guess
     if algebraic.shape[1] == 0:
         return algebraic
-    for _ in range(ITERATIONS):
+    for _ in range(UNKNOWN_ITERATIONS):
         line = system.linearise(rate, state, algebraic, tau, parameter)
         finite = np.isfinite(line.residual).all(axis=1) & np.isfinite(line.d_algebraic).all(axis=(1, 2))
         change = np.zeros_like(algebraic)
         rows = line.d_algebraic[finite, n:]
         change[finite] = np.linalg.solve(rows, line.residual[finite, n:, None])[..., 0]
-        algebraic = algebraic - np.clip(change, -LONGEST, LONGEST)
-        if np.abs(change).max() < CLOSE:
+        algebraic = algebraic - np.clip(change, -LONGEST_STEP, LONGEST_STEP)
+        if np.abs(change).max() < UNKNOWN_INCREMENT:
             break
     return algebraic
 

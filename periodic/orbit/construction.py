@@ -1,20 +1,22 @@
-"""Orbits made otherwise than by solving: constants, and orbits on another mesh or in other scales."""
+"""Orbits that need no solving: constants, and orbits carried to another mesh or to other scales."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from periodic.checks import number
 from periodic.orbit.layout import Layout, layout_of
-from periodic.orbit.mesh import Mesh
+from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.scheme import Array
-from periodic.system import System, check_system
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import System, VariableLike, check_system
 
 
 def as_read_by(system: System, orbit: Orbit) -> Orbit:
-    """Return an orbit in the scales of a system: itself, as a rule.
+    """Return an orbit in the scales of a system; the same one if it has them already.
 
     Parameters
     ----------
@@ -59,6 +61,41 @@ def at_rest(system: System, mesh: Mesh, parameter: Array) -> Orbit:
         The orbit.
     """
     return constant(mesh, *system.rest(parameter), parameter, layout_of(system))
+
+
+def standing_at(system: System, values: Mapping[str, float]) -> Orbit:
+    """Return an equilibrium at nominal parameters, with some states and unknowns given by name: a guess.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    values : mapping of str to float
+        Values (SI) by name; the others are at rest.
+
+    Returns
+    -------
+    Orbit
+        A constant orbit, marked as an equilibrium.
+
+    Raises
+    ------
+    ValueError
+        For a name that is no state or unknown, and a value that is no finite number.
+    """
+    parameter = np.array(system.nominal, dtype=float)
+    rest = np.concatenate(system.rest(parameter))
+    variables: list[VariableLike] = [*system.states, *system.algebraics]
+    names = [variable.name for variable in variables]
+    for name, value in values.items():
+        if name not in names:
+            raise ValueError(f"guess has {name!r}; it must be one of {', '.join(names)}")
+        if not np.isfinite(number(f"guess of {name}", value)):
+            raise ValueError(f"guess of {name} is {value}; it must be a finite number")
+        rest[names.index(name)] = value / variables[names.index(name)].scale
+    n = len(system.states)
+    still = constant(uniform(Scheme(), 1), rest[:n], rest[n:], parameter, layout_of(system))
+    return replace(still, equilibrium=True)
 
 
 def constant(

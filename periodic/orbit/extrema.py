@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,6 +115,48 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
         return Extremes(values, values, np.zeros_like(values), np.zeros_like(values))
     compiled = native.extremes(system, orbit)
     return _searched(system, orbit) if compiled is None else Extremes(*compiled)
+
+
+LEAST_PEAK_TO_PEAK = 1e-6
+"""Peak to peak of an output, as a part of its size, with which errors are compared at the least."""
+
+
+def apart(system: System, orbit: Orbit, found: Extremes, better: Callable[[], Orbit]) -> float:
+    """Return how far an orbit's extremes are at the most from those of a better one, over the peak to peak.
+
+    They are compared at their phases, where it does not matter to first order that those of the better orbit
+    are others; and as far beside them as its events are from the orbit's: outputs jump or have kinks there.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    orbit : Orbit
+        The orbit.
+    found : Extremes
+        Its extremes.
+    better : callable
+        Returns the same orbit on a finer mesh.
+
+    Returns
+    -------
+    float
+        Of the outputs that are no states; 0 where all are.
+    """
+    states = {state.name for state in system.states}
+    own = [k for k, output in enumerate(system.outputs) if output.name not in states]
+    if not own:
+        return 0.0
+    low, high = found.minimum[own], found.maximum[own]
+    finer = better()
+    late = float(np.abs(finer.phases - orbit.phases).max(initial=0.0))
+    beside = np.array([-late, 0.0, late] if late else [0.0])
+    at = np.array([found.minimum_phase[own], found.maximum_phase[own]])[:, :, None] + beside
+    values = outputs(system, finer, at.ravel())[:, own].reshape(*at.shape, len(own))
+    same = np.einsum("ekbk->ekb", values)
+    errors = np.abs([same[0].min(axis=1) - low, same[1].max(axis=1) - high]).max(axis=0)
+    scale = np.maximum(high - low, LEAST_PEAK_TO_PEAK * np.maximum(np.abs(low), np.abs(high)))
+    return float(np.max(errors / np.where(scale > 0, scale, 1.0)))
 
 
 def _searched(system: System, orbit: Orbit) -> Extremes:

@@ -30,11 +30,15 @@ class EventNode:
         -1 for falling, +1 for rising.
     level : float
         0 for the kink itself; other levels mark one that lies close by.
+    modes : tuple of (int, int)
+        Surfaces, by the index of their guard, with the modes that they have from there on, where the passage
+        itself does not say so: sticking that begins, and what an impact or another's event brings about.
     """
 
     switch: int
     direction: int
     level: float = 0.0
+    modes: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,12 +81,16 @@ class Mesh:
         What the segments start at; none where there is one segment from 0.
     period : float
         Period in tau (rad), a multiple of 2 pi.
+    modes : tuple of (int, int)
+        Modes of surfaces that no event node changes, by the index of their guard, where the orbit does not
+        say them.
     """
 
     scheme: Scheme
     breaks: tuple[Array, ...]
     events: tuple[EventNode, ...] = ()
     period: float = 2 * np.pi
+    modes: tuple[tuple[int, int], ...] = ()
 
     def __getstate__(self) -> dict[str, object]:
         return {f.name: getattr(self, f.name) for f in fields(self)}
@@ -208,6 +216,7 @@ class Mesh:
             Whether it has.
         """
         same = len(self.breaks) == len(other.breaks) and self.events == other.events
+        same = same and self.modes == other.modes
         return same and all(np.array_equal(a, b) for a, b in zip(self.breaks, other.breaks, strict=True))
 
     def bisected(self) -> Mesh:
@@ -223,7 +232,7 @@ class Mesh:
     @cached_property
     def _bisected(self) -> Mesh:
         halves = tuple(np.sort(np.concatenate([b, (b[1:] + b[:-1]) / 2])) for b in self.breaks)
-        return Mesh(self.scheme, halves, self.events, self.period)
+        return Mesh(self.scheme, halves, self.events, self.period, self.modes)
 
 
 def uniform(scheme: Scheme, ntst: int, period: float = 2 * np.pi) -> Mesh:

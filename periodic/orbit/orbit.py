@@ -67,8 +67,8 @@ class Orbit:
     def _repr_html_(self) -> str:
         if self.equilibrium or self.layout is None:
             return paragraph(repr(self))
-        told = f"{self!r}: period {self.period:.9g} s, Omega {self.omega:.9g} rad/s"
-        return orbit_html(told, [self[name] for name in self.names], self.period)
+        caption = f"{self!r}: period {self.period:.9g} s, Omega {self.omega:.9g} rad/s"
+        return orbit_html(caption, [self[name] for name in self.names], self.period)
 
     def __getitem__(self, name: str) -> Signal:
         """Return a signal in SI units over time in s.

@@ -16,13 +16,13 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System, index_of, resets_of
 
 PER_PERIOD = 96
-"""Intervals in each period of the excitation, of equal length as far as these show the samples."""
+"""Equal intervals in each period of the excitation, used where they resolve the samples."""
 
 GRADED = 384
-"""Intervals in each period, between samples, of a motion that the equal ones do not show."""
+"""Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
 
-SMALL = 1e-6
-"""Peak to peak (scaled) that samples are compared with at the least."""
+LEAST_PEAK_TO_PEAK = 1e-6
+"""Least peak to peak (scaled) that samples are compared with."""
 
 APART = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
@@ -30,7 +30,7 @@ APART = 1e-9
 SHOWN = 0.01
 """Largest distance of the samples from the orbit, in peaks to peak."""
 
-LEAST = 4
+LEAST_INTERVALS = 4
 """Fewest intervals between two impacts."""
 
 
@@ -106,18 +106,18 @@ def sampled(
 
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:
-    """The orbit on equal intervals, or on those of the samples' own where equal ones jump over something."""
+    """The orbit on equal intervals, or on intervals that end at samples where equal ones miss something."""
     even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     orbit = _on(even, phase, state, algebraic, parameter)
     missed = np.abs(orbit.state(phase) - state).max(axis=0)
-    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), SMALL)).all():
+    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)).all():
         return orbit
     return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
 
 
 def _graded(phase: Array, state: Array, ntst: int) -> Mesh:
     """Intervals that end at samples, of about equal arclength over phase and scaled states."""
-    sizes = np.maximum(np.ptp(state, axis=0), SMALL)
+    sizes = np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)
     steps = np.diff(np.column_stack([FORCED * state / sizes, phase]), axis=0)
     length = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))
     chosen = np.unique(np.searchsorted(length, np.linspace(0, length[-1], ntst + 1)))
@@ -159,7 +159,7 @@ def _through_impacts(
     x, z = (np.concatenate([a[first:], a[1:first]]) for a in (state, algebraic))
     cuts = [0, *(second[1:] - first), len(tau)]
     lengths = np.diff(np.append(phase[second], phase[first] + period))
-    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST)
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST_INTERVALS)
     breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
     mesh = Mesh(Scheme(), breaks, events, period)
     grid = mesh.grid(phase[second])

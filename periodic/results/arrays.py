@@ -77,6 +77,7 @@ def _per_point(points: Sequence[Point]) -> dict[str, list[Any]]:
         "error_estimate": [p.error.orbit for p in points],
         "multiplier_error": [p.error.multiplier for p in points],
         "parameter_error": [p.error.parameter for p in points],
+        "peak_error": [p.error.peaks for p in points],
         "residual": [p.residual for p in points],
         "newton_iterations": [p.iterations for p in points],
         "slope": [p.slope for p in points],
@@ -216,9 +217,15 @@ def _checkpoints(values: np.ndarray, said: list[dict[str, Any]]) -> tuple[Checkp
     return tuple(found)
 
 
+def _number_or_nan(arrays: Arrays, name: str, i: int) -> float:
+    """A number of a point; NaN where a file is older than it."""
+    return float(arrays[name][i]) if name in arrays else np.nan
+
+
 def _point(arrays: Arrays, i: int, orbit: Orbit, labels: dict[str, Label], columns: list[str]) -> Point:
     assert orbit.layout is not None
     names = [q.name for q in orbit.layout.outputs]
+    known = _number_or_nan(arrays, "peak_error", i)
 
     def number(name: str) -> float:
         return float(arrays[name][i])
@@ -233,7 +240,9 @@ def _point(arrays: Arrays, i: int, orbit: Orbit, labels: dict[str, Label], colum
         multipliers=known_of(arrays["multiplier_real"][i] + 1j * arrays["multiplier_imag"][i]),
         minimum=by_name(names, "minimum"),
         maximum=by_name(names, "maximum"),
-        error=ErrorEstimate(*map(number, ("error_estimate", "multiplier_error", "parameter_error"))),
+        error=ErrorEstimate(
+            *map(number, ("error_estimate", "multiplier_error", "parameter_error")), peaks=known
+        ),
         residual=number("residual"),
         iterations=int(number("newton_iterations")),
         slope=number("slope"),

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from periodic.bifurcations.curves.noted import noted
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
+from periodic.bifurcations.twoparameter.remarks import noted
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
@@ -153,8 +153,8 @@ class Branch(Record):
     def _missed(self) -> str:
         values = self.values
         missed = [v for v in self.made.get("at", ()) if not np.isclose(values, v, rtol=1e-9, atol=0).any()]
-        told = ", ".join(f"{value:.10g}" for value in missed)
-        return f"no point at {self.parameter} = {told}: the branch does not pass there" if told else ""
+        listed = ", ".join(f"{value:.10g}" for value in missed)
+        return f"no point at {self.parameter} = {listed}: the branch does not pass there" if listed else ""
 
     @property
     def values(self) -> Array:

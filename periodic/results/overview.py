@@ -39,8 +39,8 @@ def branch_html(record: Record, stable_between: np.ndarray, said: tuple[str, ...
     special = [p for p in record.points if p.label is not Label.NONE]
     rows = [_row(record, point) for point in special[:ROWS]]
     more = [f"and {len(special) - ROWS} special points more"] if len(special) > ROWS else []
-    told = "".join(map(paragraph, (*more, *said)))
-    return beside(table(_headings(record), rows), _picture(record, stable_between)) + told
+    notes = "".join(map(paragraph, (*more, *said)))
+    return beside(table(_headings(record), rows), _picture(record, stable_between)) + notes
 
 
 def _headings(record: Record) -> list[str]:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.bifurcations.codim2 import marginal
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
+from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
-from periodic.orbit.extrema import extrema
+from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import CONSERVED, LOST, ROUNDING, without_trivial
+from periodic.stability.multipliers import CONSERVED, LOST, ROUNDING, without_trivial
 
 SHOWN = 8
 """Multipliers that a notebook shows."""
@@ -185,9 +185,9 @@ def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
 
 def describe(solution: Solution, label: Label, event: str, columns: dict[str, float]) -> Point:
     """Return what is said of a solution: label, the user's name of an event, columns, and all the rest."""
-    problem, orbit = solution.problem, solution.problem.seen(solution.orbit)
-    found = extrema(problem.shown, orbit)
-    names = [output.name for output in problem.shown.outputs]
+    problem, orbit = solution.problem, solution.problem.expand(solution.orbit)
+    found = extrema(problem.full, orbit)
+    names = [output.name for output in problem.full.outputs]
     multipliers = solution.spectrum.multipliers
     order = -multipliers.real if orbit.equilibrium else -np.abs(multipliers)
     return Point(
@@ -197,7 +197,7 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         multipliers=multipliers[np.argsort(order, kind="stable")],
         minimum=dict(zip(names, map(float, found.minimum), strict=True)),
         maximum=dict(zip(names, map(float, found.maximum), strict=True)),
-        error=solution.error,
+        error=_with_peaks(solution, found),
         residual=solution.correction.residual,
         iterations=solution.correction.iterations,
         slope=solution.tangent.parameter,
@@ -207,6 +207,16 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
         event=event,
         columns=columns,
     )
+
+
+def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
+    """The errors with that of the outputs' extremes."""
+    problem, other, better = solution.problem, solution.estimated, solution.error.better
+    if better is None:
+        return solution.error
+    orbit = problem.expand(other.orbit)
+    own = found if other is solution else extrema(problem.full, orbit)
+    return replace(solution.error, better=None, peaks=apart(problem.full, orbit, own, better))
 
 
 def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:

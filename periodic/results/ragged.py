@@ -61,6 +61,9 @@ def orbit_tables(orbits: Sequence[Orbit], layout: Layout) -> Tables:
         "parameters": (("point", "parameter"), _rows([o.parameter for o in orbits], (p,))),
         "period": (("point",), np.array([o.mesh.period for o in orbits], dtype=float)),
         "equilibrium": (("point",), np.array([o.equilibrium for o in orbits], dtype=bool)),
+        "held_count": (("point",), counts([len(o.mesh.modes) for o in orbits])),
+        "held_surface": (("held",), counts([k for o in orbits for k, _ in o.mesh.modes])),
+        "held_mode": (("held",), counts([mode for o in orbits for _, mode in o.mesh.modes])),
         "segment_count": (("point",), counts([len(o.mesh.breaks) for o in orbits])),
         "event_count": (("point",), counts([len(o.mesh.events) for o in orbits])),
         "break_count": (("segment",), counts([len(b) for b in breaks])),
@@ -68,6 +71,9 @@ def orbit_tables(orbits: Sequence[Orbit], layout: Layout) -> Tables:
         "event_switch": (("event",), counts([a.switch for a in events])),
         "event_direction": (("event",), counts([a.direction for a in events])),
         "event_level": (("event",), np.array([a.level for a in events], dtype=float)),
+        "event_modes": (("event",), counts([len(a.modes) for a in events])),
+        "mode_surface": (("mode",), counts([k for a in events for k, _ in a.modes])),
+        "mode_value": (("mode",), counts([mode for a in events for _, mode in a.modes])),
         "event_phase": (("event",), _rows([o.phases for o in orbits])),
         "node_state": (("node", "state"), _rows([o.nodes for o in orbits], (n,))),
         "stage_state": (("stage", "state"), _rows([o.stages for o in orbits], (n,))),
@@ -131,13 +137,36 @@ def orbits_of(arrays: Arrays, said: Mapping[str, Any], layout: Layout) -> list[O
 def _meshes(arrays: Arrays, scheme: Scheme) -> list[Mesh]:
     breaks = _cut(arrays["sigma"], arrays["break_count"])
     columns = zip(*(arrays[f"event_{name}"] for name in ("switch", "direction", "level")), strict=True)
-    events = [EventNode(int(switch), int(way), float(level)) for switch, way, level in columns]
+    modes = _modes(arrays)
+    events = [
+        EventNode(int(switch), int(way), float(level), own)
+        for (switch, way, level), own in zip(columns, modes, strict=True)
+    ]
     segments = _spans(arrays["segment_count"], len(breaks))
     tied = _spans(arrays["event_count"], len(events))
     return [
-        Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period))
-        for own, ties, period in zip(segments, tied, arrays["period"], strict=True)
+        Mesh(scheme, tuple(breaks[own]), tuple(events[ties]), float(period), held)
+        for own, ties, period, held in zip(segments, tied, arrays["period"], _held(arrays), strict=True)
     ]
+
+
+def _held(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:
+    """The modes of surfaces that no event node changes; none in files that were written before."""
+    if "held_count" not in arrays:
+        return [()] * len(arrays["period"])
+    both = zip(arrays["held_surface"], arrays["held_mode"], strict=True)
+    pairs = [(int(k), int(mode)) for k, mode in both]
+    return [tuple(pairs[span]) for span in _spans(arrays["held_count"], len(pairs))]
+
+
+def _modes(arrays: Arrays) -> list[tuple[tuple[int, int], ...]]:
+    """The modes of event nodes; none in files that were written before there were any."""
+    if "event_modes" not in arrays:
+        return [()] * len(arrays["event_switch"])
+    pairs = [
+        (int(k), int(mode)) for k, mode in zip(arrays["mode_surface"], arrays["mode_value"], strict=True)
+    ]
+    return [tuple(pairs[span]) for span in _spans(arrays["event_modes"], len(pairs))]
 
 
 def _cut(array: np.ndarray, counts: Sequence[int] | np.ndarray) -> list[np.ndarray]:

@@ -1,4 +1,4 @@
-"""What one continuation leaves: the numbers of a branch, without ways to read them."""
+"""The numbers of a branch that one continuation leaves, without methods to read them."""
 
 from __future__ import annotations
 

@@ -24,10 +24,10 @@ from periodic.system import Flowing
 
 
 @dataclass(frozen=True)
-class Condensed:
+class SegmentMaps:
     """Maps from (1, dx_origin, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w), algebraic
     (N, ncol, m, w). residual is the largest gap between segments. Fulfils
-    `periodic.linear.bordering.Condensed`.
+    `periodic.linear.bordering.Eliminated`.
     """
 
     orbit: Orbit
@@ -65,9 +65,9 @@ def starts(ntst: int, segments: int) -> NDArray[np.int_]:
     return np.unique(np.linspace(0, ntst, segments + 1).astype(int))
 
 
-def condense(
+def segment_maps(
     system: Flowing, orbit: Orbit, free: tuple[int, ...], segments: int, tolerance: float
-) -> Condensed:
+) -> SegmentMaps:
     """Integrate all segments of an orbit on a mesh without event nodes, with their derivatives.
 
     The result's orbit has the flow's values everywhere but where segments start. Raises ArithmeticError where
@@ -94,7 +94,7 @@ def condense(
         step[last - 1, :, 0] = state[-1, -1] - nodes[last]
     origin = np.repeat(bounds[:-1], np.diff(bounds))
     flowed = replace(orbit, nodes=nodes, stages=stages, algebraic=algebraic)
-    return Condensed(flowed, origin, step, by_stage, by_unknown, float(np.abs(step[:, :, 0]).max()))
+    return SegmentMaps(flowed, origin, step, by_stage, by_unknown, float(np.abs(step[:, :, 0]).max()))
 
 
 def _phases(orbit: Orbit, part: slice) -> Array:

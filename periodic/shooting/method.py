@@ -13,23 +13,24 @@ from typing import cast
 import numpy as np
 
 from periodic.checks import number, whole
-from periodic.collocation.method import check_intervals, check_scheme, scheme_for
+from periodic.collocation.meshed import check_intervals, check_scheme, scheme_for
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement, wanted_ntst
 from periodic.correction.newton import Correction
 from periodic.correction.problem import Problem
+from periodic.correction.refinement import Refinement
 from periodic.linear.bordering import Chain
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import Mesh, uniform
 from periodic.orbit.orbit import Orbit
-from periodic.orbit.redistribution import redistribute
 from periodic.orbit.scheme import Array, Scheme
-from periodic.shooting.flow import condense
+from periodic.refinement.demand import wanted_ntst
+from periodic.refinement.equidistribution import redistribute
+from periodic.shooting.flow import segment_maps
 from periodic.stability.graded import spectrum_of
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import Flowing, System, check_continuous
 
 TIGHTER = 0.1
@@ -109,7 +110,7 @@ class Shooting(Discretisation):
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the conditions that the trajectories join, from a flow with its derivatives."""
-        return Chain(condense(_flowing(system), orbit, free, self.segments, self.tolerance))
+        return Chain(segment_maps(_flowing(system), orbit, free, self.segments, self.tolerance))
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the orbit interpolated onto the mesh."""
@@ -122,7 +123,7 @@ class Shooting(Discretisation):
 
         def tighter(system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
             tolerance = TIGHTER * self.tolerance
-            return Chain(condense(_flowing(system), orbit, free, self.segments, tolerance))
+            return Chain(segment_maps(_flowing(system), orbit, free, self.segments, tolerance))
 
         kinked = bool(problem.system.switches)
         return deferred(tighter, problem, correction.orbit, tangent, spectrum, kinked=kinked)

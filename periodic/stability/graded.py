@@ -19,8 +19,8 @@ import numpy as np
 
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
+from periodic.stability.multipliers import LOST, Complex, Spectrum
 from periodic.stability.product import ROUNDING, multipliers
-from periodic.stability.spectrum import LOST, Complex, Spectrum
 
 FLOW = 1e3
 """Growth of motions above which the flow is taken out: one of 1e6 leaves six digits less of the others."""
@@ -73,7 +73,9 @@ class GradedSpectrum(Spectrum):
         if not isinstance(operator, Stepping):
             return super().apart(monodromy)
         own, other = (self._sorted(stepping) / self.radius for stepping in (self.stepping, operator))
-        return float(max(abs((other**power).sum() - (own**power).sum()) / power for power in (1, 2)))
+        with np.errstate(over="ignore", invalid="ignore"):  # far larger ones are infinitely far
+            sums = [abs((other**power).sum() - (own**power).sum()) / power for power in (1, 2)]
+        return float(np.nan_to_num(max(sums), nan=np.inf))
 
     def _sorted(self, stepping: Stepping) -> Complex:
         """The multipliers, largest modulus first."""

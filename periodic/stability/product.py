@@ -34,7 +34,7 @@ ROUNDING = float(np.finfo(float).eps)
 TINY = float(np.finfo(float).tiny)
 """What grows by less in an interval is gone, as where a motion begins to stick."""
 
-MOST = 300 * np.log(10.0)
+LARGEST_LOGARITHM = 300 * np.log(10.0)
 """Larger multipliers (a logarithm) are given as this one."""
 
 
@@ -95,7 +95,7 @@ def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
         sizes = np.maximum(np.abs(factors[:, 0, 0]), TINY)
         total = float(np.log(sizes).sum())
         sign = turn[0, 0] * np.prod(np.sign(factors[:, 0, 0]))
-        return np.array([sign * np.exp(min(total, MOST))], dtype=np.complex128)
+        return np.array([sign * np.exp(min(total, LARGEST_LOGARITHM))], dtype=np.complex128)
     product, logarithm = np.eye(len(turn)), 0.0
     for factor in factors:
         product = factor @ product
@@ -104,5 +104,5 @@ def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
     values = np.linalg.eigvals(turn @ product)
     sizes = np.abs(values)
     known = np.log(np.maximum(sizes, TINY)) + logarithm
-    values = values * np.exp(np.minimum(known, MOST) - np.log(np.maximum(sizes, TINY)))
+    values = values * np.exp(np.minimum(known, LARGEST_LOGARITHM) - np.log(np.maximum(sizes, TINY)))
     return values[np.argsort(-np.abs(values), kind="stable")].astype(np.complex128)

@@ -20,7 +20,7 @@ import numpy as np
 
 from periodic.checks import positive
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Complex, Pair, Spectrum, nearest
+from periodic.stability.multipliers import Complex, Pair, Spectrum, nearest
 
 ORDER = 4
 """What a cubic does not show goes with this power of the step."""
@@ -75,7 +75,7 @@ class Motion:
 class Turn:
     """How far multipliers turn in a step and would in the next one as long, where 1 is the most."""
 
-    strain: float
+    ratio: float
     ahead: float
 
 
@@ -96,8 +96,8 @@ def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
     if not ways:
         return Turn(0.0, 0.0)
     unseen = np.array(excited) * _unseen(np.array(begins), np.array(ways)) / limits.visible
-    strain, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
-    return Turn(strain, ahead)
+    ratio, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
+    return Turn(ratio, ahead)
 
 
 def _excitation(pair: Pair, way: complex, change: Array) -> float:
@@ -132,7 +132,7 @@ def _nearest(argument: Array, turn: Array) -> Array:
     return np.asarray(np.where(past < last, (math.tau * past - argument) / turn, 0.0))
 
 
-def passages(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
+def pair_crossings(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[float, float]]:
     """Return where pairs turn past `sign` (+1 or -1) between two orbits, as parts of the way, and moduli.
 
     Of a pair that seems to turn by more than half a turn it is not sure which way it goes: both are taken.

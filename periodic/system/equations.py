@@ -53,17 +53,28 @@ class LinearisationLike(Protocol):
     """Residual (N, n+m) and its derivatives; the m algebraic rows come last."""
 
     @property
-    def residual(self) -> Array: ...
+    def residual(self) -> Array:
+        """R, shape (N, n+m)."""
+
     @property
-    def d_rate(self) -> Array: ...
+    def d_rate(self) -> Array:
+        """Derivatives in x', shape (N, n+m, n)."""
+
     @property
-    def d_state(self) -> Array: ...
+    def d_state(self) -> Array:
+        """Derivatives in x, shape (N, n+m, n)."""
+
     @property
-    def d_algebraic(self) -> Array: ...
+    def d_algebraic(self) -> Array:
+        """Derivatives in z, shape (N, n+m, m)."""
+
     @property
-    def d_phase(self) -> Array: ...
+    def d_phase(self) -> Array:
+        """Derivatives in tau, shape (N, n+m)."""
+
     @property
-    def d_parameter(self) -> Array: ...
+    def d_parameter(self) -> Array:
+        """Derivatives in the free parameters, shape (N, n+m, q)."""
 
 
 class System(Protocol):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from periodic.system.arrays import Array
@@ -51,6 +52,28 @@ class TrajectoryLike(Protocol):
     def state(self) -> Array: ...
     @property
     def algebraic(self) -> Array: ...
+
+
+class Happened(Protocol):
+    """A change of mode of a surface, by its index, at a phase; an impact leaves its own mode as it is."""
+
+    @property
+    def surface(self) -> int: ...
+    @property
+    def before(self) -> int: ...
+    @property
+    def after(self) -> int: ...
+    @property
+    def phase(self) -> float: ...
+
+
+class Followed(TrajectoryLike, Protocol):
+    """A trajectory that tells what happened on its way, and the modes of all surfaces at its end."""
+
+    @property
+    def events(self) -> Sequence[Happened]: ...
+    @property
+    def modes(self) -> Sequence[int]: ...
 
 
 class Moving(System, Protocol):

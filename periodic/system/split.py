@@ -33,7 +33,7 @@ class LinearPart(Protocol):
 
     `states` are the indices of the states that it gives, `forces` those of the unknowns that act on it. The
     system's own rows say nothing of these states: as many of its n differential rows are empty. `velocities`
-    are those of them in which all modes are heard.
+    are those of them to which all modes contribute.
     """
 
     @property

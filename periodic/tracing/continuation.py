@@ -13,13 +13,13 @@ from functools import cached_property
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.ledger import entry, gaps
+from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
 from periodic.bifurcations.locate import Sought, special_points
-from periodic.bifurcations.stretch import RejectedError
 from periodic.bifurcations.testfunction import Course, margins
-from periodic.bifurcations.turning import Found, at_once
+from periodic.bifurcations.turningpoint import Found, at_once
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -28,16 +28,17 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
+from periodic.tracing.rereading import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.steps.passage import Reached, crossed, standing
+from periodic.tracing.steps.patternchange import Reached, crossed, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
 NEARLY = 1e-2
-"""How near to where the method's reach ends, or to what is not accounted for, a branch is followed, in first
-steps."""
+"""Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
+not resolve, or towards a change that no special point accounts for."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,7 @@ class Continuation:
                 f"guess takes {base.orbit.periods} excitation periods, but its orbit repeats itself sooner; "
                 f"it must be sampled over as many as it takes"
             )
-        self.watch.check(solver.problem.shown, base.orbit)
+        self.watch.check(solver.problem.full, base.orbit)
         yield self._emitted(base, Label.END)
         if base.value in self.user:
             yield self._emitted(base, Label.USER)
@@ -196,7 +197,7 @@ class Continuation:
         Point
             Those that follow.
         """
-        c, last = checkpoint, self.solver.problem.solved(points[-1].orbit)
+        c, last = checkpoint, self.solver.problem.restrict(points[-1].orbit)
         self.stop, self.collected = None, points
         try:
             begun = Start(self.solver, self._follow, self.search).found(self.start, float(c.sign))
@@ -242,6 +243,10 @@ class Continuation:
         while self.state.steps + 1 < self.control.max_points:
             step = self._taken(base)
             if step is None:
+                if self._reread(self.state.last):
+                    yield self.collected[-1]
+                    base = self._prepared(self.state.last)
+                    continue
                 yield self._emitted(base, Label.FAILED)
                 return
             for special in step.special:
@@ -264,13 +269,13 @@ class Continuation:
     def _taken(self, base: Solution) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
         assert self.state is not None
-        ds, begin = self.state.ds, self.state.begun.value
+        ds, begin, origin = self.state.ds, self.state.begun.value, base
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
         sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
-        touching = standing(self.solver, base, ds) if self.state.steps == 0 else None
-        if touching is not None:
-            return Step(base, ds, [], Course(), touching)
+        at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
+        if at_grazing is not None:
+            return Step(base, ds, [], Course(), at_grazing)
         longest = np.inf  # the next one is no longer where a longer one has just failed
         while True:
             try:
@@ -278,8 +283,10 @@ class Continuation:
                 base, new, length = tried.base, tried.new, tried.ds
                 final = tried.change is not None and tried.change.change.final
                 found = special_points(self.solver, base, new, length, replace(sought, final=final))
-                self._check_balance(base, new, found, length)
-                further = min(control.next_size(length, new.correction.iterations, tried.strain), longest)
+                self._check_balance(origin, new, found, length)
+                further = min(
+                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
+                )
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:
@@ -290,15 +297,21 @@ class Continuation:
                     return None
 
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
-        """Reject a step of which not every change is accounted for, unless it is short already."""
+        """Reject a step of which not every change is accounted for, unless it is short already.
+
+        From the base as it was, not as it is on the mesh of the step's end.
+        """
         ends = any(point.label is Label.END or point.shrunk for point in found)
         if ends or ds <= NEARLY * self.control.ds:
             return
         points = [entry(point.solution, point.label) for point in found]
-        ledger = [entry(base, Label.NONE), *points, entry(new, Label.NONE)]
-        unaccounted = gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        unaccounted = self._unaccounted([entry(base, Label.NONE), *points, entry(new, Label.NONE)])
         if unaccounted:
             raise RejectedError(unaccounted[0].why)
+
+    def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
+        """What no labelled point accounts for between points in order along the branch."""
+        return gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -311,7 +324,7 @@ class Continuation:
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
-            bounds = self.solver.problem.bounds
+            bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
                 Stop.limit(special.name)
                 if own
@@ -331,7 +344,7 @@ class Continuation:
 
     def _emitted(self, solution: Solution, label: Label, event: str = "") -> Point:
         problem = self.solver.problem
-        columns = self.watch.measured(problem.shown, problem.seen(solution.orbit))
+        columns = self.watch.measured(problem.full, problem.expand(solution.orbit))
         point = describe(solution, label, event, columns)
         self.collected.append(point)
         return point
@@ -341,8 +354,8 @@ class Continuation:
         assert self.state is not None
         found = crossed(self.solver, at)
         if found is not None:
-            touching = found.solution if found.touches else at.end
-            named = [Found(label, 0.0, touching) for label in at_once(at.end, found.solution)]
+            at_grazing = found.solution if found.touches else at.end
+            named = [Found(label, 0.0, at_grazing) for label in at_once(at.end, found.solution)]
             for special in [] if found.touches else named:
                 yield from self._met(special)
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
@@ -355,8 +368,28 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
+        elif self._reread(at.end):
+            yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
+
+    def _reread(self, base: Solution) -> bool:
+        """Go on beyond a change that no rewrite is for, to an orbit whose word its own motion tells."""
+        assert self.state is not None
+        found = reread(self.solver, base, self.control.ds)
+        if found is None:
+            return False
+        self.stop = None
+        for label in at_once(base, found.solution):
+            self._counted(label.value)
+            self._emitted(found.solution, label)
+        self._emitted(found.solution, Label.NONE)
+        ds = min(max(found.distance, self.control.ds_min), self.control.ds)
+        kept, last = len(self.collected), found.solution
+        self.state = replace(
+            self.state, last=last, ds=ds, kept=kept, steps=self.state.steps + 1, course=Course()
+        )
+        return True
 
     def _completed(self, step: Step) -> None:
         """Keep a step: its end becomes the last solution."""
@@ -380,17 +413,18 @@ class Continuation:
 
     def _values(self, begin: float) -> Sequence[float]:
         """Values at which the branch gets a point: the user's, and where it may meet its own start."""
-        low, high = self.solver.problem.bounds
-        return sorted({*self.user, begin}) if low < begin < high else self.user
+        problem = self.solver.problem
+        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
 
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""
         self._since_remesh += 1
-        if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the touch
+        if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the grazing
             return new
         better = self._stepper.remeshed(new, self._since_remesh >= self.control.remesh_every)
-        if better is not new:
-            self._since_remesh = 0
+        if better is new or self._unaccounted([entry(found, Label.NONE) for found in (new, better)]):
+            return new  # on another mesh it may have passed a special point that lies as near
+        self._since_remesh = 0
         return better
 
     @cached_property

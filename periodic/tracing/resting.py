@@ -19,10 +19,10 @@ PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
 BALANCED = 1e-9
 """Scaled residual, over the largest of states and unknowns, below which a system is at rest."""
 
-ITERATIONS = 12
+LOAD_ITERATIONS = 12
 """Newton iterations for a load."""
 
-LEAST = 1e-4
+LEAST_LOAD_STEP = 1e-4
 """Smallest part of the load that is added at once."""
 
 
@@ -96,7 +96,7 @@ def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
         found = _solved(balance, point, (1.0 - part) * missing)
         if found is not None:
             point, borne, step = found, part, 2 * step
-        elif (step := step / 2) < LEAST:
+        elif (step := step / 2) < LEAST_LOAD_STEP:
             return None
     return point
 
@@ -104,7 +104,7 @@ def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
 def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
     """Return where the rows have a value, by Newton's method; None where it does not converge."""
     before = np.inf
-    for _ in range(ITERATIONS):
+    for _ in range(LOAD_ITERATIONS):
         residual, jacobian = balance.rows(point)
         residual = residual - load
         size = np.abs(residual).max(initial=0.0)

@@ -48,7 +48,7 @@ def made_with(setup: Setup) -> dict[str, Any]:
         if k not in problem.free
     }
     return {
-        "bounds": described(problem.bounds),
+        "bounds": described((problem.low, problem.high)),
         "at": described(setup.user),
         "tolerance": described(method.tolerance),
         "method": described(method.discretisation),
@@ -62,7 +62,7 @@ def made_with(setup: Setup) -> dict[str, Any]:
 
 def check(branch: Branch, setup: Setup) -> None:
     """Raise ResumeError for a branch of another system, or made with anything else."""
-    parameter, layout = setup.problem.parameter, layout_of(setup.problem.shown)
+    parameter, layout = setup.problem.parameter, layout_of(setup.problem.full)
     if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
         raise ResumeError(
             f"guess is a branch in {branch.parameter} with {len(branch)} points; it must be one in "

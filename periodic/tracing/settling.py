@@ -8,10 +8,11 @@ import numpy as np
 
 from periodic.condensed import settling as condensed
 from periodic.correction.outcome import FAILURES
+from periodic.events.motions import orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Moving, System, linear_of, slides_of
+from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -46,6 +47,9 @@ def settled(system: System, start: Orbit) -> Orbit | None:
         if not np.isfinite(path.state).all():
             return None
         if _closed(path.state):
+            last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
+            if (converged := orbit_of(moving, *last)) is not None:
+                return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None
@@ -60,7 +64,8 @@ def held(system: System, motion: Orbit) -> list[str]:
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
     still = values <= TOLERANCE * slopes * motion.span()
-    return [system.switches[k].name for k in slides_of(system) if still[k]]
+    unknown = [s.switch for s in surfaces_of(system) if s.releases is not None and s.place is None]
+    return [system.switches[k].name for k in unknown if still[k]]
 
 
 def _closed(path: Array) -> bool:

@@ -20,8 +20,8 @@ from periodic.orbit.scheme import Array
 from periodic.results.frames import reserved
 from periodic.system import System, check_value, index_of
 from periodic.tracing.continuation import Continuation
+from periodic.tracing.methodchoice import chosen_method
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.suited import suited
 from periodic.tracing.watch import Watch
 
 
@@ -53,15 +53,16 @@ class Method:
             isinstance(discretisation, type) or not isinstance(discretisation, Discretisation)
         ):
             raise ValueError(
-                f"method is {discretisation!r}; it must be Collocation(), Shooting() or HarmonicBalance()"
+                f"method is {discretisation!r}; it must be Collocation(), Shooting(), HarmonicBalance() or "
+                f"Equilibrium()"
             )
         for name, given, kind in (("control", control, ArclengthControl), ("watch", watch, Watch)):
             if given is not None and not isinstance(given, kind):
                 raise ValueError(f"{name} is {given!r}; it must be {kind.__name__}(...)")
         tolerance = Tolerance.of(tol)
-        problem, suiting = suited(discretisation or Collocation(), problem)
+        problem, chosen = chosen_method(discretisation or Collocation(), problem)
         return problem, cls(
-            discretisation=suiting.at(tolerance.orbit),
+            discretisation=chosen.at(tolerance.orbit),
             tolerance=tolerance,
             control=control or ArclengthControl(),
             watch=watch or Watch(),
@@ -88,8 +89,8 @@ class Setup:
     @property
     def signs(self) -> list[int]:
         """The ways that lead from the start into the bounds."""
-        low, high = self.problem.bounds
-        return [sign for sign, end in ((-1, low), (1, high)) if self.begin != end]
+        ends = ((-1, self.problem.low), (1, self.problem.high))
+        return [sign for sign, end in ends if self.begin != end]
 
     def first(self) -> Orbit:
         """Return the first guess in the method's representation: at rest, or the one given."""
@@ -117,18 +118,19 @@ def setup(
     `start` is where, unless a guess has a place of its own. Raises ValueError, in one sentence, for what is
     not allowed.
     """
-    system, parameter, (low, high) = problem.system, problem.parameter, problem.bounds
+    system, parameter, low, high = problem.system, problem.parameter, problem.low, problem.high
     if low < 0 and parameter in layout_of(system).frequency:
         raise ValueError(f"bounds is ({low:g}, {high:g}); {parameter!r}, a frequency, must not be negative")
     for end in (low, high):
         _check_bound(system, parameter, end)
+    method.discretisation.check(problem)
     named("values", {} if values is None else values, "numbers")
-    for name in set(method.watch.columns) & reserved(layout_of(problem.shown)):
+    for name in set(method.watch.columns) & reserved(layout_of(problem.full)):
         raise ValueError(f"columns has {name!r}, which branches have already; it must be another name")
     if values and parameter in values:
         raise ValueError(f"values has {parameter!r}, which is continued in; give it as start")
     if guess is not None:
-        guess = problem.solved(_expressed(problem.shown, guess))
+        guess = problem.restrict(_expressed(problem.full, guess))
         for name in set(problem.determined) & set(values or {}):
             raise ValueError(f"determined has {name!r}, which is also in values; it must be one or the other")
     base = np.array(system.nominal if guess is None else guess.parameter, dtype=float)

@@ -9,20 +9,18 @@ import numpy as np
 
 from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.correction.refinement import refined
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
-from periodic.stability.spectrum import Stability
-from periodic.system import linear_of, slides_of
+from periodic.stability.multipliers import Stability
+from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
+from periodic.tracing.rereading import worded
 from periodic.tracing.resting import resting
 from periodic.tracing.settling import held, settled
-
-COLLAPSED = 0.1
-"""An orbit that is so much smaller than its guess is not what was guessed."""
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
@@ -82,14 +80,16 @@ class Start:
         """The first orbit."""
         solver = self.solver
         first = self._fixed(guess, sign)
-        if first.ok and not collapsed(guess, first):
+        settles = solver.discretisation.settles(solver.problem.system)
+        slips = settles and first.ok and np.isinf(first.error.motion)  # where it should be held
+        if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
-        if linear_of(solver.problem.system) and slides_of(solver.problem.system):  # it is cheap, and sticks
+        if settles:
             motion = next(others, None)
-            if motion is not None and (last := self._fixed(motion, sign)).ok:
+            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
                 return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
@@ -107,7 +107,7 @@ class Start:
             if self.shortfall:
                 return first
         for orbit in others:
-            if orbit is not None and (last := self._fixed(orbit, sign)).ok:
+            if orbit is not None and (last := worded(self.solver, orbit, sign)).ok:
                 return last
         return first
 
@@ -205,8 +205,8 @@ class Start:
         except FAILURES:
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        low, high = problem.bounds
-        within = low - ASIDE * problem.scale <= found.value <= high + ASIDE * problem.scale
+        aside = ASIDE * problem.scale
+        within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 
     def _approached(self, guess: Orbit, factor: float) -> Orbit | None:
@@ -236,8 +236,3 @@ class Start:
     def _adopted(solver: Solver, orbit: Orbit) -> Orbit:
         """An orbit as a guess in the solver's discretisation."""
         return solver.discretisation.guess(solver.problem.system, orbit.parameter, orbit)
-
-
-def collapsed(guess: Orbit, found: Solution) -> bool:
-    """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
-    return found.problem.autonomous and found.orbit.span() < COLLAPSED * guess.span()

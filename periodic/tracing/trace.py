@@ -18,6 +18,7 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.tolerance import Accuracy, Tolerance
 from periodic.display.meter import Advance, meter
+from periodic.orbit.construction import standing_at
 from periodic.orbit.layout import layout_of
 from periodic.orbit.orbit import Orbit
 from periodic.results.branch import Branch
@@ -100,14 +101,14 @@ def trace(
     start: float | None = None,
     at: float | Sequence[float] = (),
     tol: float | Tolerance = Accuracy.STANDARD,
-    guess: Orbit | Branch | None = None,
+    guess: Orbit | Branch | Mapping[str, float] | None = None,
     values: Mapping[str, float] | None = None,
     determined: Mapping[str, Condition] | None = None,
     method: Discretisation | None = None,
     control: ArclengthControl | None = None,
     watch: Watch | None = None,
 ) -> Branch:
-    """Trace the branch of periodic orbits through `start` within `bounds`.
+    """Trace the branch of periodic orbits, or of equilibria, through `start` within `bounds`.
 
     From a start at a bound the branch is followed towards the other, from one inside both ways. A numerical
     failure is the branch's `stop`.
@@ -127,11 +128,12 @@ def trace(
     tol : float or Tolerance
         From 1e-11 to 1e-2: bounds the relative errors of the motion, of the places of folds and of
         multipliers (relative to the largest where that exceeds 1).
-    guess : Orbit or Branch, optional
+    guess : Orbit, Branch or mapping of str to float, optional
         An orbit to start from (default: rest): one of an earlier branch, `sampled` from a simulation, or from
         `doubled`, `branched` or `hopf`, of one excitation period or several; it brings its parameters and a
         start of its own. An interrupted branch is taken up where it stands, all other arguments as before but
-        for `control.max_points` and `control.max_newton`.
+        for `control.max_points` and `control.max_newton`. Or states (SI) and unknowns by name that stand
+        still, the others being at rest: of several orbits the one near these is found.
     values : mapping of str to float, optional
         Other parameters (SI) by name, in place of the guess's or the system's nominal ones.
     determined : mapping of str to Condition, optional
@@ -140,7 +142,9 @@ def trace(
         that a fold traces in two parameters, {"preload": Level(PeakToPeak("x"), 1e-5)} for a constant peak
         to peak.
     method : Discretisation, optional
-        `Collocation()` by default, or `Shooting()`, `HarmonicBalance()`, with their settings.
+        `Collocation()` by default, or `Shooting()`, `HarmonicBalance()`, with their settings. `Equilibrium()`
+        traces equilibria 0 = R(0, x, z, p), labelled LP, HB (Hopf) and BP; its multipliers are the
+        eigenvalues of small motion in 1/s.
     control : ArclengthControl, optional
         Step control, and bounds on the work.
     watch : Watch, optional
@@ -154,7 +158,8 @@ def trace(
     Raises
     ------
     ValueError
-        In one sentence, for a parameter, bound or value that is not allowed.
+        In one sentence, for a parameter, bound or value that is not allowed; for equilibria of a system that
+        is excited.
     ResumeError
         For a branch that is not one of this trace.
     Interrupted
@@ -163,6 +168,8 @@ def trace(
     problem = Problem(system, parameter, bounds, {} if determined is None else determined)
     problem, chosen = Method.of(problem, tol, method, control, watch)
     before = None
+    if isinstance(guess, Mapping):
+        guess, start = standing_at(system, guess), problem.begin if start is None else start
     if isinstance(guess, Branch):
         before = guess
         guess = None if begun_from_rest(before) else start_of(before).orbit
@@ -171,7 +178,7 @@ def trace(
     if before is not None:
         check(before, ready)
         ready.work.iterations = before.newton_iterations
-    first = ready.first() if before is None else problem.solved(start_of(before).orbit)
+    first = ready.first() if before is None else problem.restrict(start_of(before).orbit)
     runs = [ready.run(first, sign) for sign in ready.signs]
     generators: list[Iterator[Point]] = [*runs] if before is None else taken_up(runs, before)
     return _collected(ready, runs, generators, empty, before)

@@ -18,7 +18,7 @@ from periodic.correction.solution import Solution
 from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from periodic.system import System, index_of
-from periodic.tracing.steps.passing import called, finite, passing
+from periodic.tracing.steps.leveltest import called, finite, level_test
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,8 @@ class Watch:
     limits : mapping of str to (float, float)
         Ranges of further parameters (SI) that end the branch.
     stop : mapping of str to int
-        After how many points of a label or event it ends, {"LP": 2}, counted from the start each way.
+        Number of points of a label or event after which the branch ends, as {"LP": 2}, counted from the start
+        in each direction.
     special : tuple of TestFunction
         Further kinds of special points.
     progress : callable, optional
@@ -97,9 +98,11 @@ class Watch:
         tuple of TestFunction
             In this order.
         """
-        events = [passing(event.functional, event.value, Label.USER, n) for n, event in self.events.items()]
+        events = [
+            level_test(event.functional, event.value, Label.USER, n) for n, event in self.events.items()
+        ]
         limits = [
-            passing(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
+            level_test(Value(name), value + side * slack(value), Label.END, f"{word} limit of {name}")
             for name, ends in self.limits.items()
             for side, word, value in zip((-1, 1), ("lower", "upper"), ends, strict=True)
         ]
@@ -150,7 +153,7 @@ class Watch:
 
 
 def _rising(ends: object) -> bool:
-    """Whether two values are finite numbers that rise."""
+    """Whether two values are finite numbers in rising order."""
     if not (isinstance(ends, Sequence | np.ndarray) and len(ends) == 2):
         return False
     numbers = all(isinstance(end, int | float | np.number) and math.isfinite(end) for end in ends)

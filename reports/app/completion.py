@@ -22,7 +22,7 @@ def branch_files(incomplete: str) -> list[str]:
 def keys(context: typer.Context, incomplete: str) -> list[str]:
     """Return the keys of the scene named before that begin so, with the sign that a value follows."""
     from symbolic.scenes.errors import InputError
-    from symbolic.scenes.files import keys_of_scene
+    from symbolic.scenes.reading import keys_of_scene
 
     # An option without its value stops the parser: what it has not taken yet are arguments.
     scene = context.params.get("scene") or next(iter(context.args), "")

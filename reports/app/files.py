@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from periodic.results.files import replacing
-from reports.app.interrupts import unheard
+from reports.app.interrupts import ignoring_interrupts
 from symbolic.scenes.errors import InputError
 
 INCOMPLETE = "incomplete"
@@ -35,7 +35,7 @@ def write(folder: Path, writers: Mapping[str, Callable[[Path], object]]) -> list
 
     Raises InputError if one cannot be written.
     """
-    with unheard():
+    with ignoring_interrupts():
         try:
             for name, writer in writers.items():
                 with replacing(folder / name) as part:

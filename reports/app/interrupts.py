@@ -24,16 +24,16 @@ def _at_once(number: int, frame: FrameType | None) -> None:
     raise Ended
 
 
-def heard_once() -> AbstractContextManager[Any]:
+def interrupting_once() -> AbstractContextManager[Any]:
     """Inside the block the first Ctrl-C raises KeyboardInterrupt, and no other is heard."""
     return handled(_once)
 
 
-def heard_at_once() -> AbstractContextManager[Any]:
+def interrupting_at_once() -> AbstractContextManager[Any]:
     """Inside the block every Ctrl-C raises Ended: a trace under way does not end as a shorter branch."""
     return handled(_at_once)
 
 
-def unheard() -> AbstractContextManager[Any]:
-    """Inside the block no Ctrl-C is heard."""
+def ignoring_interrupts() -> AbstractContextManager[Any]:
+    """Inside the block Ctrl-C does nothing."""
     return handled(signal.SIG_IGN)

@@ -7,8 +7,8 @@ import typer
 
 def scenes() -> None:
     """List the built-in scenes."""
-    from symbolic.scenes.files import load
     from symbolic.scenes.names import scene_names
+    from symbolic.scenes.reading import load
 
     names = scene_names()
     width = max(map(len, names))

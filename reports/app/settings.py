@@ -95,8 +95,8 @@ def _other(folder: Path, made: Settings) -> str:
     before = dict(_flat({key: known[key] for key in made if key in known}))
     now = dict(_flat({key: value for key, value in made.items() if key in known}))
     keys = [key for key in (*before, *now) if before.get(key) != now.get(key)]
-    told = [(key.removeprefix("parameters."), before.get(key, "none")) for key in dict.fromkeys(keys[:3])]
-    return ", ".join(f"{key} = {cut(str(value))}" for key, value in told)
+    changed = [(key.removeprefix("parameters."), before.get(key, "none")) for key in dict.fromkeys(keys[:3])]
+    return ", ".join(f"{key} = {cut(str(value))}" for key, value in changed)
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -64,10 +64,10 @@ class View:
         return self.abscissa.heading.partition(" (")[0]
 
     @property
-    def told(self) -> tuple[Column, ...]:
+    def tabulated(self) -> tuple[Column, ...]:
         """The columns that special points are described by, the label first."""
-        told = [column for column in self.columns if column.heading]
-        return tuple(sorted(told, key=lambda column: column is not LABEL))
+        tabulated = [column for column in self.columns if column.heading]
+        return tuple(sorted(tabulated, key=lambda column: column is not LABEL))
 
     def shown(self, value: float) -> float:
         """Return an SI value of the parameter in the unit shown."""

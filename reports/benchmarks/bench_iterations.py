@@ -11,7 +11,7 @@ from periodic.correction.newton import correct
 from reports.benchmarks.work import COUNTS, NTST, OFF_RESONANCE, chain_model, converged, linearisations
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 
 @pytest.mark.benchmark(group="disc iteration")

@@ -20,7 +20,7 @@ from symbolic.kernels import native
 from symbolic.kernels.choice import Kernels
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import disc_model, oscillator_model
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene, OscillatorScene
 
 CASES = [(name, ntst) for name in ("duffing", "disc", "chain") for ntst in (20, 50, 100, 200)][:-2]

@@ -32,8 +32,8 @@ def test_start(benchmark: BenchmarkFixture, what: str, tmp_path: Path) -> None:
 @pytest.mark.benchmark(group="memory", timer=perf_counter)
 def test_memory(benchmark: BenchmarkFixture, tmp_path: Path) -> None:
     """What Newton on a chain of 50 oscillators, 100 states, needs at ntst 400: the peak in MB."""
-    told = benchmark.pedantic(run, ("-m", "reports.benchmarks.memory"), {"folder": tmp_path})
-    before, peak = json.loads(told)
+    printed = benchmark.pedantic(run, ("-m", "reports.benchmarks.memory"), {"folder": tmp_path})
+    before, peak = json.loads(printed)
     benchmark.extra_info |= {"peak MB": peak, "of which Newton MB": peak - before}
 
 

@@ -47,5 +47,5 @@ def pytest_benchmark_update_json(config: pytest.Config, output_json: dict[str, A
     """Record versions, the load (busy machines spoil even processor times) and what was left out."""
     versions = {name: version(name) for name in PACKAGES}
     peers = {name: others.version(name) for name in others.PACKAGES.values()}
-    told = {"versions": versions | peers, "load": os.getloadavg()[0], "skipped": config.stash[SKIPPED]}
-    output_json.update(told)
+    machine = {"versions": versions | peers, "load": os.getloadavg()[0], "skipped": config.stash[SKIPPED]}
+    output_json.update(machine)

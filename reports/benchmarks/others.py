@@ -73,8 +73,8 @@ def traced(case: Case) -> Branch:
         if reason.startswith("ModuleNotFoundError"):
             raise MissingError(f"{package} is not installed (pip install 'orbitrace[peers]')")
         raise MissingError(f"{package} failed: {reason}")
-    told = json.loads(done.stdout.strip().splitlines()[-1])
-    return Branch(told["s"], told["points"], tuple(told["folds"]))
+    answer = json.loads(done.stdout.strip().splitlines()[-1])
+    return Branch(answer["s"], answer["points"], tuple(answer["folds"]))
 
 
 @cache

@@ -21,9 +21,8 @@ from symbolic.checks import refusal, typed
 from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
-from symbolic.equations.terms import Motion, Place, State, Unknown, struck
-from symbolic.equations.units import ANGULAR
-from symbolic.equations.variables import Coordinate, Parameter, SwitchInfo, Value, Variable
+from symbolic.equations.terms import Motion, Place, Slider, State, Unknown, struck
+from symbolic.equations.variables import ANGULAR, Coordinate, Parameter, SwitchInfo, Value, Variable
 from symbolic.mistakes import explained
 from symbolic.sketch import Sketch
 
@@ -126,6 +125,8 @@ class Assembly:
     smooth: list[ca.SX] = field(default_factory=list, init=False)
     resets: dict[int, dict[State, ca.SX]] = field(default_factory=dict, init=False)
     impacts: dict[int, tuple[Motion, ca.SX]] = field(default_factory=dict, init=False)
+    sliders: dict[int, Slider] = field(default_factory=dict, init=False)
+    places_held: dict[int, tuple[str, ca.SX]] = field(default_factory=dict, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
     structures: list[Body] = field(default_factory=list, init=False)
     places: list[Place] = field(default_factory=list, init=False)
@@ -552,6 +553,63 @@ class Assembly:
         """
         self.impacts[len(self.switches)] = motion, after
         self.switch(name, expression, -1)
+
+    def holds(self, name: str, deflection: ca.SX, scale: float, unit: str) -> ca.SX:
+        """Say where the joint at the next switch may be held all along; return how far it is from there.
+
+        Parameters
+        ----------
+        name : str
+            What is held.
+        deflection : casadi.SX
+            How far it is deflected: the switch is its rate, but for a factor.
+        scale, unit : float, str
+            Of the deflection.
+
+        Returns
+        -------
+        casadi.SX
+            The deflection less the parameter that says where it is held, scaled.
+        """
+        known = [each for each, _ in self.places_held.values()]
+        again = sum(each.startswith(f"place of {name}") for each in known)
+        called = f"place of {name}" + (f" ({again + 1})" if again else "")
+        place = self.parameter(Parameter(called, 0.0, unit), called, unit)
+        found = (deflection - place) / scale
+        self.places_held[len(self.switches)] = called, found
+        return found
+
+    def slider(self, name: str, state: State, row: ca.SX, strain: ca.SX, limit: ca.SX) -> None:
+        """Add an elastic slider: z is held while |e - z| < l, and carried along where e - z = l or -l.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+        state : State
+            z.
+        row : casadi.SX
+            The row of z where the state decides, as that of one who creeps.
+        strain, limit : casadi.SX
+            e and l, functions of coordinates and the phase; all in the unit of z.
+        """
+        index, scale, rates = len(self.switches), state.scale, (self.rate(strain), self.rate(limit))
+        speeds = tuple((rates[0] - way * rates[1]) / scale for way in (1, -1))
+        slipping = tuple(state.derivative / scale - speed for speed in speeds)
+        place = self.holds(state.name, state.symbol, scale, state.unit)
+        self.sliders[index] = Slider(
+            state=state,
+            row=len(self.differential_rows),
+            held=state.derivative / scale,
+            slipping=(slipping[0], slipping[1]),
+            releases=(index + 1, index + 2),
+            speeds=(speeds[0], speeds[1]),
+            place=place,
+        )
+        self.differential_rows.append(row)
+        self.switch(f"{name}: strained", rates[0] / scale, 0)
+        self.switch(f"{name}: slips up", (strain - state.symbol - limit) / scale, 1)
+        self.switch(f"{name}: slips down", (strain - state.symbol + limit) / scale, -1)
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

@@ -19,23 +19,23 @@ from symbolic.checks import refusal
 Order = int | float | str | Fraction
 """Order of a harmonic: a positive rational number, perhaps as text, as "1/2"."""
 
-LONGEST = 1000
+MOST_PERIODS = 1000
 """Most periods of theta after which an excitation may repeat."""
 
 ROUNDED = 1e-12
-"""Relative difference up to which a floating-point number is meant as a rational one."""
+"""Relative difference from a rational number up to which a floating-point number stands for it."""
 
 
 def order_of(value: Order) -> Fraction:
     """Return a positive rational order. Raises ValueError."""
-    allowed = f'a positive rational number such as 2, 0.5 or "1/3", with a denominator up to {LONGEST}'
+    allowed = f'a positive rational number such as 2, 0.5 or "1/3", with a denominator up to {MOST_PERIODS}'
     try:
         exact = math.nan if isinstance(value, bool) else Fraction(value)
     except (TypeError, ValueError, ZeroDivisionError, OverflowError):
         exact = math.nan
     if not isinstance(exact, Fraction) or exact <= 0:
         raise refusal("order", value, allowed)
-    found = exact.limit_denominator(LONGEST)
+    found = exact.limit_denominator(MOST_PERIODS)
     if abs(found - exact) > ROUNDED * exact:
         raise refusal("order", value, f"{allowed}: the excitation has no common period otherwise")
     return found
@@ -48,10 +48,10 @@ def fundamental(orders: Iterable[Fraction]) -> Fraction:
         return Fraction(1)
     below = math.lcm(*(number.denominator for number in numbers))
     found = Fraction(math.gcd(*(int(number * below) for number in numbers)), below)
-    if found * LONGEST < 1:
+    if found * MOST_PERIODS < 1:
         listed = ", ".join(str(number) for number in numbers)
         raise ValueError(
-            f"the orders {listed} have no common period of at most {LONGEST} periods of the excitation; "
+            f"the orders {listed} have no common period of at most {MOST_PERIODS} periods of the excitation; "
             f"choose orders of a smaller common denominator"
         )
     return found

@@ -14,10 +14,12 @@ import math
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.jumps.sides import Sided, sided
+from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
-from symbolic.equations.sides import Sided, sided
 
 
 @dataclass(frozen=True)
@@ -25,8 +27,9 @@ class Expressions:
     """The scaled symbolic system.
 
     `waved` are residual and outputs in terms of the symbols `waves` of the excitation, sin(k tau) and
-    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `moved` is
-    where an `increment` takes the unknowns.
+    cos(k tau) for each k of `harmonics`; `unexcited` is the residual without them and at tau = 0. `guards`
+    are the switches on given sides of the jumps, `switches` those where the state decides. `moved` is where
+    an `increment` takes the unknowns.
     """
 
     rate: ca.SX
@@ -36,6 +39,7 @@ class Expressions:
     parameter: ca.SX
     residual: ca.SX
     sided: Sided
+    places: dict[int, tuple[str, tuple[float, ...]]]
     unexcited: ca.SX
     harmonics: tuple[int, ...]
     waves: ca.SX
@@ -43,6 +47,8 @@ class Expressions:
     frequency: ca.SX
     outputs: ca.SX
     switches: ca.SX
+    guards: ca.SX
+    sliders: dict[int, Held]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -67,7 +73,11 @@ def expressed(assembly: Assembly) -> Expressions:
     residual = both[: len(rows)]
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
-    beside = sided(packed, residual, switches, resets, telling)
+    at = {k: packed.scaled([place]) for k, (_, place) in assembly.places_held.items()}
+    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders), at)
+    guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
+    first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
+    beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -76,6 +86,7 @@ def expressed(assembly: Assembly) -> Expressions:
         parameter=packed.parameter,
         residual=residual,
         sided=beside,
+        places=_places(packed, assembly),
         unexcited=ca.substitute(
             packed.scaled(rows, ca.SX.zeros(packed.waves.size1())), packed.phase, ca.SX(0)
         ),
@@ -84,7 +95,9 @@ def expressed(assembly: Assembly) -> Expressions:
         waved=packed.scaled([*rows, *outputs], packed.waves),
         frequency=packed.scaled([assembly.omega]),
         outputs=packed.scaled(outputs),
-        switches=ca.vertcat(switches, *(s for _, *both in beside.slides for s in both)),
+        switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
+        guards=guards,
+        sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()
@@ -94,6 +107,18 @@ def expressed(assembly: Assembly) -> Expressions:
         increment=packed.increment,
         moved=ca.substitute(moved, ca.vertcat(*[u.increment for u in unknowns]), packed.increment),
     )
+
+
+def _places(packed: Packed, assembly: Assembly) -> dict[int, tuple[str, tuple[float, ...]]]:
+    """Of what may be held all along the parameter's name, and the weights of scaled states in it (SI)."""
+    found = {}
+    for k, (name, place) in assembly.places_held.items():
+        slope = ca.jacobian(packed.scaled([place]), ca.vertcat(packed.state, packed.parameter))
+        row = np.array(ca.DM(slope)).ravel() if slope.is_constant() else np.zeros(0)
+        if row.size:
+            n = packed.state.numel()
+            found[k] = name, tuple(float(w) for w in -row[:n] / row[n:].min())
+    return found
 
 
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:

@@ -43,7 +43,7 @@ def find(assembly: Assembly) -> None:
     samples = Samples(Packed(assembly))
     usable = _hashes(_moving(assembly)) | _hashes(_fixed(assembly))
     smooth = [s for s in assembly.smooth if _hashes(ca.symvar(s)) <= usable]
-    declared = [s for _, s in assembly.switches]
+    declared = [s for k, (_, s) in enumerate(assembly.switches) if k not in assembly.sliders]
     values = samples.values([*declared, *smooth, *candidates])
     known, new = values[: -len(candidates)], values[-len(candidates) :]
     for argument, found in zip(candidates, new, strict=True):

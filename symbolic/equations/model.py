@@ -10,7 +10,7 @@ from symbolic.checks import refusal, text, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import Parameter
-from symbolic.tables import told
+from symbolic.tables import listed
 
 PART = "Part, as symbolic.Mass(x, 1.0) is"
 
@@ -25,7 +25,7 @@ class Part:
 
     @property
     def owner(self) -> str:
-        """What its bare numbers belong to: the names of the coordinates, or of the contact, it is laid on."""
+        """Suffix of the parameters made of its bare numbers: names of its coordinates or contact."""
         values = [getattr(self, name) for name in getattr(self, "__dataclass_fields__", {})]
         places = [item for value in values for item in (value if isinstance(value, tuple) else (value,))]
         named = [p for p in places if not isinstance(p, Parameter)]
@@ -59,7 +59,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Named(Part):
-    """A part with a name, by which its bare numbers are called where several of a kind differ.
+    """A part with a name, which distinguishes the parameters of several parts of one kind.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class Model:
         object.__setattr__(self, "parts", parts)
 
     def __repr__(self) -> str:
-        return f"Model({told(type(part).__name__ for part in self.parts)})"
+        return f"Model({listed(type(part).__name__ for part in self.parts)})"
 
     @property
     def latex(self) -> str:

@@ -65,6 +65,25 @@ class Place:
     mobility: Sequence[float] = ()
 
 
+@dataclass(frozen=True)
+class Slider:
+    """What an elastic slider of state z does where it is held or carried.
+
+    row: index of its row, where the state decides, among those of differential states; held, slipping: the
+    same row in the modes STUCK, and PLUS and MINUS. releases: indices of the switches (up, down) between
+    which it is held. speeds: its guard, the rate at which it is strained, in PLUS and MINUS. place: how far
+    it is from where it is HELD.
+    """
+
+    state: State
+    row: int
+    held: ca.SX
+    slipping: tuple[ca.SX, ca.SX]
+    releases: tuple[int, int]
+    speeds: tuple[ca.SX, ca.SX]
+    place: ca.SX
+
+
 def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -> dict[State, ca.SX]:
     """Return the velocities after an impulse on one coordinate that gives it the velocity `after`.
 

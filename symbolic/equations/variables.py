@@ -11,6 +11,9 @@ import casadi as ca
 from symbolic.checks import finite, positive, refusal, text, typed, whole
 from symbolic.equations.interval import ANY, NOT_NEGATIVE, POSITIVE, Interval
 
+ANGULAR = {"rev/min": 2 * math.pi / 60, "Hz": 2 * math.pi, "rad/s": 1.0}
+"""rad/s in one of each unit in which a parameter may be given where a part asks for rad/s."""
+
 
 @dataclass(frozen=True)
 class Variable:

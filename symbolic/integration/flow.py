@@ -6,7 +6,7 @@ CVODES is fast and gives up now and then where contact is lost; LSODA is slower 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -15,37 +15,37 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import finite
-from symbolic.equations.expressions import Expressions
+from symbolic.integration.crossings import SwitchCrossings
 from symbolic.integration.cvodes import integrated, integrator, kept
-from symbolic.integration.events import Event, pieced
 from symbolic.integration.lsoda import Rates, failure, followed
-from symbolic.integration.passages import Passages
-from symbolic.integration.rates import constraint_rows, ode
-from symbolic.integration.sliding import Sides, Sliding
+from symbolic.integration.modes import Event, Modes, Switched, Switching
+from symbolic.integration.pieces import Follower
+from symbolic.integration.rates import constraint_rows, explicit_rates, ode
 
 
-class Followed(Protocol):
-    """What is asked of a system that is integrated: its expressions, impacts and kinks, where it sticks."""
+class Followed(Switched, Protocol):
+    """What is asked of a system that is integrated: besides its surfaces, which are impacts and kinks."""
 
-    @property
-    def expressions(self) -> Expressions: ...
     @property
     def resets(self) -> Sequence[int]: ...
     @property
     def kinks(self) -> Sequence[int]: ...
     @property
     def slides(self) -> dict[int, tuple[int, int]]: ...
-    def switch(self, state: Array, phase: Array, parameter: Array) -> Array: ...
-    def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array: ...
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Phases (N,), scaled states (N, n) and unknowns (N, m)."""
+    """Phases (N,), scaled states (N, n) and unknowns (N, m); the events on the way, and the modes at its end.
+
+    The modes are those of the system's surfaces: a motion goes on in them.
+    """
 
     phase: Array
     state: Array
     algebraic: Array
+    events: tuple[Event, ...] = ()
+    modes: Modes = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +60,24 @@ class Flow:
         if not 1e-13 <= finite("tolerance", self.tolerance) <= 1e-2:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.01")
 
-    def run(self, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Trajectory:
+    def run(
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        modes: Modes | None = None,
+    ) -> Trajectory:
         """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
-        Raises IntegrationError where the integrator fails.
+        modes: those with which it begins, by default as the state has them. Raises IntegrationError where the
+        integrator fails.
         """
         n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
         phase = np.asarray(phase, dtype=float)
         if self.system.slides:
-            return self._pieced(start, parameter, phase)
+            return self._pieced(start, parameter, phase, modes)
 
         def sweep(y: Array, along: Array) -> Array:
             found = integrated(self._cvodes(tuple(along)), y, parameter)
@@ -81,40 +89,32 @@ class Flow:
             return self._on_constraints(np.append(after, y[n:]), parameter, tau)
 
         given = reset if self.system.resets else None
-        tau, values = self._passages.follow(sweep, start, phase, parameter, given).with_impacts(phase)
-        return Trajectory(tau, values[:, :n], values[:, n:])
+        found = self._crossings.follow(sweep, start, phase, parameter, given)
+        tau, values = found.with_impacts(phase)
+        crossed = [(p.switch, p.before, p.rate) for p in found.crossings]
+        switching = Switching(self.system, parameter, self.tolerance)
+        events = switching.along(float(phase[0]), start[:n], crossed) if crossed else ()
+        return Trajectory(tau, values[:, :n], values[:, n:], events, events[-1].modes if events else ())
 
-    def _pieced(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
-        """The motion through dry friction and impacts, at each of which there are two points of one phase."""
-        system, n = self.system, self.system.expressions.state.numel()
-        sliding = Sliding(system, parameter, self.tolerance) if system.slides else None
+    def _pieced(self, start: Array, parameter: Array, phase: Array, modes: Modes | None = None) -> Trajectory:
+        """The motion from event to event, at each impact of which there are two points of one phase."""
+        n = self.system.expressions.state.numel()
+        switching, given = Switching(self.system, parameter, self.tolerance), ca.DM(parameter)
 
-        def rates(sides: Sides) -> Rates:
-            plain = self._rates[0]
-            if sliding is not None:
-                return sliding.rates(sides)
-            return lambda tau, y: np.array(plain(y, tau, parameter)).ravel()
+        def rates(modes: Modes) -> Rates:
+            side = ca.DM(switching.side(modes))
+            return lambda tau, y: np.array(self._beside[0](y, tau, given, side)).ravel()
 
-        def impact(k: int, sides: Sides) -> Event[Sides]:
-            def value(tau: float, y: Array) -> float:
-                return float(system.switch(y[None, :n], np.array([tau]), parameter)[0, k])
+        def slope(modes: Modes) -> Rates:
+            side = ca.DM(switching.side(modes))
+            return lambda tau, y: np.array(self._beside[1](y, tau, given, side))
 
-            def after(tau: float, y: Array) -> tuple[Array, Sides]:
-                mapped = system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
-                found = self._on_constraints(np.append(mapped, y[n:]), parameter, tau)
-                return found, sides if sliding is None else sliding.again(sides, tau, found)
+        def settle(y: Array, tau: float) -> Array:
+            return self._on_constraints(y, parameter, tau)
 
-            return Event(value, after)
-
-        def events(sides: Sides) -> list[Event[Sides]]:
-            slips = [] if sliding is None else sliding.events(sides)
-            return [*(impact(k, sides) for k in system.resets), *slips]
-
-        sides = () if sliding is None else sliding.begin(float(phase[0]), start)
-        slope = np.array(self._rates[1](start, float(phase[0]), parameter))
-        fastest = float(np.abs(np.linalg.eigvals(slope)).max()) if np.isfinite(slope).all() else 0.0
-        tau, values = pieced(rates, events, sides, start, phase, self.tolerance, fastest=fastest)
-        return Trajectory(tau, values[:, :n], values[:, n:])
+        found = Follower(switching, rates, slope, settle, n).run(start, phase, modes)
+        values = found.values
+        return Trajectory(found.phase, values[:, :n], values[:, n:], found.events, found.modes)
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
         """Return (x', z') along a trajectory, shape (N, n+m)."""
@@ -137,8 +137,10 @@ class Flow:
         return kept(self._integrators, phase, lambda: integrator(self._problem, phase, self.tolerance))
 
     @cached_property
-    def _passages(self) -> Passages:
-        return Passages(self.system.expressions, self._problem["ode"], self.system.kinks, self.system.resets)
+    def _crossings(self) -> SwitchCrossings:
+        return SwitchCrossings(
+            self.system.expressions, self._problem["ode"], self.system.kinks, self.system.resets
+        )
 
     @cached_property
     def _problem(self) -> dict[str, ca.SX]:
@@ -152,6 +154,15 @@ class Flow:
         return ca.Function("rates", arguments, [problem["ode"]]), ca.Function(
             "jacobian", arguments, [jacobian]
         )
+
+    @cached_property
+    def _beside(self) -> tuple[ca.Function, ca.Function]:
+        """The rates on sides of the jumps, and their derivatives."""
+        e = self.system.expressions
+        known = [self._problem["x"], e.phase, e.parameter, e.sided.side]
+        rates = explicit_rates(replace(e, residual=e.sided.residual))
+        slope = ca.densify(ca.jacobian(rates, known[0]))
+        return ca.Function("beside", known, [rates]), ca.Function("slope", known, [slope])
 
     @cached_property
     def _constraints(self) -> ca.Function:

@@ -21,7 +21,7 @@ Rates = Callable[[float, Array], Array]
 
 
 @dataclass
-class _Counted:
+class Counted:
     """Rates that are evaluated `most` times, and not again after a signal: CasADi drops what that raises."""
 
     rates: Rates
@@ -49,7 +49,7 @@ def followed(rates: Rates, jacobian: Rates, start: Array, phase: Array, toleranc
         raise failure(phase[0])
     with heard() as raised:
         found = scipy.integrate.solve_ivp(
-            _Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
+            Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
             (phase[0], phase[-1]),
             start,
             method="LSODA",

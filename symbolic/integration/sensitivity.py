@@ -21,8 +21,8 @@ import scipy
 
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
+from symbolic.integration.crossings import SwitchCrossings
 from symbolic.integration.cvodes import IntegrationError, integrated, integrator, kept, spaced
-from symbolic.integration.passages import Passages
 from symbolic.integration.rates import constraint_rows, explicit_rates
 
 EPSILON = 1e-10
@@ -34,8 +34,8 @@ TIGHTER = (1.0, 0.1, 0.01)
 ASIDE = 1e3
 """How far before a kink, in tolerances, the derivatives are integrated: past it they have none."""
 
-ITERATIONS = 60
-CLOSE = 1e-13
+UNKNOWN_ITERATIONS = 60
+INCREMENT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -113,16 +113,16 @@ class SensitiveFlow:
             return values[np.searchsorted(along, wanted)]
 
         size = self.expressions.state.size1() + self.expressions.algebraic.size1()
-        kinks = self._passages.follow(sweep, start[:size], phase, parameter).passages if self.kinks else []
+        kinks = self._crossings.follow(sweep, start[:size], phase, parameter).crossings if self.kinks else []
         found, y, begin, done = [], start, float(phase[0]), -np.inf
-        for passage in kinks:
-            near = ASIDE * tolerance / abs(passage.rate) if passage.rate else np.inf
-            end = max(passage.before - near, (begin + passage.before) / 2)
-            inside = np.append(phase[(phase > done) & (phase <= passage.before)], passage.before)
+        for crossing in kinks:
+            near = ASIDE * tolerance / abs(crossing.rate) if crossing.rate else np.inf
+            end = max(crossing.before - near, (begin + crossing.before) / 2)
+            inside = np.append(phase[(phase > done) & (phase <= crossing.before)], crossing.before)
             values = piece(y, begin, np.append(inside[inside < end], end))
             late = [self._carried(values[-1], parameter, end, at - end, free) for at in inside[inside >= end]]
             found += [values[:-1], np.array(late[:-1]).reshape(-1, len(y))]
-            y, begin, done = np.append(passage.y, late[-1][size:]), passage.after, passage.before
+            y, begin, done = np.append(crossing.y, late[-1][size:]), crossing.after, crossing.before
         return np.concatenate([*found, piece(y, begin, phase[phase > done])])
 
     def _carried(self, y: Array, parameter: Array, phase: float, way: float, free: tuple[int, ...]) -> Array:
@@ -160,12 +160,12 @@ class SensitiveFlow:
         """The first y and its derivatives, column by column; the unknowns fulfil the constraints."""
         n, m, q = len(state), len(algebraic), len(free)
         rows, unknown = self._constraints(free), algebraic
-        for _ in range(ITERATIONS):
+        for _ in range(UNKNOWN_ITERATIONS):
             g, by_state, by_unknown, by_free = (np.array(a) for a in rows(state, unknown, phase, parameter))
             if not np.isfinite(by_unknown).all() or not np.isfinite(g).all():
                 break
             change: Array = np.linalg.solve(by_unknown, -g.ravel()).astype(float)
-            if (np.abs(change) <= CLOSE * (1 + np.abs(unknown))).all() or (np.abs(g) <= CLOSE).all():
+            if (np.abs(change) <= INCREMENT * (1 + np.abs(unknown))).all() or (np.abs(g) <= INCREMENT).all():
                 gradient = -np.linalg.solve(by_unknown, np.hstack([by_state, by_free]))
                 first = np.hstack([np.eye(n), np.zeros((n, q))])
                 y = np.append(state, unknown)[:, None]
@@ -194,8 +194,8 @@ class SensitiveFlow:
         return kept(self._integrators, key, lambda: integrator(self._problem(free), phase, tolerance))
 
     @cached_property
-    def _passages(self) -> Passages:
-        return Passages(self.expressions, self._rates, self.kinks)
+    def _crossings(self) -> SwitchCrossings:
+        return SwitchCrossings(self.expressions, self._rates, self.kinks)
 
     @cached_property
     def _rates(self) -> ca.SX:

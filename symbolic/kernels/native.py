@@ -32,7 +32,7 @@ from symbolic.kernels.built import FLAGS, built
 KEPT = 500
 """How many libraries are kept, of some 20 kB each; the ones longest unused go first."""
 
-LONGEST = 120.0
+LONGEST_WAIT = 120.0
 """Seconds after which the compiler is stopped."""
 
 NONE = "no C compiler was found; install one (pip install 'orbitrace[cc]'), or set CC to its command"
@@ -188,7 +188,9 @@ def _made(source: str) -> ctypes.CDLL:
             here, there = Path(made, "kernel.c"), Path(made, "kernel.so")
             here.write_text(source)
             asked = [command, *options, *FLAGS, "-o", str(there), str(here), "-lm"]
-            done = subprocess.run(asked, capture_output=True, text=True, errors="replace", timeout=LONGEST)
+            done = subprocess.run(
+                asked, capture_output=True, text=True, errors="replace", timeout=LONGEST_WAIT
+            )
             if done.returncode != 0:
                 raise CompilerError(f"{command} failed: {done.stderr.strip()[:500]}")
             found = ctypes.CDLL(str(there))

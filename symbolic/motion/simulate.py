@@ -12,6 +12,7 @@ from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.flow import Flow, Trajectory
+from symbolic.integration.modes import Event, Modes
 from symbolic.meter import counted
 from symbolic.motion.linear import RestFinder
 from symbolic.system.compile import all_states
@@ -42,6 +43,8 @@ class Simulation:
         States, scaled as in the system.
     algebraic : ndarray, shape (N, m)
         Algebraic unknowns.
+    events : tuple of Event
+        What happens at the system's surfaces on the way, in order.
     """
 
     system: CompiledSystem
@@ -49,6 +52,7 @@ class Simulation:
     phase: Array
     state: Array
     algebraic: Array
+    events: tuple[Event, ...] = ()
 
     @property
     def time(self) -> Array:
@@ -146,23 +150,33 @@ def simulate(
     state, algebraic = _beginning(system, parameter, start)
     state = state + _knocked(system, parameter, {} if knock is None else knock)
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
+    modes: Modes | None = None
     done, largest = 0, DIVERGED * max(1.0, float(np.abs(state).max(initial=0.0)))
     try:
         for _ in counted(settle, "settling", "periods"):
-            end = flow.run(state, algebraic, parameter, ends)
-            state, algebraic, done = end.state[-1], end.algebraic[-1], done + 1
+            end = flow.run(state, algebraic, parameter, ends, modes)
+            state, algebraic, modes, done = end.state[-1], end.algebraic[-1], end.modes, done + 1
             _check_bounded(system, state, largest, 0.0)
-        found = flow.run(state, algebraic, parameter, phase)
+        found = flow.run(state, algebraic, parameter, phase, modes)
         for row, tau in zip(found.state, found.phase, strict=True):
             _check_bounded(system, row, largest, float(tau))
     except KeyboardInterrupt:
-        still = {"phase": np.zeros(1), "state": state[None], "algebraic": algebraic[None]}
-        raise SimulationInterrupted(Simulation(system=system, parameter=parameter, **still), done) from None
+        last = Trajectory(np.zeros(1), state[None], algebraic[None])
+        raise SimulationInterrupted(_simulation(system, parameter, last), done) from None
     except IntegrationError as error:
         time = (PERIOD * done + error.phase) / system.omega(parameter)
         raise IntegrationError(f"the motion could not be followed past {time:.6g} s; {error}") from None
+    return _simulation(system, parameter, found)
+
+
+def _simulation(system: CompiledSystem, parameter: Array, found: Trajectory) -> Simulation:
     return Simulation(
-        system=system, parameter=parameter, phase=found.phase, state=found.state, algebraic=found.algebraic
+        system=system,
+        parameter=parameter,
+        phase=found.phase,
+        state=found.state,
+        algebraic=found.algebraic,
+        events=found.events,
     )
 
 

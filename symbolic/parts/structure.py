@@ -24,7 +24,7 @@ from symbolic.structures.matrices import DENSE, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
 from symbolic.structures.modalslope import ModalSlope, modal_slope
 
-STEP = 1e-5
+SPEED_STEP = 1e-5
 """Relative step of differences in the speed."""
 
 Freedoms = int | Sequence[int]
@@ -387,7 +387,7 @@ def _steepness(given: Given, speed: float, size: int) -> Array:
     """The derivative of a matrix in the speed, (n, n)."""
     if not callable(given):
         return np.zeros((size, size))
-    step = STEP * max(abs(speed), STEP)
+    step = SPEED_STEP * max(abs(speed), SPEED_STEP)
     after, before = (dense(given(speed + sign * step)) for sign in (1, -1))
     return np.asarray((after - before) / (2 * step))
 

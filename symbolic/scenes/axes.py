@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symbolic.equations.units import ANGULAR
+from symbolic.equations.variables import ANGULAR
 
 RPM = ANGULAR["rev/min"]
 """rad/s in one rev/min."""

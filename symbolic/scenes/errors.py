@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-LONGEST = 60
+LONGEST_QUOTE = 60
 """Names and values longer than this are cut in a sentence."""
 
-HUGE = 10**LONGEST
+HUGE = 10**LONGEST_QUOTE
 """Whole numbers of which it is enough to say so; Python refuses to write the largest out."""
 
 
@@ -88,7 +88,7 @@ def plain(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def cut(text: str, longest: int = LONGEST) -> str:
+def cut(text: str, longest: int = LONGEST_QUOTE) -> str:
     """Return the plain text, or as much of its beginning as is not too long."""
     text = plain(text)
     return text if len(text) <= longest else text[: longest - 3] + "..."

@@ -14,14 +14,14 @@ from symbolic.checks import refusal
 from symbolic.structures.linearpart import Modes
 from symbolic.structures.matrices import index
 
-STEP = 1e-6
+PARAMETER_STEP = 1e-6
 """Relative step of differences in a parameter."""
 
 NOTHING = 1e-9
 """Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
 
 SAME = 16 * np.finfo(float).eps
-"""Part of the largest coefficient by which matrices differ that are the same but for rounding."""
+"""Largest difference of equal matrices by rounding, as a part of the largest coefficient."""
 
 DEFECTIVE = 1e12
 """Condition of the eigenvectors above which they do not span the motion."""
@@ -85,7 +85,7 @@ class RowsPart:
     rates : tuple of int
         Which of `places`, by their order, are velocities.
     moving : tuple of int
-        Which of all states are velocities: rates by the phase, as Omega scales the time.
+        Which of all states are velocities, dq/dtau in the phase: Omega scales them.
     omega : callable
         Parameters (p,) to Omega in rad/s.
     """
@@ -173,7 +173,7 @@ class RowsPart:
         """
         if index not in self.varying:
             return None
-        step, ends = STEP * max(abs(float(parameter[index])), STEP), []
+        step, ends = PARAMETER_STEP * max(abs(float(parameter[index])), PARAMETER_STEP), []
         for sign in (1, -1):
             moved = parameter.copy()
             moved[index] += sign * step

@@ -14,6 +14,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
+from symbolic.equations.surfaces import Kind, Surface, surfaces
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.integration.flow import Flow, Trajectory
@@ -22,10 +23,10 @@ from symbolic.kernels.choice import Kernels
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
+from symbolic.system.angularfrequency import AngularFrequency
 from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
-from symbolic.system.turning import Turning
-from symbolic.tables import told
+from symbolic.tables import listed
 
 MANY, PLACES = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
@@ -93,7 +94,7 @@ class CompiledSystem:
     sketch: tuple[Mapping[str, object], ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
-        groups = {name: told(v.name for v in some) for name, some in self._groups.items() if some}
+        groups = {name: listed(v.name for v in some) for name, some in self._groups.items() if some}
         return f"CompiledSystem({'; '.join(f'{name} {names}' for name, names in groups.items())})"
 
     @property
@@ -122,23 +123,23 @@ class CompiledSystem:
         return self.recipe, ()
 
     @cached_property
-    def _turning(self) -> Turning:
-        return Turning(self.expressions, self.parameters)
+    def _angular_frequency(self) -> AngularFrequency:
+        return AngularFrequency(self.expressions, self.parameters)
 
     @property
     def frequency(self) -> tuple[str, ...]:
         """Names of the parameters whose product is omega (rad/s) but for a factor; () if it is none."""
-        return self._turning.product[0]
+        return self._angular_frequency.product[0]
 
     @property
     def frequency_factor(self) -> float:
         """What the product of the parameters `frequency` is multiplied by to be omega."""
-        return self._turning.product[1]
+        return self._angular_frequency.product[1]
 
     @property
     def frequency_held(self) -> dict[str, float]:
         """Values of other parameters that this factor depends on, by name."""
-        return self._turning.product[2]
+        return self._angular_frequency.product[2]
 
     def omega(self, parameter: Array) -> float:
         """Return the frequency of the excitation.
@@ -153,14 +154,14 @@ class CompiledSystem:
         float
             omega in rad/s.
         """
-        return self._turning.omega(parameter)
+        return self._angular_frequency.omega(parameter)
 
     @cached_property
     def linear(self) -> LinearPart | RowsPart | None:
         """The linear part of a system that is split: condensed structures, or what was found."""
         if self.part is not None:
             return self.part
-        return LinearPart(self.held, self.omega, self._turning.gradient) if self.held else None
+        return LinearPart(self.held, self.omega, self._angular_frequency.gradient) if self.held else None
 
     @property
     def whole(self) -> CompiledSystem:
@@ -253,17 +254,29 @@ class CompiledSystem:
 
     @property
     def slides(self) -> dict[int, tuple[int, int]]:
-        """Of each jump along which motions can slide, the switches at which that ends."""
+        """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""
         switches = [k for k, *_ in self.expressions.sided.slides]
         first = len(self.switches) - 2 * len(switches)
-        return {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
+        found |= {k: held.releases for k, held in self.expressions.sliders.items()}
+        return dict(sorted(found.items()))
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """What happens where the switches vanish; each of them belongs to one surface."""
+        e = self.expressions
+        return surfaces(self.switches, self.resets, self.jumps, self.slides, e.sliders, self._places)
+
+    @property
+    def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:
+        """Of what may be held all along, the parameter that says where, and the weights of its deflection."""
+        names = [parameter.name for parameter in self.parameters]
+        return {k: (names.index(name), weights) for k, (name, weights) in self.expressions.places.items()}
 
     @property
     def kinks(self) -> tuple[int, ...]:
         """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
-        jumping = {*self.resets, *self.jumps, *(k for pair in self.slides.values() for k in pair)}
-        each = ((k, s) for k, s in enumerate(self.switches) if k not in jumping)
-        return tuple(k for k, s in each if s.levels == (0.0,) and s.direction == 0)
+        return tuple(surface.switch for surface in self.surfaces if surface.kind == Kind.KINK)
 
     def linearise_beside(
         self,
@@ -315,21 +328,36 @@ class CompiledSystem:
             self._generated.output(rate, state, algebraic, phase, parameter, result)
         return result
 
-    def switch(self, state: Array, phase: Array, parameter: Array) -> Array:
-        """Return the switch functions, shape (N, switches)."""
+    @cached_property
+    def guards_depend(self) -> bool:
+        """Whether switches depend on the sides of jumps, as where a joint slips does on its neighbours."""
+        e = self.expressions
+        return bool(ca.depends_on(e.guards, e.sided.side)) if self.jumps else False
+
+    def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array:
+        """Return the switch functions, shape (N, switches), on sides (N, jumps) of the jumps if given."""
         result = np.zeros((len(phase), len(self.switches)))
         with np.errstate(all="ignore"):
-            self._generated.switch(state, phase, parameter, result)
+            if side is None or not self.guards_depend:
+                self._generated.switch(state, phase, parameter, result)
+            else:
+                self._generated.guards(state, phase, parameter, side, result)
         return result
 
-    def switch_gradient(self, state: Array, phase: Array, parameter: Array) -> tuple[Array, Array, Array]:
+    def switch_gradient(
+        self, state: Array, phase: Array, parameter: Array, side: Array | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return derivatives in state (N, switches, n), phase (N, switches), parameters (N, switches, p)."""
         count, k = len(phase), len(self.switches)
         d_state = np.zeros((count, k, len(self.states)))
         d_phase = np.zeros((count, k))
         d_parameter = np.zeros((count, k, len(self.parameters)))
+        columns = _columns(d_state, d_phase, d_parameter)
         with np.errstate(all="ignore"):
-            self._generated.switch_gradient(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
+            if side is None or not self.guards_depend:
+                self._generated.switch_gradient(state, phase, parameter, *columns)
+            else:
+                self._generated.guards_gradient(state, phase, parameter, side, *columns)
         return d_state, d_phase, d_parameter
 
     @property

@@ -15,7 +15,7 @@ from symbolic.kernels.kernel import Argument, batch, build, points, vector
 
 Kernel = Callable[..., None]
 
-SMALL = 60
+ITERATED_UP_TO = 60
 """Number of states up to which the engine iterates in C."""
 
 
@@ -87,6 +87,20 @@ class Generated:
         return self._built(self._at_states, self._along_states(self.expressions.switches))
 
     @cached_property
+    def guards(self) -> Kernel:
+        """The switches of (state, phase, parameter, side), where they depend on the sides of jumps."""
+        return self._built([*self._at_states, self._side], [self.expressions.guards])
+
+    @cached_property
+    def guards_gradient(self) -> Kernel:
+        """Their derivatives in state, phase and parameter."""
+        return self._built([*self._at_states, self._side], self._along_states(self.expressions.guards))
+
+    @property
+    def _side(self) -> Argument:
+        return batch(self.expressions.sided.side, "side")
+
+    @cached_property
     def resets(self) -> dict[int, Kernel]:
         """By switch: the states after its event, of (state, phase, parameter)."""
         return {k: self._built(self._at_states, [after]) for k, after in self.expressions.resets.items()}
@@ -118,7 +132,7 @@ class Generated:
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
             results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            iterated = name == "residual" and e.state.numel() <= SMALL
+            iterated = name == "residual" and e.state.numel() <= ITERATED_UP_TO
             self._derivatives[name, free] = build([*self._arguments, *more], results, self.choice, iterated)
         return self._derivatives[name, free]
 
@@ -126,7 +140,7 @@ class Generated:
         """Rows to be differentiated, and the arguments that they take beside the usual ones."""
         e = self.expressions
         if name == "beside":
-            return e.sided.residual, (batch(e.sided.side, "side"),)
+            return e.sided.residual, (self._side,)
         return {"residual": e.residual, "outputs": e.outputs}[name], ()
 
     @property

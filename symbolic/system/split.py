@@ -101,7 +101,7 @@ def condensed(system: CompiledSystem) -> CompiledSystem:
 
 
 @dataclass(frozen=True)
-class Condensed:
+class CondensedRecipe:
     """A recipe of what is condensed of a system."""
 
     recipe: Callable[[], CompiledSystem]
@@ -198,7 +198,7 @@ class _Split:
             algebraics=(*whole.algebraics, *unknowns),
             outputs=tuple(whole.outputs[k] for k in outputs),
             expressions=self._expressions(outputs),
-            recipe=None if whole.recipe is None else Condensed(whole.recipe),
+            recipe=None if whole.recipe is None else CondensedRecipe(whole.recipe),
             part=self._part(forces),
             origin=whole,
             splitting=None,
@@ -286,6 +286,7 @@ class _Split:
             waved=waved,
             outputs=shown,
             switches=ca.substitute(e.switches, e.state, full_state),
+            guards=ca.substitute(e.guards, e.state, full_state),
             rest_state=e.rest_state[[int(k) for k in self.places]],
             rest_algebraic=ca.vertcat(e.rest_algebraic, ca.SX.zeros(len(self.rows))),
             increment=increment,

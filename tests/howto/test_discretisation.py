@@ -19,15 +19,23 @@ import pytest
 from support.traces import DUFFING_A, duffing_system
 
 import periodic as per
-from periodic.correction.error import ErrorEstimate, deferred
-from periodic.correction.meshes import Refinement
-from periodic.correction.newton import Correction
-from periodic.linear.bordering import Chain
-from periodic.orbit.construction import at_rest, transfer
-from periodic.orbit.mesh import Mesh, uniform
+from periodic.extend import (
+    Chain,
+    Correction,
+    Discretisation,
+    ErrorEstimate,
+    Increment,
+    Mesh,
+    Refinement,
+    Row,
+    Spectrum,
+    System,
+    at_rest,
+    deferred,
+    transfer,
+    uniform,
+)
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
-from periodic.system import System
 
 CUBIC = per.Scheme(per.Family.RADAU, 3)
 """Its points and the left end carry a cubic."""
@@ -44,7 +52,7 @@ class Steps:
     residual: float
     compiled = None
 
-    def reduced(self, row: per.Row) -> per.Row:
+    def reduced(self, row: Row) -> Row:
         """Return the row: only mesh points occur in those met here."""
         assert row.stages is None
         return row
@@ -67,7 +75,7 @@ def between(mesh: Mesh, nodes: Array, rates: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Trapezoidal(per.Discretisation):
+class Trapezoidal(Discretisation):
     """The trapezoidal rule on `ntst` equal intervals, as many as `tolerance` asks for up to `most`."""
 
     ntst: int = 64
@@ -107,7 +115,7 @@ class Trapezoidal(per.Discretisation):
         yield transfer(orbit, mesh, phases)
 
     def error(
-        self, problem: per.Problem, correction: Correction, tangent: per.Increment, spectrum: Spectrum
+        self, problem: per.Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
         """Estimate the errors by a Newton step on the halved mesh."""
         return deferred(self.linearise, problem, correction.orbit, tangent, spectrum)

@@ -1,4 +1,4 @@
-"""How to bring a linear solver of one's own: SciPy's sparse LU (`splu`) in place of condensation.
+"""How to bring a linear solver of one's own: SciPy's sparse LU (`splu`) in place of elimination.
 
 `Collocation(solver=...)` takes a function of the system, an orbit, its equations evaluated at the collocation
 points and the rows of its event nodes; it returns an `Operator`. Newton asks the operator for three things:
@@ -24,9 +24,9 @@ from support.traces import DUFFING_A, RPM, disc_system, duffing_system
 
 import periodic as per
 from periodic.collocation.residual import Rows, rows_of
+from periodic.extend import Increment, LinearisationLike, Row, System
 from periodic.orbit.jump import Jump
 from periodic.orbit.scheme import Array
-from periodic.system import LinearisationLike, System
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class SparseOperator:
 
     orbit: per.Orbit
     rows: Rows
-    own: Sequence[per.Row]
+    own: Sequence[Row]
 
     @property
     def residual(self) -> float:
@@ -77,7 +77,7 @@ class SparseOperator:
     def _with(self, border: sparse.spmatrix) -> sparse.csc_matrix:
         return sparse.vstack([self.equations[0], border]).tocsc()
 
-    def solve(self, rows: Sequence[per.Row], right: Array) -> tuple[per.Increment, ...]:
+    def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`: see `periodic.linear.operator.Operator`."""
         n, every = self.orbit.nodes.shape[1], [*self.own, *rows]
         wide = sum(self.sizes)
@@ -90,16 +90,16 @@ class SparseOperator:
         aim[len(aim) - len(rows) :] += right[1:]
         return tuple(self._increment(u) for u in splu(self._with(border)).solve(aim).T)
 
-    def _flat(self, row: per.Row) -> Array:
+    def _flat(self, row: Row) -> Array:
         stages = np.zeros_like(self.orbit.stages) if row.stages is None else row.stages
         return np.concatenate([row.nodes.ravel(), stages.ravel(), np.zeros(self.sizes[2]), row.outer])
 
-    def _increment(self, u: Array) -> per.Increment:
+    def _increment(self, u: Array) -> Increment:
         orbit, k = self.orbit, len(self.orbit.phases)
         nodes, stages, algebraic, y = np.split(u, np.cumsum(self.sizes[:3]))
         shapes = (orbit.nodes.shape, orbit.stages.shape, orbit.algebraic.shape)
         shaped = [a.reshape(shape) for a, shape in zip((nodes, stages, algebraic), shapes, strict=True)]
-        return per.Increment.of(orbit, *shaped, y[:k], y[k:])
+        return Increment.of(orbit, *shaped, y[:k], y[k:])
 
     @cached_property
     def _responses(self) -> Array:
@@ -132,7 +132,7 @@ def by_splu(
     system: System,
     orbit: per.Orbit,
     line: LinearisationLike,
-    own: Sequence[per.Row],
+    own: Sequence[Row],
     jumps: Sequence[Jump],
 ) -> SparseOperator:
     """The linear solver, of systems without impacts."""
@@ -143,7 +143,7 @@ def by_splu(
 
 @pytest.mark.parametrize("scene", ["duffing", "disc"])
 def test_same_branch_with_another_solver(scene: str) -> None:
-    """Assert that points, folds and multipliers are those of condensation, to the orbits' tolerance."""
+    """Assert that points, folds and multipliers are those of the elimination, to the orbits' tolerance."""
     duffing = (duffing_system(*DUFFING_A), "Omega", (1.8, 2.4))
     disc = (disc_system("vitrea79-810N"), "speed", (300 * RPM, 270 * RPM))  # contact is lost on the way
     problem = duffing if scene == "duffing" else disc

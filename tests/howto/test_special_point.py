@@ -17,55 +17,66 @@ from scipy.integrate import solve_ivp
 
 import periodic as per
 import symbolic as sym
-from periodic.bifurcations.switching import repeated, switched
-from periodic.collocation.condensation import condensed
-from periodic.linear.bordering import Chain
+from periodic.collocation.elimination import eliminated
+from periodic.extend import (
+    Chain,
+    Condition,
+    Increment,
+    Row,
+    SideCondition,
+    Solution,
+    System,
+    repeated,
+    switched,
+)
 from periodic.orbit.scheme import Array
-from periodic.system import System
 
 THIRD = 2 * np.pi / 3
 TRIPLING = per.Label.register("PT", critical=True)
 
 
-def real_part(solution: per.Solution) -> float:
+def real_part(solution: Solution) -> float:
     """Re mu + 1/2 of the pair nearest to exp(+-2 pi i/3), 0 where there is none: the test function."""
     pairs = [mu for mu in solution.spectrum.nontrivial if mu.imag > 0]
     return min((float(mu.real) + 0.5 for mu in pairs), key=abs, default=0.0)
 
 
-def on_the_circle(solution: per.Solution) -> bool:
+def on_the_circle(solution: Solution) -> bool:
     """Whether the pair is on the unit circle, within its error."""
     return bool(np.abs(np.abs(solution.spectrum.nontrivial) - 1).max() < 1e-6)
 
 
-TEST = per.TestFunction(label=TRIPLING, value=real_part, genuine=on_the_circle)
+TEST = per.extend.TestFunction(label=TRIPLING, value=real_part, genuine=on_the_circle)
 
 
 @dataclass(frozen=True)
-class TriplingCondition(per.Condition):
+class TriplingCondition(Condition):
     """The pair of largest modulus has the real part -1/2: on a curve of such points in two parameters."""
 
-    def at(self, origin: per.Orbit, given: per.Given) -> per.SideCondition:
+    def at(self, origin: per.Orbit, given: per.Given) -> SideCondition:
         """Return the condition near an orbit."""
         return _Held()
 
 
 class _Held:
-    def linearise(self, system: System, orbit: per.Orbit, free: tuple[int, ...]) -> per.Row:
+    def linearise(self, system: System, orbit: per.Orbit, free: tuple[int, ...]) -> Row:
         """Return Re mu + 1/2 and its gradient, which the functional `Multiplier` knows."""
         row = per.Multiplier(0, "real").linearise(system, orbit, free)
-        return per.Row(row.value + 0.5, row.nodes, row.outer, row.stages)
+        return Row(row.value + 0.5, row.nodes, row.outer, row.stages)
 
 
 def tripled(
-    system: System, orbit: per.Orbit, parameter: str, determined: Mapping[str, per.Condition] | None = None
+    system: System,
+    orbit: per.Orbit,
+    parameter: str,
+    determined: Mapping[str, Condition] | None = None,
 ) -> per.Orbit:
     """Return an orbit of three periods that branches off: a guess for `trace`.
 
     It leaves along x(tau) + s Re(exp(i phi) Phi(tau) v), M v = exp(2 pi i/3) v; of the phases phi those are
     tried that differ.
     """
-    chain, thrice = Chain(condensed(system, orbit, ())), repeated(orbit, 3)
+    chain, thrice = Chain(eliminated(system, orbit, ())), repeated(orbit, 3)
     values, vectors = np.linalg.eig(chain.fundamental[-1])
     vector = chain.fundamental @ vectors[:, values.imag.argmax()]
     for phi in np.linspace(0, THIRD, 8, endpoint=False):
@@ -79,13 +90,13 @@ def tripled(
     raise per.SwitchError("no orbit of three periods was found")
 
 
-def _thrice(chain: Chain, periods: list[Array]) -> per.Increment:
+def _thrice(chain: Chain, periods: list[Array]) -> Increment:
     """The perturbation of three periods from that of each at the mesh points."""
     still = np.zeros(len(chain.orbit.phases))
-    inner = [chain.condensed.recover(nodes, still, 0.0) for nodes in periods]
+    inner = [chain.eliminated.recover(nodes, still, 0.0) for nodes in periods]
     nodes = np.concatenate([*(part[:-1] for part in periods[:-1]), periods[-1]])
     stages, algebraic = (np.concatenate(parts) for parts in zip(*inner, strict=True))
-    return per.Increment(nodes, stages, algebraic, np.tile(still, 3), np.zeros(1), nodes)
+    return Increment(nodes, stages, algebraic, np.tile(still, 3), np.zeros(1), nodes)
 
 
 def helmholtz() -> sym.CompiledSystem:

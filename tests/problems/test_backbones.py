@@ -22,7 +22,9 @@ FREE = {"c": per.Conservative()}
 
 def backbone(system: sym.CompiledSystem, end: float, which: int = 0, tol: float = 1e-8) -> per.Branch:
     """The family of a mode, from small amplitude to an angular frequency."""
-    guess = per.mode(system, per.equilibria(system, "c", (0, 1))[0].orbit, "c", which=which)
+    guess = per.normal_mode(
+        system, per.trace(system, "c", (0, 1), method=per.Equilibrium())[0].orbit, "c", which=which
+    )
     begin = float(guess.parameter[[p.name for p in system.parameters].index("omega")])
     return per.trace(system, "omega", (begin, end), guess=guess, determined=FREE, tol=tol)
 
@@ -62,7 +64,7 @@ def test_backbone_of_duffing(linear: float, cubic: float, end: float, tol: float
 def test_backbone_that_turns() -> None:
     """Assert that x'' + x - x^3 + 0.5 x^5 = 0, softening first, has an LP where T is longest."""
     system = oscillator(1.0, -1.0, 0.5)
-    guess = per.mode(system, per.equilibria(system, "c", (0, 1))[0].orbit, "c")
+    guess = per.normal_mode(system, per.trace(system, "c", (0, 1), method=per.Equilibrium())[0].orbit, "c")
     branch = per.trace(system, "omega", (0.5, 1.1), guess=guess, determined=FREE)
     assert labels(branch) == ["LP", "HB"]
     assert branch.stop.reason is per.Reason.EQUILIBRIUM
@@ -86,7 +88,7 @@ def test_backbone_that_turns() -> None:
 def test_linear_backbone_is_vertical() -> None:
     """Assert that the orbits of a linear oscillator, all of one frequency, are traced as they grow."""
     system = oscillator(4.0, 0.0)
-    guess = per.mode(system, per.equilibria(system, "c", (0, 1))[0].orbit, "c")
+    guess = per.normal_mode(system, per.trace(system, "c", (0, 1), method=per.Equilibrium())[0].orbit, "c")
     few = per.ArclengthControl(max_points=12)
     branch = per.trace(system, "omega", (1.0, 3.0), guess=guess, determined=FREE, control=few)
     assert len(branch) > 10
@@ -194,8 +196,8 @@ def test_kept_on_disk(tmp_path: Path) -> None:
 def test_modes_that_there_are_not() -> None:
     """Assert that a mode beyond the last and a damped one are refused."""
     system = two_masses()
-    still = per.equilibria(system, "c", (0, 1))
+    still = per.trace(system, "c", (0, 1), method=per.Equilibrium())
     with pytest.raises(ValueError, match="which is 2; the equilibrium has 2 undamped modes"):
-        per.mode(system, still[0].orbit, "c", which=2)
+        per.normal_mode(system, still[0].orbit, "c", which=2)
     with pytest.raises(ValueError, match="which is 0; the equilibrium has 0 undamped modes"):
-        per.mode(system, still[-1].orbit, "c")
+        per.normal_mode(system, still[-1].orbit, "c")

@@ -13,7 +13,7 @@ from support.traces import RPM, disc, fold_speeds, largest_multiplier, user_poin
 
 import periodic as per
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 DRY, FILM = "dry-810N", "quasistatic-film-810N"
 Case = tuple[str, float]

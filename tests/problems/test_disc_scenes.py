@@ -11,7 +11,7 @@ from support.traces import FINE, RPM, STANDARD, disc, fold_speeds, largest_multi
 
 import periodic as per
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 FOLDS = {
     "vitrea79-2100N": (294.691534, 307.692770),

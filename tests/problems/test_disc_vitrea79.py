@@ -242,5 +242,5 @@ def test_least_load_where_contact_is_lost(rpm: float, load: float, accuracy: per
     assert point.minimum["load"] == pytest.approx(load, rel=1e-4)
 
 
-def _column(system: per.System, output: str) -> int:
+def _column(system: per.extend.System, output: str) -> int:
     return [variable.name for variable in system.outputs].index(output)

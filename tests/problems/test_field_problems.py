@@ -77,7 +77,7 @@ def settled(field: Any, begin: list[float], until: float, period: float, paramet
 @cache
 def circuit_orbits() -> per.Branch:
     """AUTO tor, second run: symmetric orbits from the Hopf point, up to a period of 31."""
-    (point,) = per.equilibria(circuit(), "nu", (-0.9, -0.55)).labelled(HB)
+    (point,) = per.trace(circuit(), "nu", (-0.9, -0.55), method=per.Equilibrium()).labelled(HB)
     assert point.parameter == pytest.approx(-0.589336, abs=1e-6)
     return born(circuit(), point, "nu", (-0.9, -0.4), watch=per.Watch(limits=shorter_than(31)))
 
@@ -122,7 +122,7 @@ def test_torus_of_the_electronic_oscillator() -> None:
 @cache
 def enzyme_orbits() -> per.Branch:
     """AUTO plp: the orbits from the first Hopf point, and one of them at rho = 4."""
-    points = per.equilibria(enzyme(), "rho", (2, 6)).labelled(HB)
+    points = per.trace(enzyme(), "rho", (2, 6), method=per.Equilibrium()).labelled(HB)
     assert [p.parameter for p in points] == pytest.approx([3.4999538280, 4.6504578126], rel=1e-9)
     return born(enzyme(), points[0], "rho", (2, 6), at=4.0)
 
@@ -155,7 +155,7 @@ def test_isola_of_the_enzyme() -> None:
 
 def test_reactions() -> None:
     """Assert AUTO's abc: orbits from the first Hopf point to the last and from the second to the third."""
-    points = per.equilibria(reactions(), "D", (0, 0.4)).labelled(HB)
+    points = per.trace(reactions(), "D", (0, 0.4), method=per.Equilibrium()).labelled(HB)
     hopfs = [0.2041845357, 0.2298390376, 0.2599578542, 0.3462085216]
     assert [p.parameter for p in points] == pytest.approx(hopfs, rel=1e-9)
     first, second = (born(reactions(), p, "D", (0.1, 0.4)) for p in points[:2])
@@ -169,13 +169,20 @@ def test_reactions() -> None:
 
 def test_fishing() -> None:
     """Assert AUTO's pp2 in closed form: fold and branch point of the fish alone, Hopf point with sharks."""
-    alone = per.equilibria(predator(), "quota", (0.65, 1), start=0.7, guess={"fish": 0.7, "sharks": 0.0})
+    alone = per.trace(
+        predator(),
+        "quota",
+        (0.65, 1),
+        start=0.7,
+        guess={"fish": 0.7, "sharks": 0.0},
+        method=per.Equilibrium(),
+    )
     u = alone.labelled(LP)[0].maximum["fish"]
     assert (1 - 2 * u) * (np.exp(5 * u) - 1) == pytest.approx(5 * u * (1 - u), rel=1e-11)
     point = alone.labelled(BP)[0]
     assert point.parameter == pytest.approx((2 / 3) / (1 - np.exp(-5 / 3)), rel=1e-11)
     guess = per.branched(predator(), point.orbit, "quota", leaving=alone[1].orbit)
-    both = per.equilibria(predator(), "quota", (0, 1), guess=guess)
+    both = per.trace(predator(), "quota", (0, 1), guess=guess, method=per.Equilibrium())
     (hopf,) = both.labelled(HB)
     share = np.exp(-5 / 3)
     assert hopf.parameter == pytest.approx(1 / (3 * (1 - share) - 5 * share), rel=1e-11)
@@ -185,7 +192,7 @@ def test_fishing() -> None:
 
 def test_catalyst() -> None:
     """Assert Hopf points, folds and Lyapunov coefficients (ours times omega) of MatCont's manual."""
-    branch = per.equilibria(catalyst(), "q2", (0.9, 1.2), start=1.2)
+    branch = per.trace(catalyst(), "q2", (0.9, 1.2), start=1.2, method=per.Equilibrium())
     known = [("HB", 1.051558), ("LP", 1.042049), ("LP", 1.052200), ("HB", 1.040991)]
     assert places(branch) == expected(*known, rel=6e-7)
     for point, coefficient in zip(branch.labelled(HB), [10.70259, 4.332247], strict=True):
@@ -196,7 +203,7 @@ def test_catalyst() -> None:
 @pytest.mark.long
 def test_peroxidase() -> None:
     """Assert both tori and the fold of the orbits of Steinmetz and Larter, which end at both Hopf points."""
-    hopfs = per.equilibria(peroxidase(), "k7", (0.6, 5), start=4.235322).labelled(HB)
+    hopfs = per.trace(peroxidase(), "k7", (0.6, 5), start=4.235322, method=per.Equilibrium()).labelled(HB)
     branch = born(peroxidase(), hopfs[0], "k7", (0.6, 5))
     ends = [p.parameter for p in hopfs]
     middle = [("NS", 0.71643356438), ("NS", 0.818565885283), ("LP", 4.74838433992)]

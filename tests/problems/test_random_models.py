@@ -17,7 +17,7 @@ import periodic as per
 from periodic import Reason
 from periodic.results import netcdf as storage
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 STEP = per.ArclengthControl(max_points=30, max_newton=600)
 

@@ -33,7 +33,7 @@ def van_der_pol(eps: float) -> sym.CompiledSystem:
 def explosion(eps: float, lowest: float, tol: float = 1e-6) -> per.Branch:
     """The orbits born at a = 1, through their explosion, to relaxation oscillations at the lowest a."""
     system = van_der_pol(eps)
-    (hopf,) = per.equilibria(system, "a", (lowest, 1.05), start=1.05).labelled("HB")
+    (hopf,) = per.trace(system, "a", (lowest, 1.05), start=1.05, method=per.Equilibrium()).labelled("HB")
     guess = per.hopf(system, hopf.orbit, "a")
     branch = per.trace(system, "a", (lowest, 1.05), start=None, guess=guess, determined=ORBIT, tol=tol)
     assert branch.special_points[0].parameter == lowest
@@ -203,7 +203,9 @@ def test_homoclinic_end() -> None:
             parameters={"lam": -0.55},
         )
     )
-    (hopf,) = per.equilibria(system, "lam", (-0.6, -0.3), guess={"x": 1.0}).labelled("HB")
+    (hopf,) = per.trace(system, "lam", (-0.6, -0.3), guess={"x": 1.0}, method=per.Equilibrium()).labelled(
+        "HB"
+    )
     guess = per.hopf(system, hopf.orbit, "lam")
     branch = per.trace(system, "lam", (-0.6, -0.3), start=None, guess=guess, determined=ORBIT)
     assert [s.reason for s in branch.stops] == [per.Reason.EQUILIBRIUM, per.Reason.HOMOCLINIC]

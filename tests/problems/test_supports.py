@@ -13,7 +13,7 @@ import periodic as per
 import symbolic as sym
 from symbolic.motion.linear import modes
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 MASS, PRELOAD, HERTZ, AMPLITUDE = 20.4, 810.0, 28e9, 1.27e-6
 DELTA0 = (PRELOAD / HERTZ) ** (2 / 3)

@@ -10,7 +10,7 @@ from symbolic.integration.flow import Flow
 from symbolic.motion.explicit import rates
 from symbolic.motion.linear import modes
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.system.compiled import with_values
 
 THIRD, THREE = "third-order-810N", "vitrea79-810N"
@@ -115,7 +115,7 @@ def test_dry_contact_is_refused() -> None:
     pair = sym.ContactPair(x)
     dry = sym.Mass(x, 1.0) + sym.Preload(pair, 810.0) + sym.Hertz(pair, 28e9)
     with pytest.raises(ValueError, match="one contact with a squeeze film"):
-        sym.compile(sym.ThirdOrder(dry))
+        sym.compile(sym.films.ThirdOrder(dry))
 
 
 def test_support_is_refused() -> None:

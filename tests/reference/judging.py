@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 import periodic as per
 from reference.closer import closer
 from reference.contact import Contact, Period, period, periodic
+from reference.joints.period import Period as JointsPeriod
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class Verdict:
     multipliers: float
     stability: bool
     growth: float
-    found: Period
+    found: Period | JointsPeriod
 
     def wrong(self, point: per.Point, tol: float) -> str:
         """Say what a point claims that is not so, or nothing."""

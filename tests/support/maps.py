@@ -15,17 +15,17 @@ BOUNDS = (0.4, 0.5)
 GRID = {"F": [0.5, 1.0, 1.5], "zeta": [0.1, 0.2, 0.3, 0.4]}
 
 
-def height(task: per.Task, branch: per.Branch) -> float:
+def height(task: per.maps.Task, branch: per.Branch) -> float:
     """The highest of the points' peaks to peak: cheap, and exact nowhere but at the points."""
     return float(branch.peak_to_peak("x").max())
 
 
-def ends(task: per.Task, branch: per.Branch) -> list[float]:
+def ends(task: per.maps.Task, branch: per.Branch) -> list[float]:
     """Two numbers."""
     return [branch[0].parameter, branch[-1].parameter]
 
 
-def process(task: per.Task, branch: per.Branch) -> float:
+def process(task: per.maps.Task, branch: per.Branch) -> float:
     """Which process reads it."""
     return float(os.getpid())
 
@@ -36,7 +36,7 @@ class Deadly:
     def __init__(self, values: tuple[float, ...], parameter: str = "zeta", wait: float = 0.0) -> None:
         self.values, self.parameter, self.wait = values, parameter, wait
 
-    def __call__(self, task: per.Task, branch: per.Branch) -> float:
+    def __call__(self, task: per.maps.Task, branch: per.Branch) -> float:
         """The value."""
         value = branch[0].orbit.parameters[self.parameter]
         time.sleep(self.wait)
@@ -51,7 +51,7 @@ class Counted:
     def __init__(self, folder: Path, wait: float = 0.0) -> None:
         self.folder, self.wait = folder, wait
 
-    def __call__(self, task: per.Task, branch: per.Branch) -> float:
+    def __call__(self, task: per.maps.Task, branch: per.Branch) -> float:
         """The force."""
         time.sleep(self.wait)
         values = branch[0].orbit.parameters
@@ -60,8 +60,8 @@ class Counted:
         return values["F"]
 
 
-def task(**numbers: per.Number) -> per.Task:
+def task(**numbers: per.maps.Number) -> per.maps.Task:
     """A linear oscillator below its resonance: quickly traced."""
     steps = per.ArclengthControl(ds=0.5, ds_max=1.0)
     numbers = numbers or {"peak": height}
-    return per.Task(LinearOscillator(), "Omega", BOUNDS, numbers=numbers, tol=1e-3, control=steps)
+    return per.maps.Task(LinearOscillator(), "Omega", BOUNDS, numbers=numbers, tol=1e-3, control=steps)

@@ -46,11 +46,11 @@ class Disc:
         parts += [sym.Preload(pair, PRELOAD), sym.Hertz(pair, HERTZ)]
         if self.amplitude is not None:
             parts.append(sym.Waviness(pair, self.amplitude, WAVES, speed))
-        law = sym.CalibratedThickness(speed, RADIUS, **VITREA)
+        law = sym.films.CalibratedThickness(speed, RADIUS, **VITREA)
         if self.film == "squeeze":
             parts.append(sym.SqueezeFilm(pair, law, speed, RADIUS, self.beta, self.squeeze))
         if self.film == "quasistatic":
-            parts.append(sym.QuasistaticFilm(pair, law, self.beta))
+            parts.append(sym.films.QuasistaticFilm(pair, law, self.beta))
         if self.zeta is not None:
             parts.append(sym.ContactDamping(pair, self.zeta))
         return parts

@@ -10,7 +10,7 @@ import numpy as np
 import periodic as per
 import symbolic as sym
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 RPM = 2 * math.pi / 60
 STANDARD, FINE = per.Accuracy.STANDARD, per.Accuracy.FINE

@@ -1,1 +1,1 @@
-"""Seven hundred models with contact drawn at random, traced and judged: `python -m survey`."""
+"""Nine hundred models with contact and joints drawn at random, traced and judged: `python -m survey`."""

@@ -1,6 +1,6 @@
 """Trace and judge models with contact drawn at random; `--page` writes the page of the rows there are.
 
-    python -m survey ROWS [ROWS ...] [--share 0/2] [--kinds chains,gears] [--judged 8] [--page FILE]
+    python -m survey ROWS [ROWS ...] [--share 0/2] [--kinds joints,"joints down"] [--judged 8] [--page FILE]
 
 Rows go to the first file; models that any of the files has are not run again, so that a run that was stopped
 goes on where it was, and several processes, each with a file of its own and a share, divide the work.

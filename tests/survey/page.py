@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from support.drawn.joints import DOWN, UP
+
 from survey.rows import JUDGED, NEWTON, POINTS, SECONDS, SEEDS, TOL, Row
 
 FATES = ("to the end", "limit of work", "friction holds", "other")
@@ -13,11 +15,14 @@ INTRODUCTION = """# Models with contact drawn at random
 {count} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears with backlash
 under load, masses that strike a rigid stop, dry friction beside clearances, chains of 2 to 10 masses, each
 before a stop, and contacts whose force jumps, damped or preloaded (`tests/support/drawn/contact.py`; a seed
-is a model). Each is traced through a resonance at tol {tol:g}, at most {points} points, {newton} Newton
-iterations and {seconds:g} s of CPU. {judged} points of each, drawn at random, are judged: orbit and
-multipliers by an event-exact solution in closed form, in extended precision, that shares nothing with the
-packages (`tests/reference/contact.py`, `closer.py`). A point is wrong where an error is more than ten times
-what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs them, in some
+is a model); and two to six masses or a beam with two to eight joints, dry friction, exact sliders, stops,
+some with cubic springs, each from both ends of its range (`tests/support/drawn/joints.py`). Each is traced
+through a resonance at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of
+CPU. {judged} points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution
+in closed form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py`
+with `closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
+than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs
+them, in some
 20 minutes on two cores.
 
 Engine at commit `{commit}`.
@@ -50,8 +55,17 @@ def _summary(rows: Sequence[Row]) -> str:
     ends = sum(row.fate == FATES[0] for row in rows)
     return (
         f"**{ends} of {len(rows)} are traced to the end; {wrong or 'none'} of the {judged} points judged "
-        f"{'are' if wrong > 1 else 'is'} wrong.** The largest error is {worst:.2g} times what is claimed.\n"
+        f"{'are' if wrong > 1 else 'is'} wrong.** The largest error is {worst:.2g} times what is claimed."
+        f"{_both(rows)}\n"
     )
+
+
+def _both(rows: Sequence[Row]) -> str:
+    """How many models with several joints are traced to their ends from both."""
+    fates = {(row.kind, row.seed): row.fate == FATES[0] for row in rows if row.kind in (UP, DOWN)}
+    seeds = {seed for kind, seed in fates}
+    both = sum(fates.get((UP, seed), False) and fates.get((DOWN, seed), False) for seed in seeds)
+    return f" **Of {len(seeds)} models with several joints {both} are so from both ends.**" if seeds else ""
 
 
 def _table(rows: Sequence[Row]) -> str:

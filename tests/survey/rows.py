@@ -10,8 +10,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from reference.judging import judged
-from support.drawn.contact import Case, drawn
+from reference.joints.judging import judged as judged_joints
+from reference.judging import Verdict, judged
+from support.drawn import contact
+from support.drawn.contact import Case
+from support.drawn.joints import DOWN, UP, JointCase, drawn_joints
 
 import periodic as per
 from reports.studies.extremes.survey import within
@@ -25,8 +28,17 @@ CONTROL = per.ArclengthControl(max_points=POINTS, max_newton=NEWTON)
 JUDGED = 8
 """Points of a branch that are judged, drawn at random."""
 
-SEEDS = {"clearances": 200, "gears": 100, "impacts": 100, "friction": 100, "chains": 100, "jumps": 100}
-"""How many models of a kind, from seed 100 on."""
+SEEDS = {
+    "clearances": 200,
+    "gears": 100,
+    "impacts": 100,
+    "friction": 100,
+    "chains": 100,
+    "jumps": 100,
+    UP: 100,
+    DOWN: 100,
+}
+"""How many models of a kind, from seed 100 on; those with several joints are traced from either end."""
 
 HELD = "holds all along"
 """What a branch says where friction holds the motion for good: it is at rest, anywhere."""
@@ -70,12 +82,17 @@ def models() -> Iterator[tuple[str, int]]:
         yield from ((kind, 100 + k) for kind, count in SEEDS.items() if k < count)
 
 
-def traced(case: Case) -> per.Branch:
+def drawn(kind: str, seed: int) -> Case | JointCase:
+    """Return the case of a seed."""
+    return drawn_joints(kind, seed) if kind in (UP, DOWN) else contact.drawn(kind, seed)
+
+
+def traced(case: Case | JointCase) -> per.Branch:
     """Return the branch of a model."""
     return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=CONTROL)
 
 
-def _as_far(case: Case) -> per.Branch:
+def _as_far(case: Case | JointCase) -> per.Branch:
     """Return the same, or what there is of it where its time is up."""
     try:
         return traced(case)
@@ -85,8 +102,9 @@ def _as_far(case: Case) -> per.Branch:
 
 def row(kind: str, seed: int, count: int = JUDGED) -> Row:
     """Trace a model and judge as many points. Any warning or exception is recorded as wrong."""
-    case, begun = drawn(kind, seed), time.process_time()
+    begun = time.process_time()
     try:
+        case = drawn(kind, seed)
         with warnings.catch_warnings(), within(SECONDS):
             warnings.simplefilter("error")
             branch = _as_far(case)
@@ -123,7 +141,7 @@ class Verdicts:
     unjudged: list[str]
 
 
-def verdicts(case: Case, branch: per.Branch, seed: int, count: int = JUDGED) -> Verdicts:
+def verdicts(case: Case | JointCase, branch: per.Branch, seed: int, count: int = JUDGED) -> Verdicts:
     """Judge points of a branch in closed form; at a touch itself multipliers have two values."""
     touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
     points = [point for point in branch if point.parameter not in touched]
@@ -132,7 +150,7 @@ def verdicts(case: Case, branch: per.Branch, seed: int, count: int = JUDGED) -> 
         point = points[int(k)]
         place = f"Omega {point.parameter!r} {point.label.value}".strip()
         try:
-            verdict = judged(case.exact, point, case.names)
+            verdict = _verdict(case, point)
         except ArithmeticError as error:
             found.unjudged.append(f"{place}: {error}")
             continue
@@ -143,6 +161,12 @@ def verdicts(case: Case, branch: per.Branch, seed: int, count: int = JUDGED) -> 
         if said:
             found.wrong.append(f"{place}: {said}")
     return found
+
+
+def _verdict(case: Case | JointCase, point: per.Point) -> Verdict:
+    if isinstance(case, Case):
+        return judged(case.exact, point, case.names)
+    return judged_joints(case.exact, point, case.states)
 
 
 def read(files: list[Path]) -> dict[tuple[str, int], Row]:

@@ -9,9 +9,9 @@ from survey.rows import Row, models, read, row, write
 
 
 def test_all_models_are_drawn_once() -> None:
-    """Assert that there are 500 and 100 chains."""
+    """Assert that there are 900, 100 chains among them."""
     drawn = list(models())
-    assert len(set(drawn)) == len(drawn) == 700
+    assert len(set(drawn)) == len(drawn) == 900
     assert sum(kind == "chains" for kind, _ in drawn) == 100
 
 
@@ -36,3 +36,19 @@ def test_page_counts() -> None:
     assert "| chains | 1 | 0 | 1 | 0 | 0 | 400 | 0 | 0 | 0 | 0 | 0 |" in told
     assert "| gears 101 | Omega 1: orbit |" in told
     assert "| chains 100 | largest number of points reached: 400 points (400 points, 0 s) |" in told
+
+
+def test_models_with_joints_count_from_both_ends() -> None:
+    """Assert what the page says of two models, one of which is traced to its end from one end only."""
+    rows = [
+        Row(kind, seed, "BOUND", "bound reached") for kind in ("joints", "joints down") for seed in (1, 2)
+    ]
+    rows[3] = Row("joints down", 2, "NO_START", "no orbit found at the start")
+    assert "**Of 2 models with several joints 1 are so from both ends.**" in page(rows, "abc")
+
+
+def test_joints_are_judged() -> None:
+    """Assert that points of three masses with two joints of Coulomb and cubic springs are right."""
+    found = row("joints down", 123, 3)
+    assert (found.judged, found.wrong, found.unjudged) == (3, (), ())
+    assert 0 < found.ratio < 1

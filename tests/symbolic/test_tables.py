@@ -2,7 +2,7 @@
 
 from symbolic.equations.variables import SwitchInfo
 from symbolic.system.overview import overview
-from symbolic.tables import MANY, table, told
+from symbolic.tables import MANY, listed, table
 
 
 def test_table() -> None:
@@ -16,10 +16,10 @@ def test_table() -> None:
 
 
 def test_names_in_a_line() -> None:
-    """Assert that many names are cut, with how many there are, and none are told."""
-    assert told(["a", "b"]) == "a, b"
-    assert told([]) == "none"
-    assert told(str(k) for k in range(MANY + 1)).endswith(f", ... ({MANY + 1})")
+    """Assert that many names are cut, with how many there are, and none are listed."""
+    assert listed(["a", "b"]) == "a, b"
+    assert listed([]) == "none"
+    assert listed(str(k) for k in range(MANY + 1)).endswith(f", ... ({MANY + 1})")
 
 
 def test_switches_say_how_they_are_passed() -> None:

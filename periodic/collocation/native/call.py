@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from periodic.collocation.multipliers.substeps import GROWING
+from periodic.collocation.fastmotions.substeps import GROWING
 from periodic.collocation.native.elimination import ELIMINATION, LARGE, full
 from periodic.correction.newton import NewtonSettings
 from periodic.linear.bordering import GROWTH
@@ -21,7 +21,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling, jumps_of, resets_of
 
-MOST = 60
+MOST_STATES = 60
 """Number of states up to which it is worth its while; where matrices are full, up to `LARGE`."""
 
 _SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
@@ -76,7 +76,7 @@ def prepared(
     in one free parameter.
     """
     n = orbit.nodes.shape[1]
-    if n > MOST or orbit.equilibrium or len(free) != 1 or resets_of(system) or jumps_of(system):
+    if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system) or jumps_of(system):
         return None
     with_compiler, functions = compiling(system), _functions(system, free)
     if with_compiler is None or functions is None or (n >= LARGE and _full(system, orbit)):

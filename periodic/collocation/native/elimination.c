@@ -1,5 +1,5 @@
 
-/* What `periodic.collocation.condensation` and `periodic.linear.bordering` do, point by point and interval by interval.
+/* What `periodic.collocation.elimination` and `periodic.linear.bordering` do, point by point and interval by interval.
 
    Arrays are contiguous, row by row; the names and shapes are those of the Python code.
    w1 = 1 + 2n + q columns of a point's rows, w = 1 + n + q columns of an interval's. */
@@ -173,14 +173,14 @@ static void integrate(whole ncol, const double *stage_rates, double *integral, d
 }
 
 /* work holds ncol (n+m) w1 + m (m + w1) + ncol n (ncol n + w + 1) + 3 ncol ncol numbers, marks 4n. */
-int condense(whole count, whole ncol, whole n, whole m, whole k, whole p,
-             const double *line_residual, const double *d_rate, const double *d_state,
-             const double *d_algebraic, const double *d_phase, const double *d_parameter,
-             const double *width, const double *left_gradient, const double *width_gradient,
-             const double *points, const double *stage_rates, const double *end,
-             const double *knots, const double *knot_rates, const double *nodes,
-             double *step, double *stages, double *algebraic, double *residual, double *work,
-             whole *marks)
+int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p,
+                     const double *line_residual, const double *d_rate, const double *d_state,
+                     const double *d_algebraic, const double *d_phase, const double *d_parameter,
+                     const double *width, const double *left_gradient, const double *width_gradient,
+                     const double *points, const double *stage_rates, const double *end,
+                     const double *knots, const double *knot_rates, const double *nodes,
+                     double *step, double *stages, double *algebraic, double *residual, double *work,
+                     whole *marks)
 {
     const whole q = k + p, rows = n + m, w1 = 1 + 2 * n + q, w = 1 + n + q;
     double *columns = work, *integral = columns + ncol * n * w1 + m * w1;

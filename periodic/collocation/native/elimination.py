@@ -1,4 +1,4 @@
-"""Condensation in C (`elimination.c`), for systems that can compile it: see `Compiling`.
+"""Elimination of the stages in C (`elimination.c`), for systems that can compile it: see `Compiling`.
 
 NumPy's calls cost more than the work that they do where matrices are small, and C leaves zeros out; large
 full ones are BLAS's.
@@ -20,7 +20,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, compiling
 
 NOT_FINITE, SINGULAR = 1, 2
-"""What `condense` answers where it fails."""
+"""What `eliminate_stages` answers where it fails."""
 
 LARGE = 32
 """Number of states from which full matrices are BLAS's,"""
@@ -38,21 +38,21 @@ _Address = ctypes.c_char * 0
 
 @dataclass(frozen=True)
 class Routines:
-    """The functions of a library; arrays and errors as in `periodic.collocation.condensation`."""
+    """The functions of a library; arrays and errors as in `periodic.collocation.elimination`."""
 
     library: ctypes.CDLL
 
     def __post_init__(self) -> None:
         size, array, lib = ctypes.c_ssize_t, ctypes.c_void_p, self.library
-        lib.condense.argtypes, lib.condense.restype = [size] * 6 + [array] * 21, ctypes.c_int
+        lib.eliminate_stages.argtypes, lib.eliminate_stages.restype = [size] * 6 + [array] * 21, ctypes.c_int
         lib.chain.argtypes, lib.chain.restype = [size] * 3 + [array] * 2, None
         lib.recover.argtypes, lib.recover.restype = [size] * 5 + [ctypes.c_double] + [array] * 9, None
 
-    def condense(self, orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array, Array, float]:
+    def eliminate_stages(self, orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array, Array, float]:
         """Return step, stages, algebraic and residual of the equations linearised at an orbit.
 
-        Raises as `periodic.collocation.condensation.condense`, and ValueError for derivatives of a wrong
-        shape.
+        Raises as `periodic.collocation.elimination.eliminate_stages`, and ValueError for
+        derivatives of a wrong shape.
         """
         (count, ncol, n), m, residual = orbit.stages.shape, orbit.algebraic.shape[2], 0.0
         step: Array | None = None
@@ -64,11 +64,11 @@ class Routines:
                 algebraic = np.empty((count, ncol, m, w + n))
             _check(own, (part.stop - part.start) * ncol, n, m)
             into = step[part], stages[part], algebraic[part]
-            residual = max(residual, self._condense(orbit, part, own, into))
+            residual = max(residual, self._eliminate(orbit, part, own, into))
         assert step is not None
         return step, stages, algebraic, residual
 
-    def _condense(
+    def _eliminate(
         self, orbit: Orbit, part: slice, line: LinearisationLike, into: tuple[Array, Array, Array]
     ) -> float:
         """Condense some intervals; return their largest residual."""
@@ -76,7 +76,7 @@ class Routines:
         w, nodes = into[0].shape[2], orbit.nodes[part.start : part.stop + 1]
         room = (ncol * n + m) * (w + n) + m * (m + w + n) + ncol * n * (ncol * n + w + 1) + 3 * ncol**2
         grid, scheme = orbit.grid, orbit.mesh.scheme
-        code = self.library.condense(
+        code = self.library.eliminate_stages(
             *(part.stop - part.start, ncol, n, m, len(orbit.phases), line.d_parameter.shape[2]),
             *_given(line.residual, line.d_rate, line.d_state),
             *_given(line.d_algebraic, line.d_phase, line.d_parameter),

@@ -9,8 +9,9 @@ struct estimate {
     const double *stages_of, *unknowns_of, *middle;                /* the scheme's halves */
     double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
     double *monodromy;                                             /* that of the better orbit, (n, n) */
+    double *better_nodes, *better_stages, *better_algebraic, *better_phases, *better_parameter; /* that itself */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
-    double straight, turning, steep, rounding, digits, fast;       /* limits: see estimate.py */
+    double reach, straight, steep, rounding, digits, fast;         /* limits: see estimate.py */
     double apart, shift;                                           /* errors of the states and of the parameter */
     whole unresolved;                                              /* whether a vibration is too fast for the mesh */
 };
@@ -146,9 +147,8 @@ static double moved_by(const struct call *c, const struct change *d)
     return most;
 }
 
-/* How far along the branch the orbit of the same parameter lies, which is known to its last digits, in kernels;
-   0 at a fold: see error.py. */
-static double to_same_parameter(const struct call *c, const struct estimate *e, const double *weights)
+/* Arclength of the kernel. */
+static double kernel_length(const struct call *c, const struct estimate *e, const double *weights)
 {
     const whole n = c->n, k = c->k, each = (c->ncol + 1) * n;
     const double own = c->kernel.outer[k] / e->scale;
@@ -163,26 +163,73 @@ static double to_same_parameter(const struct call *c, const struct estimate *e, 
             states += weights[j] * change * change;
         }
     }
-    const double part = fabs(own) / sqrt(states / (e->unit * e->unit) + own * own);
-    const double shift = c->increment.outer[k], least = e->digits * fabs(c->parameter[c->free]);
-    if (part < e->turning)
-        return 0;
-    const int near = fabs(shift) < e->straight * part * part * e->scale;
-    return -((near ? shift : 0) + copysign(least, shift)) / c->kernel.outer[k];
+    return sqrt(states / (e->unit * e->unit) + own * own);
 }
 
-/* Go to the orbit that the increment leads to, and so many kernels further. */
+/* Go to the orbit that the increment kept leads to, so many kernels further than before. */
 static void go(struct call *c, struct room *r, double further)
 {
     const whole ends = (c->count + 1) * c->n, points = c->count * c->ncol;
     const whole sizes[] = {ends, points * c->n, points * c->m, c->k + 1};
-    double *const to[] = {c->increment.nodes, c->increment.stages, c->increment.algebraic, c->increment.outer};
-    double *const by[] = {c->kernel.nodes, c->kernel.stages, c->kernel.algebraic, c->kernel.outer};
+    const double *const by[] = {c->kernel.nodes, c->kernel.stages, c->kernel.algebraic, c->kernel.outer};
+    double *to = r->kept + ends + points * (c->n + c->m) + c->k + 1;
     for (whole part = 0; part < 4; part++)
         for (whole i = 0; i < sizes[part]; i++)
-            to[part][i] += further * by[part][i];
-    keep(c, r);
+            *to++ += further * by[part][i];
     move(c, r, 1);
+}
+
+/* The largest change of a segment's length, relative where it is shorter than 1 rad, on the way of so many
+   increments and kernels: see `periodic.correction.newton.stretched`. */
+static double stretched(const struct call *c, double increments, double kernels)
+{
+    const double *one = c->increment.outer, *other = c->kernel.outer;
+    double most = 0;
+    for (whole a = 0; a < c->k; a++) {
+        const whole next = a + 1 < c->k ? a + 1 : 0;
+        const double own = (next ? c->phases[next] : c->phases[0] + c->period) - c->phases[a];
+        const double change = increments * (one[next] - one[a]) + kernels * (other[next] - other[a]);
+        most = fmax(most, fabs(change) / fmin(own, 1));
+    }
+    return most;
+}
+
+/* Linearise at the orbit of the same parameter, which is known to its last digits, where the branch is straight
+   on the way, else at the nearest one: see error.py. */
+static int at_same_parameter(struct call *c, const struct estimate *e, struct room *r, const double *levels,
+                             double *beside, const double *weights)
+{
+    const whole k = c->k, last = c->n + k + 1;
+    const double rate = c->kernel.outer[k], length = kernel_length(c, e, weights), shift = c->increment.outer[k];
+    const double least = copysign(e->digits * fabs(c->parameter[c->free]), shift), far[] = {shift, 0};
+    double ways[2] = {0, 0}, gone = 0;
+    for (whole i = 0; i < 2; i++) { /* to the side on which lengths change more */
+        double most = -1;
+        for (whole side = 1; side >= -1; side -= 2) {
+            const double way = far[i] + side * least, kernels = -way / rate;
+            if (rate == 0 || !(length * fabs(way) <= e->reach * fabs(rate)) || !(stretched(c, 0, kernels) <= 1))
+                continue;
+            const double both = stretched(c, 1, kernels);
+            if (both > most) {
+                most = both;
+                ways[i] = kernels;
+            }
+        }
+    }
+    keep(c, r);
+    for (whole i = 0; i < 2; i++) {
+        if (ways[i] == 0)
+            continue;
+        go(c, r, ways[i] - gone);
+        gone = ways[i];
+        if (linearised_beside(c, e, r, levels, beside) != DONE)
+            continue;
+        const double changed = r->bordered[(last - 1) * (last + 2) + last + 1] / rate;
+        if (1 / e->straight < changed && changed < e->straight)
+            return DONE;
+    }
+    go(c, r, -gone);
+    return linearised_beside(c, e, r, levels, beside);
 }
 
 /* Whether J J of dx' = J dx, at the end of each interval's first half, says that a vibration turns too far in
@@ -209,6 +256,17 @@ static int unresolved(const struct call *c, const struct estimate *e, const stru
     return 0;
 }
 
+/* Give the better orbit. */
+static void hand_over(const struct call *c, struct estimate *e)
+{
+    const whole points = c->count * c->ncol;
+    memcpy(e->better_nodes, c->nodes, (c->count + 1) * c->n * sizeof(double));
+    memcpy(e->better_stages, c->stages, points * c->n * sizeof(double));
+    memcpy(e->better_algebraic, c->algebraic, points * c->m * sizeof(double));
+    memcpy(e->better_phases, c->phases, c->k * sizeof(double));
+    memcpy(e->better_parameter, c->parameter, c->parameters * sizeof(double));
+}
+
 static int estimated(struct call *c, struct estimate *e, struct room *r, double *next)
 {
     const whole n = c->n, k = c->k, w = 1 + n + k + 1, last = n + k + 1;
@@ -230,9 +288,12 @@ static int estimated(struct call *c, struct estimate *e, struct room *r, double 
     e->shift = fabs(c->increment.outer[k]);
     if (c->exact) { /* multipliers depend on when the equations change: those of the better orbit */
         spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
-        go(c, r, to_same_parameter(c, e, weights));
-        code = linearised_beside(c, e, r, levels, beside);
+        code = at_same_parameter(c, e, r, levels, beside, weights);
+    } else {
+        keep(c, r);
+        move(c, r, 1);
     }
+    hand_over(c, e);
     for (whole i = 0; i < n; i++)
         memcpy(e->monodromy + i * n, c->maps + (c->count * n + i) * w + 1, n * sizeof(double));
     return code;

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from periodic.collocation.multipliers.unresolved import FAST
+from periodic.collocation.fastmotions.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.rounding import EPSILON, TERMS
-from periodic.correction.error import LAST_DIGITS, STRAIGHT, TURNING, ErrorEstimate, Halved, relative
+from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import STEEP, Increment, size_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
-_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy")
+_BETTER = tuple(f"better_{name}" for name in FOUND)
+_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy", *_BETTER)
 _NUMBERS = (
     "along",
     "scale",
     "unit",
+    "reach",
     "straight",
-    "turning",
     "steep",
     "rounding",
     "digits",
@@ -38,10 +40,10 @@ _NUMBERS = (
 class Estimate(ctypes.Structure):
     """`struct estimate` of estimate.c.
 
-    Limits: `straight` is the part of the way to a fold for which the branch is straight, `turning` the part
-    of its direction that the parameter is at one, `steep` the rate beside kinks that counts half, `rounding`
-    what of a switch's terms it may be off by, `digits` to how much of itself the parameter is known, `fast`
-    the turn of a vibration in an interval.
+    Limits: `reach` is the arclength up to which the orbit of the same parameter is looked for, `straight` the
+    factor by which the rate of the parameter changes on the way at the most, `steep` the rate beside kinks
+    that counts half, `rounding` what of a switch's terms it may be off by, `digits` to how much of itself the
+    parameter is known, `fast` the turn of a vibration in an interval.
     """
 
     _fields_ = (
@@ -69,14 +71,36 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     parts = [orbit.nodes, orbit.stages, orbit.algebraic, orbit.phases, orbit.parameter, tangent.profile]
     fundamental: Array = np.empty((2 * orbit.mesh.ntst + 1, n, n))
     monodromy: Array = np.empty((n, n))
-    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy])
+    better = _room(orbit)
+    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy, *better])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
-    own.straight, own.turning, own.steep, own.fast = STRAIGHT, TURNING, STEEP, FAST
+    own.reach, own.straight, own.steep, own.fast = REACH, STRAIGHT, STEEP, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
     code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept
     if code:
         return None
     halved = Halved(own.apart, own.shift, spectrum.apart(monodromy), fundamental, monodromy)
-    error = relative(problem, orbit, spectrum, halved)
+    error = relative(problem, orbit, spectrum, halved, partial(_halved, orbit, better))
     return Estimated(error, bool(own.unresolved))
+
+
+def _room(orbit: Orbit) -> list[Array]:
+    """Arrays for the same orbit on the halved mesh."""
+    count, ncol, n = orbit.stages.shape
+    shapes = (2 * count + 1, n), (2 * count, ncol, n), (2 * count, ncol, orbit.algebraic.shape[2])
+    return [*map(np.empty, shapes), np.empty_like(orbit.phases), np.empty_like(orbit.parameter)]
+
+
+def _halved(orbit: Orbit, arrays: list[Array]) -> Orbit:
+    """The orbit on the halved mesh that C has found."""
+    nodes, stages, algebraic, phases, parameter = arrays
+    return replace(
+        orbit,
+        mesh=orbit.mesh.bisected(),
+        nodes=nodes,
+        stages=stages,
+        algebraic=algebraic,
+        phases=phases,
+        parameter=parameter,
+    )

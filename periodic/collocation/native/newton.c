@@ -356,10 +356,11 @@ static int linearised(struct call *c, struct room *r)
     if (code != DONE)
         return code;
     evaluate(c, r);
-    code = condense(c->count, c->ncol, n, c->m, k, 1, r->residual, r->d_rate, r->d_state, r->d_algebraic, r->d_phase,
-                    r->d_parameter, r->width, c->left_gradient, c->width_gradient, c->points,
-                    c->differentiation + c->ncol + 1, c->end, r->knots, r->rates, c->nodes, r->step, r->stage_map,
-                    r->algebraic_map, &c->residual, r->work, r->marks);
+    code = eliminate_stages(c->count, c->ncol, n, c->m, k, 1, r->residual, r->d_rate, r->d_state,
+                            r->d_algebraic, r->d_phase, r->d_parameter, r->width, c->left_gradient,
+                            c->width_gradient, c->points, c->differentiation + c->ncol + 1, c->end, r->knots,
+                            r->rates, c->nodes, r->step, r->stage_map, r->algebraic_map, &c->residual, r->work,
+                            r->marks);
     if (code != DONE)
         return code;
     chain(c->count, n, w, r->step, c->maps);

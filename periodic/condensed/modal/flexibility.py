@@ -1,4 +1,4 @@
-"""What forces do to the places, as a matrix: the columns that are asked for, or its product with forces."""
+"""The flexibility matrix, from forces to states at the places: chosen columns, or its product with forces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Matrix = NDArray[Any]
 """Real or complex."""
 
 SPREAD = 300.0
-"""Decay over a run of intervals (nepers) up to which the way between any two of them is one product."""
+"""Decay (nepers) over a run of intervals up to which the response between any two of them is one product."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Flexibility:
     response : Response
         The modes.
     closing : tuple of ndarray, optional
-        What the modes and their conjugates at the beginning are of what a period leaves in them, (J,) each;
-        default nothing, z(0) = 0.
+        Factors, (J,) each, by which modes and their conjugates at the beginning follow from what the forces
+        of a period leave in them; default 0, z(0) = 0.
     past : bool
         Whether forces act within their own period too, not just in later ones.
     """
@@ -41,7 +41,7 @@ class Flexibility:
 
     @classmethod
     def repeating(cls, response: Response, multiplier: complex = 1.0) -> Flexibility:
-        """Return that of motions and forces that are multiplied by a number over the period."""
+        """Return the flexibility for motions and forces that are multiplied by a number over the period."""
         return cls(response, response.closings(multiplier))
 
     @classmethod
@@ -69,7 +69,7 @@ class Flexibility:
 
     @property
     def _alike(self) -> bool:
-        """Whether of the way between two intervals only how many lie in between counts."""
+        """Whether the response between two intervals depends on their distance alone."""
         response = self.response
         begun = self.closing is None or self.closing[0] is response.closing
         return response.uniform and self.past and begun
@@ -122,7 +122,7 @@ class Flexibility:
         return response.stages(forces, 0.0 if self.closing is None else self.closing[0])
 
     def pulled(self, weights: Array) -> Matrix:
-        """Return the weights of forces, (N, b, k, r), in those (N, a, s, r) of the states that they make."""
+        """Return the transposed product: weights of forces (N, b, k, r) from those of states (N, a, s, r)."""
         if not self._chained_up or np.iscomplexobj(weights):
             found = self.whole.reshape(weights[..., 0].size, -1).T @ weights.reshape(-1, weights.shape[3])
             return np.asarray(found.reshape(*self.whole.shape[3:], weights.shape[3]))
@@ -173,10 +173,10 @@ class Flexibility:
             exponents = response.modes.exponents
             ahead = np.exp(exponents * (start - end[-1])[:, None])
             back = np.exp(exponents * (end[-1] - end)[:, None])
-            shown = (response.shown[after] * ahead[:, None, None]).reshape(-1, size)
+            outputs = (response.stage_outputs[after] * ahead[:, None, None]).reshape(-1, size)
             columns = response.impulse[inside] * back[:, :, None, None]
             columns = np.moveaxis(columns, 1, 0).reshape(size, -1)
-            found[here + count :] += real_product(shown, columns).reshape(len(start), *found.shape[1:])
+            found[here + count :] += real_product(outputs, columns).reshape(len(start), *found.shape[1:])
 
     def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
         """Responses of some modes to earlier intervals of a run by one product."""
@@ -184,20 +184,20 @@ class Flexibility:
         exponents, begun = response.modes.exponents[chosen], response.start[inside.start]
         ahead = np.exp(exponents * (response.start[inside] - begun)[:, None])
         back = np.exp(-exponents * (response.end[inside] - begun)[:, None])
-        shown = response.shown[inside][..., chosen] * ahead[:, None, None]
+        outputs = response.stage_outputs[inside][..., chosen] * ahead[:, None, None]
         left = np.moveaxis(response.impulse[inside][:, chosen] * back[:, :, None, None], 1, 0)
-        found = real_product(shown.reshape(-1, len(chosen)), left.reshape(len(chosen), -1))
-        return found.reshape(*shown.shape[:3], *left.shape[1:])
+        found = real_product(outputs.reshape(-1, len(chosen)), left.reshape(len(chosen), -1))
+        return found.reshape(*outputs.shape[:3], *left.shape[1:])
 
     def _chained(self, chosen: NDArray[np.int_], inside: slice) -> Array:
         """The same interval after interval, for modes that decay too fast for one product."""
         response, size = self.response, len(chosen)
-        shown = response.shown[inside][..., chosen]
+        outputs = response.stage_outputs[inside][..., chosen]
         left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)
         decay = response.grown[inside][:, chosen]
         own, width, found = np.zeros_like(left).reshape(size, -1), left[0, 0].size, []
-        for i, rows in enumerate(shown):
+        for i, rows in enumerate(outputs):
             found.append(real_product(rows.reshape(-1, size), own))
             own = decay[i][:, None] * own
             own[:, i * width : (i + 1) * width] = left[:, i].reshape(size, -1)
-        return np.array(found).reshape(*shown.shape[:3], *left.shape[1:])
+        return np.array(found).reshape(*outputs.shape[:3], *left.shape[1:])

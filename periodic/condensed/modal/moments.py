@@ -21,7 +21,7 @@ from periodic.orbit.scheme import Array, Scheme
 
 Complex = NDArray[np.complex128]
 
-NEAR, TERMS = 3.0, 32
+SERIES_UP_TO, TERMS = 3.0, 32
 """|x| up to which the Taylor series is taken, and its terms."""
 
 
@@ -98,7 +98,7 @@ class Moments:
         growth = np.exp(x[:, None] * points)
         shape = (len(x), len(points), count)
         moment, slope = np.empty(shape, dtype=complex), np.empty(shape, dtype=complex)
-        near = np.abs(x) <= NEAR
+        near = np.abs(x) <= SERIES_UP_TO
         if near.any():
             powers = np.vander(x[near], TERMS, increasing=True)
             series = self.taylor.reshape(TERMS, -1)

@@ -1,4 +1,4 @@
-"""Modes too fast and too weak to be heard, which then follow the forces with their flexibility."""
+"""Modal reduction: modes too fast and too weak to matter follow the forces with their static flexibility."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ class Modes:
     direct_rate: Array
 
 
-def audible(modes: ModesLike, heard: list[int], period: float, tolerance: float) -> np.ndarray:
-    """Return which modes are to be integrated, shape (J,); `heard` are the outputs that decide, if any."""
+def retained_modes(modes: ModesLike, deciding: list[int], period: float, tolerance: float) -> np.ndarray:
+    """Return which modes are to be integrated, (J,), by their part in the outputs `deciding` (or all)."""
     exponents = modes.exponents
     with np.errstate(all="ignore"):
         resonance = np.maximum(1.0, np.abs(1 / np.expm1(exponents * period)))
     strength = (
-        np.abs(modes.outputs[heard or slice(None)]).max(axis=0)
+        np.abs(modes.outputs[deciding or slice(None)]).max(axis=0)
         * np.abs(modes.inputs).max(axis=1)
         / np.abs(exponents)
     )
     weight = strength * resonance
     order = np.argsort(weight)
-    quiet = np.cumsum(weight[order]) <= SHARE * tolerance * strength.sum()
+    negligible = np.cumsum(weight[order]) <= SHARE * tolerance * strength.sum()
     kept = np.ones(len(exponents), dtype=bool)
-    kept[order[quiet]] = False
+    kept[order[negligible]] = False
     return kept | (np.abs(exponents) < SLOW)
 
 
@@ -70,9 +70,11 @@ def reduced_slope(modes: ModesLike, slope: ModesLike | None, kept: np.ndarray) -
     left = ~kept
     value, out = modes.exponents[left, None], modes.outputs[:, left]
     inputs, changed, faster = modes.inputs[left], slope.inputs[left], slope.exponents[left, None]
-    shown = slope.outputs[:, left]
-    direct = -(shown @ (inputs / value) + out @ (changed / value - inputs * faster / value**2)).real
-    rate = -(shown @ (inputs / value**2) + out @ (changed / value**2 - 2 * inputs * faster / value**3)).real
+    outputs_slope = slope.outputs[:, left]
+    direct = -(outputs_slope @ (inputs / value) + out @ (changed / value - inputs * faster / value**2)).real
+    rate = -(
+        outputs_slope @ (inputs / value**2) + out @ (changed / value**2 - 2 * inputs * faster / value**3)
+    ).real
     return Modes(
         slope.exponents[kept],
         slope.inputs[kept],

@@ -145,7 +145,7 @@ class Response:
         return np.asarray((widths[:, None, None, None] * moment * self.modes.inputs[:, None, :])[which])
 
     @cached_property
-    def shown(self) -> Complex:
+    def stage_outputs(self) -> Complex:
         """States at the points by the modes at the left end, (N, a, s, J)."""
         widths, which = self._distinct
         growth = np.swapaxes(self._table.growth.reshape(len(widths), len(self.modes.exponents), -1), 1, 2)
@@ -180,8 +180,8 @@ class Response:
         count, points, s, r = weights.shape
         flat = weights.reshape(count, points * s, r)
         size = len(self.modes.exponents)
-        seen = np.swapaxes(self.shown.reshape(count, -1, size), 1, 2) @ flat
-        driven, grown = _joined(seen[::-1].copy(), self.grown[::-1].copy())
+        transposed = np.swapaxes(self.stage_outputs.reshape(count, -1, size), 1, 2) @ flat
+        driven, grown = _joined(transposed[::-1].copy(), self.grown[::-1].copy())
         ends = np.zeros_like(driven)
         # the period before takes what all of this one asks for at its beginning
         ends[0] = np.asarray(closing).reshape(-1, 1) * driven[-1]
@@ -225,12 +225,12 @@ class Response:
         flat = forces.reshape(count, points * forces.shape[2], -1)
         own = self.local.reshape(count, -1, flat.shape[1]) @ flat
         shape = (count, points, len(self.modes.direct), *forces.shape[3:])
-        return np.asarray((own + self._seen(at)).reshape(shape))
+        return np.asarray((own + self._driven_states(at)).reshape(shape))
 
-    def _seen(self, at: Complex) -> Array:
+    def _driven_states(self, at: Complex) -> Array:
         """States at the points by the modes at the left ends, (N, J, r): shape (N, a s, r)."""
         count, size, r = at.shape
-        rows = self.shown.reshape(count, -1, size)
+        rows = self.stage_outputs.reshape(count, -1, size)
         if not self.uniform:
             return np.asarray((rows @ at).real)
         found = real_product(rows[0], at.transpose(1, 0, 2).reshape(size, -1))
@@ -303,8 +303,10 @@ class Response:
         # by falling number of intervals, as the columns of a row have it
         ahead = np.exp(modes.exponents[:, None] * (self.grid.width[0] * np.arange(count - 1.0, -1.0, -1.0)))
         moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
-        shown = self.shown[0][:, states].reshape(points * s, -1)
-        found = real_product(shown, moved.reshape(len(ahead), -1)).reshape(points * s, count, points * k)
+        stage_outputs = self.stage_outputs[0][:, states].reshape(points * s, -1)
+        found = real_product(stage_outputs, moved.reshape(len(ahead), -1)).reshape(
+            points * s, count, points * k
+        )
         twice = np.concatenate([found, np.zeros_like(found) if closing is None else found], axis=1)
         row, column, each = twice.strides
         laid = np.lib.stride_tricks.as_strided(
@@ -340,7 +342,7 @@ class Response:
 
     def ahead(self, intervals: NDArray[np.int_]) -> Complex:
         """Return the states at the points of some intervals by the modes at the beginning, (R, a, s, J)."""
-        return np.asarray(self.shown[intervals] * self.growth[intervals, None, None])
+        return np.asarray(self.stage_outputs[intervals] * self.growth[intervals, None, None])
 
     def left(self, intervals: NDArray[np.int_]) -> Complex:
         """Return what forces of some intervals leave in the modes at the end of the period, (J, C, b, k)."""

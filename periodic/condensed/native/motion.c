@@ -112,8 +112,8 @@ int pulled(const struct response *r, whole columns, const double *weights, const
 }
 
 /* On a uniform mesh, what some forces (k, of all F) do to some states (s) everywhere, (N, a, s, N, b, k): at
-   indices `acting` and `felt`. closing is null for motion from rest. passed (J, b, k), later (N, a, s, b, k): room. */
-int circulant(const struct response *r, const double *closing, whole s, const whole *felt, whole k,
+   indices `acting` and `coupled`. closing is null for motion from rest. passed (J, b, k), later (N, a, s, b, k): room. */
+int circulant(const struct response *r, const double *closing, whole s, const whole *coupled, whole k,
               const whole *acting, double *restrict passed, double *restrict later, double *restrict found)
 {
     const whole count = r->count, J = r->modes, points = r->points, all = points * r->forces;
@@ -129,7 +129,7 @@ int circulant(const struct response *r, const double *closing, whole s, const wh
             const complex_ growth = at(r->growth, (j + 1) * points - 1);
             double *way = passed + 2 * j * each;
             for (whole p = 0; p < rows; p++) {
-                const complex_ shown = at(r->shown, (p / s * r->states + felt[p % s]) * J + j);
+                const complex_ shown = at(r->shown, (p / s * r->states + coupled[p % s]) * J + j);
                 double *restrict to = later + (d * rows + p) * each;
                 for (whole f = 0; f < each; f++)
                     to[f] += shown.re * way[2 * f] - shown.im * way[2 * f + 1];
@@ -139,7 +139,7 @@ int circulant(const struct response *r, const double *closing, whole s, const wh
         }
     for (whole i = 0; i < count; i++)
         for (whole p = 0; p < rows; p++) {
-            const double *local = r->local + (p / s * r->states + felt[p % s]) * all;
+            const double *local = r->local + (p / s * r->states + coupled[p % s]) * all;
             for (whole l = 0; l < count; l++) {
                 double *to = found + ((i * rows + p) * count + l) * each;
                 if (closing || l < i)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.modal.moments import NEAR, TERMS, Complex, Table
+from periodic.condensed.modal.moments import SERIES_UP_TO, TERMS, Complex, Table
 from periodic.condensed.modal.response import Response, moments_of
 from periodic.orbit.mesh import Grid
 from periodic.orbit.native.arrays import address, plain, source
@@ -28,7 +28,7 @@ _SIZES = ("count", "points", "modes", "states", "forces", "widths", "terms")
 _OF_MODES = ("exponents", "inputs", "outputs", "direct", "direct_rate")
 _OF_SCHEME = ("place", "taylor", "derivatives")
 _GIVEN = ("width", *_OF_SCHEME, *_OF_MODES)
-_LAID = ("growth", "moment", "slope", "local", "impulse", "shown")
+_LAID = ("growth", "moment", "slope", "local", "impulse", "stage_outputs")
 
 
 class _Call(ctypes.Structure):
@@ -66,9 +66,9 @@ class NativeResponse(Response):
         s, k = self.modes.direct.shape
         table = (count, size, a)
         complex_ = [table, (*table, a), (*table, a), (*table, k), (count, a, s, size)]
-        growth, moment, slope, impulse, shown = _room(complex_)
+        growth, moment, slope, impulse, stage_outputs = _room(complex_)
         local = np.empty((count, a, s, a, k))
-        found = self._with((growth, moment, slope, local, impulse, shown))
+        found = self._with((growth, moment, slope, local, impulse, stage_outputs))
         _routine(self.library, "lay_out", 1)(ctypes.addressof(found[0]))
         return found
 
@@ -107,9 +107,9 @@ class NativeResponse(Response):
         return self._each("impulse")
 
     @cached_property
-    def shown(self) -> Complex:
+    def stage_outputs(self) -> Complex:
         """States at the points by the modes at the left end, (N, a, s, J)."""
-        return self._each("shown")
+        return self._each("stage_outputs")
 
     def _each(self, name: str) -> NDArray[Any]:
         laid, which = self._laid[1][name], self._distinct[1]
@@ -127,7 +127,10 @@ class NativeResponse(Response):
         assert isinstance(found, NativeResponse)
         tables = dict(self._laid[1])
         tables["local"] = tables["local"][:, :, states][..., forces]
-        tables["impulse"], tables["shown"] = tables["impulse"][..., forces], tables["shown"][:, :, states]
+        tables["impulse"], tables["stage_outputs"] = (
+            tables["impulse"][..., forces],
+            tables["stage_outputs"][:, :, states],
+        )
         vars(found)["_laid"] = found._with([np.ascontiguousarray(table) for table in tables.values()])
         return found
 
@@ -135,7 +138,7 @@ class NativeResponse(Response):
         """Return the modes at the left ends and at the end in periodic motion, as `Response.history`."""
         if not _few(forces):
             return super().history(forces, closing)
-        found, _ = self._driven(forces, self.closing if closing is None else closing, None, shown=False)
+        found, _ = self._driven(forces, self.closing if closing is None else closing, None, with_states=False)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
 
     def motion(self, forces: Array) -> tuple[Complex, Array]:
@@ -161,22 +164,24 @@ class NativeResponse(Response):
 
     def driven(self, forces: Array) -> Complex:
         """Return the modes at the mesh points from z(0) = 0, as `Response.driven`."""
-        return self._driven(forces, 0.0, None, shown=False)[0] if _few(forces) else super().driven(forces)
+        return (
+            self._driven(forces, 0.0, None, with_states=False)[0] if _few(forces) else super().driven(forces)
+        )
 
     def _driven(
-        self, forces: Array, closing: Complex | float, begun: Complex | None, *, shown: bool = True
+        self, forces: Array, closing: Complex | float, begun: Complex | None, *, with_states: bool = True
     ) -> tuple[Complex, Array]:
-        """History (N+1, J, r), and states (N, a, s, r) if they are to be shown."""
+        """History (N+1, J, r), and states (N, a, s, r) if `with_states`."""
         call, size = self._laid[0], len(self.modes.exponents)
         given, count, columns = plain(forces), len(forces), math.prod(forces.shape[3:])
         ends = _complex(self._filled(closing))
         begin = None if begun is None else _complex(begun)
         kicks, history = _room([(count, size, columns), (count + 1, size, columns)])
-        states = np.empty((count, self.scheme.ncol, call.states, columns) if shown else 0)
+        states = np.empty((count, self.scheme.ncol, call.states, columns) if with_states else 0)
         _routine(self.library, "driven", 8)(
             *(ctypes.addressof(call), columns, address(given), address(ends)),
             *(None if begin is None else address(begin), address(kicks), address(history)),
-            address(states) if shown else None,
+            address(states) if with_states else None,
         )
         return history, states
 
@@ -191,23 +196,23 @@ class NativeResponse(Response):
         call, size = self._laid[0], len(self.modes.exponents)
         given, (count, points, _, columns) = plain(weights), weights.shape
         ends = _complex(self._filled(closing))
-        seen, after = _room([(count, size, columns), (size, columns)])
+        states_at_points, after = _room([(count, size, columns), (size, columns)])
         found = np.empty((count, points, call.forces, columns))
-        arrays = given, ends, seen, after, found
+        arrays = given, ends, states_at_points, after, found
         _routine(self.library, "pulled", 7)(ctypes.addressof(call), columns, *map(address, arrays))
         return found
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
         """Return what some forces do everywhere on a uniform mesh, as `Response.circulant`."""
         call, shape = self._laid[0], (self.scheme.ncol, len(forces))
-        count, points, felt = call.count, call.points, np.ascontiguousarray(states, dtype=np.intp)
+        count, points, coupled = call.count, call.points, np.ascontiguousarray(states, dtype=np.intp)
         acting = np.ascontiguousarray(forces, dtype=np.intp)
         ends = None if closing is None else _complex(closing)
-        passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, len(felt), *shape))
-        found = np.empty((count, points, len(felt), count, *shape))
+        passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, len(coupled), *shape))
+        found = np.empty((count, points, len(coupled), count, *shape))
         _routine(self.library, "circulant", 9)(
             *(ctypes.addressof(call), None if ends is None else address(ends)),
-            *(len(felt), address(felt), len(acting), address(acting)),
+            *(len(coupled), address(coupled), len(acting), address(acting)),
             *(address(passed), address(later), address(found)),
         )
         return found
@@ -275,7 +280,7 @@ def _room(shapes: Sequence[tuple[int, ...]]) -> list[Complex]:
 @cache
 def _of_scheme(scheme: Scheme) -> tuple[_Call, Sequence[Array]]:
     """A call with what belongs to a scheme, and the arrays that it has addresses of."""
-    moments, call = moments_of(scheme), _Call(points=scheme.ncol, terms=TERMS, near=NEAR)
+    moments, call = moments_of(scheme), _Call(points=scheme.ncol, terms=TERMS, near=SERIES_UP_TO)
     kept = [plain(array) for array in (moments.places, moments.taylor, moments.derivatives)]
     for name, array in zip(_OF_SCHEME, kept, strict=True):
         setattr(call, name, address(array))

@@ -19,16 +19,16 @@ from periodic.tracing.trace import continuation
 from periodic.tracing.watch import Watch
 
 NAME = "stationary"
-"""What the point is called where it is looked for along the branch."""
+"""Name of the test function whose zero is the point."""
 
-STEP = 1e-4
+ARCLENGTH_STEP = 1e-4
 """Arclength of the difference that stands for a derivative along the branch."""
 
 PRECISION = 1e-7
-"""Of the place along the branch, in steps; the functional changes by its square there."""
+"""Error of the place along the branch, in steps; that of the functional is about its square."""
 
 FEW = 12
-"""Steps in which the next points of the branch are reached again."""
+"""Most steps in which the branch is followed again to its next points."""
 
 
 def stationary(task: Task, branch: Branch, k: int, functional: Functional) -> tuple[float, float] | None:
@@ -100,7 +100,10 @@ def _slope(functional: Functional) -> Callable[[Solution], float]:
 
     def value(solution: Solution) -> float:
         problem = solution.problem
-        ends = [functional(problem.system, tangent(problem, solution, h)) for h in (STEP, -STEP)]
-        return (ends[0] - ends[1]) / (2 * STEP)
+        ends = [
+            functional(problem.system, tangent(problem, solution, h))
+            for h in (ARCLENGTH_STEP, -ARCLENGTH_STEP)
+        ]
+        return (ends[0] - ends[1]) / (2 * ARCLENGTH_STEP)
 
     return value

@@ -12,7 +12,7 @@ import numpy as np
 from periodic.results.export.content import Content, Quantities
 from periodic.results.files import replacing
 
-LONGEST = 63
+LONGEST_NAME = 63
 """Characters of a name in MATLAB."""
 
 
@@ -48,7 +48,7 @@ def identifiers(names: Iterable[str]) -> dict[str, str]:
     """Return a name of MATLAB's for each name, all different."""
     found: dict[str, str] = {}
     for name in names:
-        plain = re.sub(r"\W", "_", name.replace("'", "_dot"), flags=re.ASCII)[: LONGEST - 3]
+        plain = re.sub(r"\W", "_", name.replace("'", "_dot"), flags=re.ASCII)[: LONGEST_NAME - 3]
         base = plain if plain[:1].isalpha() else f"q_{plain}"
         number, new = 2, base
         while new in found.values() or new in ("t", "label", "stable", "multipliers"):

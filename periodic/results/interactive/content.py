@@ -18,7 +18,7 @@ from periodic.system import System
 SAMPLES = 128
 """Values of each signal over a period."""
 
-MOST = 600
+MOST_POINTS = 600
 """Points that a page holds; special points are kept in any case."""
 
 
@@ -49,7 +49,7 @@ def content(branch: Branch, units: Units, system: System | None = None) -> dict[
 
 def kept(branch: Branch) -> list[int]:
     """Return which points are shown: all, or special ones and every k-th of the others."""
-    every = -(-len(branch) // MOST)
+    every = -(-len(branch) // MOST_POINTS)
     last = len(branch) - 1
     return [k for k, p in enumerate(branch.points) if k % every == 0 or k == last or p.label.value]
 

@@ -35,7 +35,7 @@ def page(
     ----------
     branch : Branch or xarray.Dataset
         The branch, or a curve in two parameters; one with more than 600 points is thinned out, special points
-        kept. Or a map over one or two parameters, as `map` returns it, whose cells can be pointed at.
+        kept. Or a map over one or two parameters, as `design_map` returns it, whose cells can be pointed at.
     path : str or Path
         The file, which ends in .html; one that is there is replaced.
     system : System, optional

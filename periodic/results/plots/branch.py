@@ -39,7 +39,8 @@ def plot(
     axes : matplotlib.axes.Axes, optional
         Where to plot; by default in a figure of its own. Several branches may share them.
     measure : callable or str, optional
-        In the place of the peak to peak any function of a point, or a column of `Branch.to_pandas`: "x max".
+        What is plotted in place of the peak to peak: a function of a point, or a column of `Branch.to_pandas`
+        as "x max".
     units : dict, optional
         Units by names of parameter and outputs, ``{"speed": "rev/min", "x": "mm"}``; a unit that is not known
         is given with its SI value, ``("tooth/s", 0.2)``. By default SI, with a prefix where that is shorter.

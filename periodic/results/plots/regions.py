@@ -35,7 +35,7 @@ def plot_regions(
     units: Units | None = None,
     labels: Sequence[str] | None = None,
 ) -> Axes:
-    """Plot curves in two parameters: of folds, doublings, tori, touches, peaks, levels.
+    """Plot curves in two parameters: of folds, doublings, tori, grazings, peaks, levels.
 
     Parameters
     ----------

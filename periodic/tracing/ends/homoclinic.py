@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.bifurcations import codim2
 from periodic.bifurcations.fold import VERTICAL
+from periodic.bifurcations.twoparameter import codim2
 from periodic.conditions.phase import PhaseCondition
 from periodic.correction.problem import Problem
 from periodic.results.point import Point

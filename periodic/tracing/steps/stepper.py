@@ -10,18 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from periodic.bifurcations.stretch import RejectedError
+from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import distance
 from periodic.correction.newton import NewtonSettings
 from periodic.correction.predictor import cubic, tangent
-from periodic.correction.refinement import carried, is_refined, refined, remeshed
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
-from periodic.tracing.start import collapsed
-from periodic.tracing.steps.passage import Reached, reached
+from periodic.refinement.adaptation import carried, is_refined, refined, remeshed
+from periodic.tracing.collapse import collapsed
+from periodic.tracing.steps.patternchange import Reached, reached
+from periodic.tracing.steps.stepbounds import bound_ratios
 from periodic.tracing.steps.stepsize import ArclengthControl
-from periodic.tracing.steps.strain import strains
 
 MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
@@ -33,12 +33,13 @@ class BeyondError(RejectedError):
 
 @dataclass(frozen=True)
 class Attempt:
-    """A step that was tried: the base on the mesh of its end, the end, its length and its strain."""
+    """A step that was tried: the base on the mesh of its end, the end, its length, and the largest ratio to a
+    bound that a step as long would have next."""
 
     base: Solution
     new: Solution
     ds: float
-    strain: float
+    bound_ratio: float
     change: Reached | None
 
 
@@ -105,10 +106,10 @@ class Stepper:
         if change is not None:
             ds = change.ds
         furthest = 0.0
-        for strain in strains(base, new, ds, control, solver.tolerance.orbit):
-            if not strain.size <= 1:
-                raise RejectedError(strain.why, control.shorter(strain.size))
-            furthest = max(furthest, strain.ahead)
+        for ratio in bound_ratios(base, new, ds, control, solver.tolerance.orbit):
+            if not ratio.size <= 1:
+                raise RejectedError(ratio.why, control.shorter(ratio.size))
+            furthest = max(furthest, ratio.ahead)
         if new.orbit.equilibrium:
             self._check_middle(base, new, ds)
         return Attempt(base, new, ds, furthest, change)

@@ -33,7 +33,7 @@ class ArclengthControl:
     slow : float
         The factor after more iterations than these.
     recovery : float
-        Factor on steps shorter than `ds`, as after a touch, as far as their strain allows it.
+        Factor on steps shorter than `ds`, as after a grazing, as far as the bounds on a step allow it.
     patience : int
         Newton iterations that a step may take; one that takes more is too long.
     remesh_every : int
@@ -114,8 +114,8 @@ class ArclengthControl:
         """
         return self if least == self.ds_min else replace(self, ds_min=least)
 
-    def next_size(self, ds: float, iterations: int, strain: float) -> float:
-        """Return the next step from the Newton iterations and the strain of the last.
+    def next_size(self, ds: float, iterations: int, ratio: float) -> float:
+        """Return the next step from the Newton iterations of the last and how near it came to its bounds.
 
         Parameters
         ----------
@@ -123,8 +123,8 @@ class ArclengthControl:
             Length of the last step.
         iterations : int
             Its Newton iterations.
-        strain : float
-            Strain expected of another step as long: turning, bending and winding, 1 the most allowed.
+        ratio : float
+            Largest ratio of turning, bending and winding to its bound, expected of another step as long.
 
         Returns
         -------
@@ -134,23 +134,23 @@ class ArclengthControl:
         factor = next((factor for most, factor in self.growth if iterations <= most), self.slow)
         if ds < self.ds and iterations <= self.growth[0][0]:
             factor = max(factor, min(self.recovery, self.ds / ds))
-        factor = min(factor, self.aim / max(strain, self.aim / max(self.recovery, 2)))
+        factor = min(factor, self.aim / max(ratio, self.aim / max(self.recovery, 2)))
         return min(max(ds * rounded(factor), self.ds_min), self.ds_max)
 
-    def shorter(self, strain: float) -> float:
+    def shorter(self, ratio: float) -> float:
         """Return the part of a rejected step to be tried next.
 
         Parameters
         ----------
-        strain : float
-            The factor by which it exceeded its bounds.
+        ratio : float
+            By what factor it exceeded a bound.
 
         Returns
         -------
         float
             The part, from 0.25 to 0.75.
         """
-        return rounded(min(max(self.aim / strain, 0.25), 0.75))
+        return rounded(min(max(self.aim / ratio, 0.25), 0.75))
 
 
 def rounded(factor: float) -> float:

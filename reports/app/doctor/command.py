@@ -20,14 +20,14 @@ def doctor(as_json: Json = False) -> int:
 
     from reports.app.doctor.machine import facts
     from reports.app.doctor.numbers import checks
-    from reports.app.doctor.text import table, told
+    from reports.app.doctor.text import record, table
 
     found = facts()
     if not as_json:
         typer.echo(table(found))
     checked = checks()
     if as_json:
-        typer.echo(json.dumps({**found, "checks": [told(check) for check in checked]}, indent=2))
+        typer.echo(json.dumps({**found, "checks": [record(check) for check in checked]}, indent=2))
     else:
         typer.echo(table({"numbers": {check.name: str(check) for check in checked}}))
     return DONE if all(check.right for check in checked) else STOPPED_EARLY

@@ -19,7 +19,7 @@ def table(facts: Facts) -> str:
     return "\n".join(lines)
 
 
-def told(check: Check) -> dict[str, Any]:
+def record(check: Check) -> dict[str, Any]:
     """Return a check for JSON, which has no infinity."""
     return {
         "name": check.name,

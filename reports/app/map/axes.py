@@ -10,11 +10,11 @@ import numpy as np
 from symbolic import CompiledSystem
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError, refused
-from symbolic.scenes.files import Override, load
+from symbolic.scenes.reading import Override, load
 
 FORM = "KEY=FROM:TO:COUNT or KEY=VALUE,VALUE,..., as in preload=100:2000:40"
 
-MOST = 100_000
+MOST_VALUES = 100_000
 """Values of one parameter."""
 
 SHORT = {"waviness": "waviness.amplitude"}
@@ -49,7 +49,7 @@ def _read(text: str) -> tuple[str, list[float]]:
         if ":" in given:
             first, last, count = given.split(":")
             number = int(count)
-            if not 1 <= number <= MOST:
+            if not 1 <= number <= MOST_VALUES:
                 raise ValueError
             with np.errstate(all="ignore"):  # what is not finite is refused below
                 values = np.linspace(float(first), float(last), number).tolist()

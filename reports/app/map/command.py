@@ -89,15 +89,15 @@ def _run(
     """Compute, draw and tell; return the exit code."""
     import periodic as per
     from reports.app.console import status
-    from reports.app.interrupts import heard_once
+    from reports.app.interrupts import interrupting_once
     from reports.app.map import run
 
     try:
-        with heard_once(), status(f"mapping {name}") as update, warnings.catch_warnings():
+        with interrupting_once(), status(f"mapping {name}") as update, warnings.catch_warnings():
             warnings.showwarning = lambda message, *_, **__: say(str(message))
             show = None if update is None else lambda progress: update(f"mapping {name}: {progress}")
             data = run.computed(task, values, how, folder, show)
-    except per.MapInterrupted as interrupted:
+    except per.maps.MapInterrupted as interrupted:
         say(str(interrupted).partition(", which")[0] + "; --resume goes on")
         return INTERRUPTED
     _told(task, data, keys, folder)

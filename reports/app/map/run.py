@@ -35,17 +35,17 @@ class How:
     resume: bool = False
 
 
-def numbers(outputs: Sequence[str]) -> dict[str, per.Number]:
+def numbers(outputs: Sequence[str]) -> dict[str, per.maps.Number]:
     """Return what is read off each branch: of the first output and, where there is one, of the load."""
     swing = per.PeakToPeak(outputs[0])
-    found: dict[str, per.Number] = {
-        "peak": per.Highest(swing),
-        "stable peak": per.Highest(swing, stable=True),
-        "folds": per.Places("LP"),
-        "doublings": per.Places("PD"),
-        "stable": per.StableRanges(),
+    found: dict[str, per.maps.Number] = {
+        "peak": per.maps.Highest(swing),
+        "stable peak": per.maps.Highest(swing, stable=True),
+        "folds": per.maps.Places("LP"),
+        "doublings": per.maps.Places("PD"),
+        "stable": per.maps.StableRanges(),
     }
-    return found | ({"lowest load": per.Lowest(per.Minimum("load"))} if "load" in outputs else {})
+    return found | ({"lowest load": per.maps.Lowest(per.Minimum("load"))} if "load" in outputs else {})
 
 
 def computed(
@@ -53,13 +53,13 @@ def computed(
     over: Mapping[str, Sequence[float]],
     how: How,
     folder: Path,
-    progress: Callable[[per.Progress], None] | None,
+    progress: Callable[[per.maps.Progress], None] | None,
 ) -> xr.Dataset:
     """Return the map of a scene over its range, kept in `folder`. Raises InputError, and what a map does."""
     view, system = view_of(task.scene), build(task.scene)
     begin, end = (value * view.unit for value in task.scene.trace.ends)
     try:
-        given = per.Task(
+        given = per.maps.Task(
             system,
             view.parameter,
             (begin, end),
@@ -67,8 +67,8 @@ def computed(
             tol=per.Accuracy[how.accuracy],
         )
         store = folder / MAP
-        return per.map(given, _plan(over, how), how.jobs, store, how.resume, progress=progress)
-    except per.MapFileError as error:
+        return per.design_map(given, _plan(over, how), how.jobs, store, how.resume, progress=progress)
+    except per.maps.MapFileError as error:
         why = str(error).partition("; choose another")[0]
         raise InputError("--out", f'is "{folder}"', f"it must be fit for this map ({why})") from error
     except OSError as error:
@@ -77,12 +77,12 @@ def computed(
         raise refused("--over", ", ".join(over), f"what a map can be over ({error})") from error
 
 
-def _plan(over: Mapping[str, Sequence[float]], how: How) -> per.Grid | per.Adaptive:
+def _plan(over: Mapping[str, Sequence[float]], how: How) -> per.maps.Grid | per.maps.Adaptive:
     """All combinations of the values, or cells of the box between the least and the largest."""
     if how.adaptive is None:
-        return per.Grid(over)
+        return per.maps.Grid(over)
     ranges = {name: (min(values), max(values)) for name, values in over.items()}
-    return per.Adaptive(ranges, "peak", max(how.adaptive, CELLS * len(over)))
+    return per.maps.Adaptive(ranges, "peak", max(how.adaptive, CELLS * len(over)))
 
 
 def cells(over: Mapping[str, Sequence[float]], how: How) -> int:

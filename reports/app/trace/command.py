@@ -139,11 +139,11 @@ class Wishes:
 
 def _run(name: str, task: Task, effort: Effort, folder: Path, wishes: Wishes) -> int:
     """Trace, integrate in time, save and tell; return the exit code."""
-    from reports.app.interrupts import heard_once
+    from reports.app.interrupts import interrupting_once
     from reports.app.trace import run, shown, summary
 
     before, journal = run.interrupted(task, folder) if wishes.resume else None, folder / run.JOURNAL
-    with heard_once():
+    with interrupting_once():
         try:
             branch = _traced(name, task, effort, folder, before)
             integrated = _swept(name, task) if wishes.sweep and not _interrupted(branch) else None

@@ -27,7 +27,7 @@ BRANCH = "branch.nc"
 JOURNAL = "branch.journal"
 """File that keeps each step of a trace under way; what is left of it was killed."""
 
-METHODS: dict[str, Callable[[], per.Discretisation]] = {
+METHODS: dict[str, Callable[[], per.extend.Discretisation]] = {
     "collocation": per.Collocation,
     "shooting": per.Shooting,
     "harmonic-balance": per.HarmonicBalance,

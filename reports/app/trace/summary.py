@@ -45,10 +45,10 @@ def summary(name: str, scene: Scene, branch: Branch) -> dict[str, Any]:
 
 
 def _told(view: View, point: Point) -> dict[str, Any]:
-    told: dict[str, Any] = {column.name: column.value(point) for column in view.told}
-    told["multipliers"] = [[float(m.real), float(m.imag)] for m in point.multipliers]
-    told["parameter"] = point.parameter
-    return told | {f"{output}_pp": point.peak_to_peak(output) for output in point.maximum}
+    record: dict[str, Any] = {column.name: column.value(point) for column in view.tabulated}
+    record["multipliers"] = [[float(m.real), float(m.imag)] for m in point.multipliers]
+    record["parameter"] = point.parameter
+    return record | {f"{output}_pp": point.peak_to_peak(output) for output in point.maximum}
 
 
 def _finite(value: Any) -> Any:
@@ -80,7 +80,7 @@ def _csv_cell(cell: Cell) -> str:
 def special_table(scene: Scene, branch: Branch) -> tuple[list[str], list[list[str]]]:
     """Return headings and rows of the special points for people, without what the scene does not have."""
     points = branch.special_points
-    columns = [c for c in view_of(scene).told if any(c.value(point) is not None for point in points)]
+    columns = [c for c in view_of(scene).tabulated if any(c.value(point) is not None for point in points)]
     return [c.heading for c in columns], [[_read(c, point) for c in columns] for point in points]
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from bifpy import auto
 
-from reports.benchmarks.peers.told import REPEATS, median, tell
+from reports.benchmarks.peers.answers import REPEATS, median, tell
 
 
 def duffing(u: Sequence[Any], p: Sequence[Any]) -> list[Any]:

@@ -13,9 +13,9 @@ from bice import Equation, Problem
 from bice.continuation import PseudoArclengthContinuation, TimePeriodicOrbitHandler
 from bice.core.solvers import MyNewtonSolver
 
-from reports.benchmarks.peers.told import folds, median, tell
+from reports.benchmarks.peers.answers import folds, median, tell
 
-MOST = 3000
+MOST_POINTS = 3000
 """Points after which a branch that does not get to its end is given up."""
 
 
@@ -68,7 +68,7 @@ def run(steps: int) -> list[np.ndarray]:
     """Return the points of the branch: states at all times, period and frequency."""
     problem, equation = begun(steps)
     points: list[np.ndarray] = []
-    while equation.omega < 3.0 and len(points) < MOST:
+    while equation.omega < 3.0 and len(points) < MOST_POINTS:
         problem.continuation_step()
         points.append(np.append(problem.u, equation.omega))
     return points

@@ -12,7 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from reports.benchmarks.peers.told import median, tell
+from reports.benchmarks.peers.answers import median, tell
 
 DUFFING = (0.3, 1.0, 0.1, 1.0, 1.0, 0.0, 0.5, 0.0, 1e9, 1)
 CHAIN = (1.6, 1.0, 0.05, 1.0, 0.1, 0.05, 0.3, 0.0, 1e9, 1e9)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from pyHarm.Maestro import Maestro
 
-from reports.benchmarks.peers.told import ENOUGH, folds, median, spent, tell
+from reports.benchmarks.peers.answers import TIMING_SECONDS, folds, median, spent, tell
 
 STEPS = {"ds0": 0.02, "ds_min": 1e-8, "ds_max": 0.1, "sign_ds": 1}
 NEWTON = {"solver": "NewtonRaphson", "solver_options": {"max_iter": 20}}
@@ -67,7 +67,7 @@ def main(harmonics: int, file: str | None = None) -> None:
     begun = spent()
     points = run(given)
     took = spent() - begun
-    tell(took if took > ENOUGH else median(lambda: run(given)), len(points), folds(points))
+    tell(took if took > TIMING_SECONDS else median(lambda: run(given)), len(points), folds(points))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import sys
 
 import xpplab
 
-from reports.benchmarks.peers.told import median, tell
+from reports.benchmarks.peers.answers import median, tell
 
 BEGIN, PERIODS = 0.3, 20
 MODEL = f"""

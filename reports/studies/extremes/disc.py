@@ -13,7 +13,7 @@ from reports.studies.extremes.study import Study
 from reports.studies.extremes.survey import Case
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 
 FROM, TO = 1.8, 0.4

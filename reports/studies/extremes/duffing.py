@@ -9,7 +9,7 @@ import symbolic as sym
 from reports.studies.extremes.study import Study
 from reports.studies.extremes.survey import Case
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 FORCES = (1e-6, 1e-3, 0.5, 10.0, 1e2, 1e3, 1e4)
 ENDS = (0.5, 20.0)

@@ -15,7 +15,7 @@ from reports.studies.extremes.survey import Case
 
 DAMPED = (1e-1, 1e-3, 1e-6, 1e-10, 1e-16, 1e-30, 1e-100, 1e-300)
 GROWING = (1e2, 1e4, 1e6, 1e8, 1e10, 1e12, 1e14, 1e15)
-NEAR = (1.0, 1.01)
+RANGE_ABOVE = (1.0, 1.01)
 """Range of Omega from the one that has the multiplier on."""
 
 
@@ -33,7 +33,7 @@ def rates(damping: float, stiffness: float) -> np.ndarray:
 
 def traced(omega: float, compiled: sym.CompiledSystem, control: per.ArclengthControl) -> per.Branch:
     """Return a short branch about a frequency."""
-    low, high = (omega * end for end in NEAR)
+    low, high = (omega * end for end in RANGE_ABOVE)
     return per.trace(compiled, "Omega", (low, high), start=low, control=control)
 
 

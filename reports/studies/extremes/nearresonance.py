@@ -12,7 +12,7 @@ from reports.studies.extremes.survey import Case
 
 APPROACHED = (0.1, 1e-2, 1e-3)
 DISTANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
-FAR = 0.7
+START = 0.7
 
 
 def system(scale: float | None) -> sym.CompiledSystem:
@@ -22,8 +22,8 @@ def system(scale: float | None) -> sym.CompiledSystem:
 
 
 def approached(distance: float, compiled: sym.CompiledSystem, control: per.ArclengthControl) -> per.Branch:
-    """Return the branch from Omega = FAR up to the distance from 1."""
-    return per.trace(compiled, "Omega", (FAR, 1 - distance), start=FAR, control=control)
+    """Return the branch from Omega = START up to the distance from 1."""
+    return per.trace(compiled, "Omega", (START, 1 - distance), start=START, control=control)
 
 
 def started(distance: float, compiled: sym.CompiledSystem, control: per.ArclengthControl) -> per.Branch:

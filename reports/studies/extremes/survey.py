@@ -111,15 +111,17 @@ def survey(case: Case) -> Row:
             system = case.system()
             branch = _as_far(case, system, control)
     except _TimeUpError:
-        told = "its time used up before there was a branch"
-        return Row(value=case.value, way=case.way, name=case.name, outcome=Outcome.CUT.value, detail=told)
+        message = "its time used up before there was a branch"
+        return Row(value=case.value, way=case.way, name=case.name, outcome=Outcome.CUT.value, detail=message)
     except (InputError, ValueError) as error:
         return Row(
             value=case.value, way=case.way, name=case.name, outcome=Outcome.REFUSED.value, detail=str(error)
         )
     except (Warning, ArithmeticError) as error:
-        told = f"{type(error).__name__}: {error}"
-        return Row(value=case.value, way=case.way, name=case.name, outcome=Outcome.WRONG.value, detail=told)
+        message = f"{type(error).__name__}: {error}"
+        return Row(
+            value=case.value, way=case.way, name=case.name, outcome=Outcome.WRONG.value, detail=message
+        )
     return _row(case, system, branch, time.process_time() - clock)
 
 

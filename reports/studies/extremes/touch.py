@@ -37,7 +37,10 @@ def system(stiffness: float) -> sym.CompiledSystem:
 
 
 def traced(
-    begin: float, method: per.Discretisation, compiled: sym.CompiledSystem, control: per.ArclengthControl
+    begin: float,
+    method: per.extend.Discretisation,
+    compiled: sym.CompiledSystem,
+    control: per.ArclengthControl,
 ) -> per.Branch:
     """Return the branch from one end of the range."""
     return per.trace(compiled, "Omega", RANGE, start=begin, control=control, method=method)
@@ -72,14 +75,16 @@ def stepped(case: Case) -> Row:
             errors.append(float(np.abs(orbit(case.value, float(omega), 0.0, end)[0] - end).max()))
     worst = max(errors, default=0.0)
     outcome = Outcome.TRACED if len(errors) == STEPPED else Outcome.STOPPED
-    told = f"settled at {len(errors)} of {STEPPED} values in {PERIODS} periods, error {error(worst)} at most"
+    message = (
+        f"settled at {len(errors)} of {STEPPED} values in {PERIODS} periods, error {error(worst)} at most"
+    )
     seconds = time.process_time() - clock
     return Row(
         value=case.value,
         way=case.way,
         name=case.name,
         outcome=outcome.value,
-        detail=told,
+        detail=message,
         error=worst,
         seconds=seconds,
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from periodic import Branch, plot_waterfall
+from periodic import Branch, plots
 from periodic.results.plots.curve import draw_curve
 from reports.studies.pages.figures import SECOND, TRUSTED, panels
 
@@ -57,7 +57,7 @@ def diagram(view: View, found: Branch, marched: Sequence[tuple[float, float | No
 def spectra(view: View, found: Branch) -> Figure:
     """Draw the spectra of the orbits, each above its value of the parameter."""
     figure, axes = panels(1, 1, height=3.8)
-    plot_waterfall(found, view.output, axes)
+    plots.waterfall(found, view.output, axes)
     return figure
 
 

@@ -31,7 +31,7 @@ SCENE, WHOLE, LEFT = "vitrea79-810N", "all of the waviness", "what the film leav
 
 def regrouped(load: float, oil: float) -> float:
     """Return H at (M, L), D = 1, by the grouping of exponents from which PRINTED comes."""
-    parts = sym.film_regime(load, oil).asymptotes
+    parts = sym.films.film_regime(load, oil).asymptotes
     rigid, elastic, viscous_rigid, viscous_elastic = (parts[name] for name in REGIMES)
     s = 1.5 * (1 + math.exp(-1.2 * elastic / rigid))
     isoviscous = (rigid ** (1.5 * s) + (elastic**-4 + 1.8**-4) ** (-3 * s / 8)) ** (2 / (3 * s))
@@ -46,12 +46,12 @@ def disc(reduced: bool) -> Branch:
 
 def compute(tell: Tell) -> Found:
     """Return the printed values anew, the regime of the discs under 810 N, and the disc's two branches."""
-    numbers = {f"H({load:g}, {oil:g})": sym.film_regime(load, oil).thickness for load, oil in PRINTED}
+    numbers = {f"H({load:g}, {oil:g})": sym.films.film_regime(load, oil).thickness for load, oil in PRINTED}
     numbers |= {f"regrouped({load:g}, {oil:g})": regrouped(load, oil) for load, oil in PRINTED}
     rows: list[dict[str, Any]] = []
     for oil, (viscosity, piezo) in OILS.items():
         for speed in SPEEDS:
-            found = sym.RegimeFilm(Rolling(rpm(speed), 0.051, viscosity, piezo)).regime(810.0)
+            found = sym.films.RegimeFilm(Rolling(rpm(speed), 0.051, viscosity, piezo)).regime(810.0)
             rows.append({"oil": oil, "speed": speed, "H": found.thickness, "regime": found.name})
     figure, axes = panels(1, 1, height=3.2)
     for reduced, name, color in ((False, WHOLE, TRUSTED), (True, LEFT, SECOND)):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from reports.app.console import telling
-from reports.app.interrupts import Ended, heard_at_once
+from reports.app.interrupts import Ended, interrupting_at_once
 from reports.studies.pages.page import Page
 from symbolic.scenes.errors import InputError
 
@@ -28,7 +28,7 @@ def command(page: Page, arguments: Sequence[str] | None = None) -> int:
     names = (given.only,) if given.only else tuple(page.sections)
     try:
         folder = page.ready(given.out, names)
-        with heard_at_once(), telling("computing") as tell:
+        with interrupting_at_once(), telling("computing") as tell:
             written = page.make(folder, names, tell)
     except InputError as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)

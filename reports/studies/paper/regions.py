@@ -46,7 +46,7 @@ from symbolic.scenes.axes import RPM
 ASIDE = (0.95, 1.05)
 """Parts of a cusp's or tip's value at which the folds or doublings of a branch over speed are counted."""
 
-NEAR = 0.3
+TIP_DISTANCE = 0.3
 """Distance of the points (rev/min) that the tip of a curve of doublings is interpolated between."""
 
 SOFTENING = 1 / 24
@@ -88,8 +88,8 @@ def tip(second: str) -> tuple[float, float]:
     (curve,) = doublings(second)
     (turn,) = np.flatnonzero(np.diff(np.sign(np.diff(curve.values)))) + 1
     middle = float(curve.column("speed")[turn]) / RPM
-    at = tuple(middle + k * NEAR for k in (-2, -1, 0, 1, 2))
-    found = across(second, DoublingCondition(), curve[int(turn)].orbit, at, NEAR)
+    at = tuple(middle + k * TIP_DISTANCE for k in (-2, -1, 0, 1, 2))
+    found = across(second, DoublingCondition(), curve[int(turn)].orbit, at, TIP_DISTANCE)
     orbits = {p.parameter / RPM - middle: p.orbit for p in found.labelled(Label.USER)}
     values = [Value(second)(system(SCENE), orbit) for orbit in orbits.values()]
     quartic = Polynomial.fit(np.array(list(orbits)), values, 4)

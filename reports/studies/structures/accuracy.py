@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import symbolic as sym
-from periodic import Collocation, Discretisation, HarmonicBalance, trace
+from periodic import Collocation, HarmonicBalance, trace
+from periodic.extend import Discretisation
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.structures.beams import cantilever, cubic
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import symbolic as sym
-from periodic import Branch, Collocation, Discretisation, HarmonicBalance, Label, trace
+from periodic import Branch, Collocation, HarmonicBalance, Label, trace
+from periodic.extend import Discretisation
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.pages.figures import PAPER, SECOND, TRUSTED, panels
 from reports.studies.structures.beams import cantilever, cubic, with_tip

@@ -42,7 +42,7 @@ class Study:
     problem: Callable[[], Problem]
     cases: Callable[[], Sequence[Traced | Swept]]
     tight: float
-    other: per.Discretisation
+    other: per.extend.Discretisation
     by: str
     within: tuple[float, float] | None = None
     loose: float = 1e-8

@@ -18,7 +18,7 @@ from reports.studies.trade.methods import problems
 from symbolic.parts.equations import Names
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 TIGHTEST = 1e-11
 """Tolerance of the references, and ten times as much where that is not reached."""
@@ -40,7 +40,8 @@ class Problem:
         system = self.system()
         options: dict[str, Any] = {"start": self.ends[0], "at": self.at, "tol": tol}
         if self.born:
-            rest = per.equilibria(system, self.parameter, self.ends).labelled(per.Label.HOPF)[0]
+            equilibria = per.trace(system, self.parameter, self.ends, method=per.Equilibrium())
+            rest = equilibria.labelled(per.Label.HOPF)[0]
             options = {
                 "guess": per.hopf(system, rest.orbit, self.parameter),
                 "determined": {"omega": per.PhaseCondition()},

@@ -29,7 +29,7 @@ COLOURS = {FULL: "black", "quasistatic-film-810N": "tab:blue", "dry-810N": "tab:
 SPEEDS = tuple(float(v) for v in range(110, 500, 10))
 """rev/min at which models are compared."""
 
-ENOUGH = 0.05
+ADMISSIBLE_ERROR = 0.05
 """Error in x up to which a smaller model will do."""
 
 
@@ -108,7 +108,7 @@ def key_numbers(rows: Sequence[Model]) -> dict[str, float]:
             "above": speeds >= 330,
         }.items():
             numbers[f"{row.name} {key}"] = float(np.nanmax(wrong[part]))
-        numbers[f"{row.name} wrong speeds"] = float(np.sum(~(wrong <= ENOUGH)))
+        numbers[f"{row.name} wrong speeds"] = float(np.sum(~(wrong <= ADMISSIBLE_ERROR)))
     return numbers
 
 
@@ -118,7 +118,7 @@ def context(kept: Kept) -> Mapping[str, Any]:
     full, film, dry = rows
     each = [_each(row) for row in rows]
     shifts = [_shift(full, film), _shift(full, dry)]
-    told = {"models": MODELS, "full": FULL, "speeds": SPEEDS, "enough": ENOUGH, "seconds": seconds}
+    told = {"models": MODELS, "full": FULL, "speeds": SPEEDS, "enough": ADMISSIBLE_ERROR, "seconds": seconds}
     return told | {"film": film, "dry": dry, "each": each, "whole": full, "shifts": shifts}
 
 
@@ -144,7 +144,7 @@ def picture(rows: Sequence[Model]) -> Figure:
         above.plot(SPEEDS, 1e6 * np.array(row.swing), ".-", color=COLOURS[row.name], label=MODELS[row.name])
         if row.name != FULL:
             below.semilogy(SPEEDS, errors(rows, row.name), ".-", color=COLOURS[row.name])
-    below.axhline(ENOUGH, color="gray", linestyle=":")
+    below.axhline(ADMISSIBLE_ERROR, color="gray", linestyle=":")
     above.set_ylabel("x peak to peak (µm)")
     below.set_ylabel("relative error")
     below.set_xlabel("speed (rev/min)")

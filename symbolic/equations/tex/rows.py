@@ -13,7 +13,7 @@ from symbolic.equations.tex.expression import sums
 from symbolic.equations.tex.names import dotted, tex
 from symbolic.equations.tex.products import Product, Sum, atom, one, scaled, written
 
-LONGEST = 4000
+LONGEST_ROW = 4000
 """Letters of an equation that are written out."""
 
 OMEGA = r"\omega"
@@ -40,7 +40,7 @@ def equations(parts: Iterable[Contributor]) -> str:
 
 
 def _short(right: str) -> str:
-    return right if len(right) <= LONGEST else rf"\ldots \quad \text{{({len(right)} letters)}}"
+    return right if len(right) <= LONGEST_ROW else rf"\ldots \quad \text{{({len(right)} letters)}}"
 
 
 class Rows:

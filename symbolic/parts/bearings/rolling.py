@@ -14,16 +14,16 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.excitation import Order, order_of
 from symbolic.equations.interval import POSITIVE, Interval
 from symbolic.equations.model import Part
-from symbolic.equations.rest import steady_force
 from symbolic.equations.variables import Coordinate, Value, apart
 from symbolic.parts.bearings.ranked import ranked
 from symbolic.parts.bearings.squeezed import SqueezedElements
 from symbolic.parts.bearings.waves import RaceWave, Turns
 from symbolic.parts.contact.law import ContactLaw, lawful
 from symbolic.parts.films.series import SeriesFilm
+from symbolic.parts.rest import steady_force
 from symbolic.sketch import at
 
-NEAR = 0.02
+PASSAGES_ROUNDING = 0.02
 """Relative difference between `passages` and what the race diameters say, up to which it is a rounding."""
 
 
@@ -198,7 +198,7 @@ class RollingBearing(Part):
         """The passages in one turn of the shaft, which the diameters have to allow."""
         assert self.passages is not None
         expected = assembly.nominal(exact)
-        if abs(float(order_of(self.passages)) - expected) > NEAR * expected:
+        if abs(float(order_of(self.passages)) - expected) > PASSAGES_ROUNDING * expected:
             raise refusal(
                 "passages", self.passages, f"about {expected:.6g}, as the diameters of the races say"
             )

@@ -15,10 +15,10 @@ import scipy
 
 from symbolic.equations.assembly import Assembly
 
-LEAST = -30.0
+LOWEST_LOG = -30.0
 """ln s below which a law is continued as the power of s that it is there."""
 
-ITERATIONS = 8
+DEFLECTION_ITERATIONS = 8
 """Newton's steps to a deflection in logarithms, where laws are nearly straight lines; exact for a power."""
 
 BRACKET = (-60.0, 20.0)
@@ -86,10 +86,10 @@ class SolvedLaw:
         return self.force(self.delta0 * s) / self.preload
 
     def log_load(self, log_s: ca.SX) -> ca.SX:
-        """Return ln(W/Q), continued as a power below LEAST."""
-        self.assembly.smooth_at(log_s - LEAST)
-        below = _slope(self._log_load, ca.SX(LEAST)) * ca.fmin(log_s - LEAST, 0)
-        return self._log_load(ca.fmax(log_s, LEAST)) + below
+        """Return ln(W/Q), continued as a power below LOWEST_LOG."""
+        self.assembly.smooth_at(log_s - LOWEST_LOG)
+        below = _slope(self._log_load, ca.SX(LOWEST_LOG)) * ca.fmin(log_s - LOWEST_LOG, 0)
+        return self._log_load(ca.fmax(log_s, LOWEST_LOG)) + below
 
     def log_deflection(self, log_load: ca.SX) -> ca.SX:
         """Return ln s by Newton's method from the power law that touches at the preload."""
@@ -115,7 +115,7 @@ def solved(force: Callable[[ca.SX], ca.SX], assembly: Assembly, preload: ca.SX) 
 
 def _inverse(function: Callable[[ca.SX], ca.SX], value: ca.SX, guess: ca.SX) -> ca.SX:
     """Where a rising function has the value."""
-    for _ in range(ITERATIONS):
+    for _ in range(DEFLECTION_ITERATIONS):
         guess = guess - (function(guess) - value) / _slope(function, guess)
     return guess
 

@@ -21,7 +21,7 @@ from symbolic.equations.variables import Value, above_zero
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.films.law import FilmLaw
 
-ITERATIONS = 6
+LOAD_ITERATIONS = 6
 """Newton's steps; both sides are nearly straight lines in ln W, on either side of d = 0."""
 
 
@@ -124,6 +124,6 @@ def _solved(rising: ca.SX, y: ca.SX) -> ca.SX:
     """Where a function of y that rises nearly along a line is zero."""
     step = y - rising / ca.jacobian(rising, y)
     found = ca.SX(0)
-    for _ in range(ITERATIONS):
+    for _ in range(LOAD_ITERATIONS):
         found = ca.substitute(step, y, found)
     return found

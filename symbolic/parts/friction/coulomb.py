@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, not_negative
-from symbolic.parts.mechanics.ends import resist, speed
+from symbolic.equations.variables import Coordinate, Value
+from symbolic.parts.friction.load import NormalLoad, check_limit, limit_of
+from symbolic.parts.mechanics.ends import deflection, resist, speed
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class CoulombFriction(Part):
     ----------
     q : Coordinate
         The coordinate.
-    force : float or Parameter
+    force : float, Parameter or NormalLoad
         F in N: coefficient of friction times normal force.
     to : Coordinate, optional
         The coordinate r at the other end; the ground, r = 0, where there is none.
@@ -36,17 +36,21 @@ class CoulombFriction(Part):
     """
 
     q: Coordinate
-    force: Value
+    force: Value | NormalLoad
     to: Coordinate | None = None
 
     def __post_init__(self) -> None:
-        not_negative("friction force", self.force)
+        check_limit("friction force", self.force)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the force, with a jump where the speed passes zero."""
-        force = assembly.parameter(self.force, "F_f", "N", NOT_NEGATIVE)
+        force = limit_of(assembly, self.force, "F_f")
         rate = speed(assembly, self.q, self.to)
         resist(assembly, self.q, self.to, force * ca.sign(rate))
-        scale = assembly.omega * assembly.motion(self.q).position.scale
+        size = assembly.motion(self.q).position.scale
+        scale = assembly.omega * size
         between = self.q.name if self.to is None else f"({self.q.name} - {self.to.name})"
-        assembly.switch(f"d{between}/dt = 0", rate / scale, 0)
+        if f"d{between}/dt = 0" not in [info.name for info, _ in assembly.switches]:
+            held = deflection(assembly, self.q, self.to)
+            assembly.holds(between.strip("()"), held, size, self.q.unit)
+            assembly.switch(f"d{between}/dt = 0", rate / scale, 0)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import casadi as ca
 
 from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
+from symbolic.equations.interval import POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative, several
+from symbolic.equations.variables import Coordinate, Value, above_zero, several
+from symbolic.parts.friction.load import NormalLoad, check_limit, limit_of
 from symbolic.parts.mechanics.ends import deflection, resist
 
 CREEP = 1e-2
@@ -32,18 +34,21 @@ class Jenkins(Part):
     creep k du/dtau, at any frequency (its loops do not depend on the rate, as Coulomb's do not). A stuck
     slider may stick anywhere; the leak of 1e-4 per rad lets it settle where its mean force is 0.
 
+    Without creep the slider is exact: held, dz/dtau = 0, while |f| < F, and carried along with f = F or -F
+    until du/dtau turns. It has no leak then.
+
     Parameters
     ----------
     q : Coordinate
         The coordinate.
     stiffness : float or Parameter
         k in N/m.
-    limit : float or Parameter
+    limit : float, Parameter or NormalLoad
         F in N: coefficient of friction times normal force.
     to : Coordinate, optional
         The coordinate r at the other end, u = q - r; the ground where there is none.
-    creep : float or Parameter
-        In rad of the phase; to 0 the exact slider.
+    creep : float or Parameter, optional
+        In rad of the phase; None for the exact slider.
 
     Raises
     ------
@@ -57,42 +62,43 @@ class Jenkins(Part):
 
     q: Coordinate
     stiffness: Value
-    limit: Value
+    limit: Value | NormalLoad
     to: Coordinate | None = None
-    creep: Value = CREEP
+    creep: Value | None = CREEP
 
     def __post_init__(self) -> None:
         above_zero("stiffness of a slider", self.stiffness)
-        not_negative("limit of a slider", self.limit)
-        above_zero("creep of a slider", self.creep)
+        check_limit("limit of a slider", self.limit)
+        _creeping("creep of a slider", self.creep)
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the slider."""
         k = assembly.parameter(self.stiffness, "k_slider", "N/m", POSITIVE)
-        slide(assembly, self, k, assembly.parameter(self.limit, "F_slider", "N", NOT_NEGATIVE), "z")
+        slide(assembly, self, k, limit_of(assembly, self.limit, "F_slider"), "z")
 
 
 @dataclass(frozen=True)
 class Iwan(Part):
-    """Elastic sliders side by side, the i-th of stiffness k/n and limit F_i: a joint that slips by degrees.
+    """Elastic sliders side by side, the i-th of limit F_i: a joint that slips by degrees.
 
     Parameters
     ----------
     q : Coordinate
         The coordinate.
-    stiffness : float or Parameter
-        k in N/m, of all together while they stick.
-    limits : sequence of float or Parameter
+    stiffness : float, Parameter or sequence of either
+        k in N/m, of all together while they stick, each with the same part of it; or that of each.
+    limits : sequence of float, Parameter or NormalLoad
         F_1, ..., F_n in N.
     to : Coordinate, optional
         The coordinate r at the other end, u = q - r; the ground where there is none.
-    creep : float or Parameter
+    creep : float or Parameter, optional
         As in `Jenkins`.
 
     Raises
     ------
     ValueError
-        For no limit at all, one that is negative, a stiffness or creep that is not positive.
+        For no limit at all, one that is negative, a stiffness or creep that is not positive, and for other
+        than one stiffness for each limit.
 
     References
     ----------
@@ -100,39 +106,72 @@ class Iwan(Part):
     """
 
     q: Coordinate
-    stiffness: Value
-    limits: Sequence[Value]
+    stiffness: Value | Sequence[Value]
+    limits: Sequence[Value | NormalLoad]
     to: Coordinate | None = None
-    creep: Value = CREEP
+    creep: Value | None = CREEP
 
     def __post_init__(self) -> None:
-        above_zero("stiffness of the sliders", self.stiffness)
-        above_zero("creep of the sliders", self.creep)
+        if isinstance(self.stiffness, list | tuple):
+            object.__setattr__(self, "stiffness", several("stiffness", self.stiffness))
+        for stiffness in self.stiffness if isinstance(self.stiffness, tuple) else (self.stiffness,):
+            above_zero("stiffness of the sliders", cast(Value, stiffness))
+        _creeping("creep of the sliders", self.creep)
         object.__setattr__(self, "limits", several("limits", self.limits))
         if not self.limits:
             raise refusal("limits", self.limits, "a sequence of at least one force in N")
         for limit in self.limits:
-            not_negative("limit of a slider", limit)
+            check_limit("limit of a slider", limit)
+        if isinstance(self.stiffness, tuple) and len(self.stiffness) != len(self.limits):
+            raise refusal("stiffness", self.stiffness, f"one for each of the {len(self.limits)} limits")
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the sliders."""
-        k = assembly.parameter(self.stiffness, "k_sliders", "N/m", POSITIVE) / len(self.limits)
-        for count, value in enumerate(self.limits, 1):
-            limit = assembly.parameter(value, f"F_slider_{count}", "N", NOT_NEGATIVE)
-            slide(assembly, self, k, limit, f"z{count}")
+        for count, (k, value) in enumerate(zip(self._each(assembly), self.limits, strict=True), 1):
+            slide(assembly, self, k, limit_of(assembly, value, f"F_slider_{count}"), f"z{count}")
+
+    def _each(self, assembly: Assembly) -> list[ca.SX]:
+        """The stiffnesses of all sliders."""
+        if isinstance(self.stiffness, tuple):
+            each = enumerate(self.stiffness, 1)
+            return [assembly.parameter(k, f"k_slider_{count}", "N/m", POSITIVE) for count, k in each]
+        count = len(self.limits)
+        together = assembly.parameter(cast(Value, self.stiffness), "k_sliders", "N/m", POSITIVE)
+        return [together / count] * count
 
 
 def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name: str) -> None:
     """Add one slider: its force, its state and the row of it."""
     q, to = part.q, part.to
-    between = q.name if to is None else f"{q.name} - {to.name}"
+    name = _unused(assembly, name, q.name if to is None else f"{q.name} - {to.name}", part.owner)
     scale = assembly.motion(q).position.scale
-    creep = assembly.parameter(part.creep, "creep", "rad", POSITIVE)
-    z = assembly.state(f"{name} of {between}", q.unit, scale, ca.SX(0))
-    force = k * (deflection(assembly, q, to) - z.symbol)
+    creep = ca.SX(CREEP)
+    if part.creep is not None:
+        creep = assembly.parameter(part.creep, "creep", "rad", POSITIVE)
+    z, strain = assembly.state(name, q.unit, scale, ca.SX(0)), deflection(assembly, q, to)
+    force = k * (strain - z.symbol)
     over = ca.fmax(force - limit, 0) + ca.fmin(force + limit, 0)
     resist(assembly, q, to, force)
-    assembly.differential_rows.append((creep * (z.derivative - LEAK * force / k) - over / k) / scale)
-    assembly.output(f"force of {name} of {between}", "N", force)
-    assembly.switch(f"{name} of {between}: f = F", (force - limit) / (k * scale), 0)
-    assembly.switch(f"{name} of {between}: f = -F", (force + limit) / (k * scale), 0)
+    assembly.output(f"force of {name}", "N", force)
+    row = (creep * (z.derivative - LEAK * force / k) - over / k) / scale
+    if part.creep is None:
+        assembly.slider(name, z, row, strain, limit / k)
+        return
+    assembly.differential_rows.append(row)
+    assembly.switch(f"{name}: f = F", (force - limit) / (k * scale), 0)
+    assembly.switch(f"{name}: f = -F", (force + limit) / (k * scale), 0)
+
+
+def _unused(assembly: Assembly, name: str, between: str, owner: str) -> str:
+    """The name of a slider between two places; where another has it, by the part's own name or a number."""
+    taken = {state.name for state in assembly.states}
+    places = [between, *([assembly.owner] if assembly.owner != owner else [])]
+    numbered = (f"{name} of {between} ({count})" for count in range(2, len(taken) + 3))
+    found = (*(f"{name} of {place}" for place in places), *numbered)
+    return next(each for each in found if each not in taken)
+
+
+def _creeping(field: str, creep: Value | None) -> None:
+    """Refuse a creep that is not positive. Raises ValueError."""
+    if creep is not None:
+        above_zero(field, creep)

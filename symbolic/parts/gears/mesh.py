@@ -11,10 +11,10 @@ from symbolic.checks import positive, typed
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.rest import steady_force
 from symbolic.equations.variables import Coordinate, Value, above_zero, not_negative, several
 from symbolic.parts.films.series import SeriesFilm
 from symbolic.parts.gears.flanks import Flanks, Teeth
+from symbolic.parts.rest import steady_force
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from symbolic.scenes.errors import InputError, listed, shown
 
 T = TypeVar("T")
 
-MOST = 12
+MOST_NAMES = 12
 """Names that a sentence lists."""
 
 
@@ -65,7 +65,7 @@ def nearest(name: str, names: list[str]) -> str:
 def unknown(where: str, name: object, names: list[str], allowed: str) -> InputError:
     """Return the error of a name that is not among some, with the nearest that is."""
     near = nearest(str(name), names)
-    first = names if len(names) <= MOST else [*names[:MOST], "others"]
+    first = names if len(names) <= MOST_NAMES else [*names[:MOST_NAMES], "others"]
     known = f"nearest is {shown(near)}" if near else f"there is {listed(first, 'and') or 'none'}"
     return InputError(where, f"is {shown(name)}", f"it must be {allowed}; {known}")
 

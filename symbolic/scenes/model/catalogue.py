@@ -19,6 +19,7 @@ from types import ModuleType
 from typing import Any, cast
 
 import symbolic.parts
+from symbolic import films
 from symbolic.equations.model import Part
 from symbolic.scenes.errors import InputError, listed, shown
 from symbolic.scenes.laws import contact_laws
@@ -256,7 +257,8 @@ def _built_in() -> dict[str, type[Part]]:
 def _objects() -> tuple[type, ...]:
     """Public dataclasses beside the parts, that parts may hold, and the laws of contact of the user's."""
     public = importlib.import_module("symbolic")
-    given = [getattr(public, name) for name in public.__all__] + list(contact_laws().values())
+    given = [getattr(namespace, name) for namespace in (public, films) for name in namespace.__all__]
+    given += contact_laws().values()
     given += [value for module in _own for value in vars(module).values()]
     chosen = {v.__name__: v for v in given if dataclasses.is_dataclass(v) and inspect.isclass(v)}
     return tuple(v for _, v in sorted(chosen.items()) if not issubclass(v, Part))

@@ -101,7 +101,7 @@ class ModelScene(Table):
 
     def model(self) -> Model:
         """Return the model of the tables. Raises InputError."""
-        with told():
+        with refusing():
             places = [q for table in self.coordinate for q in table.coordinates]
             shared = [Parameter(name, each.value, each.unit) for name, each in self.parameters.items()]
             structures = [table.structure(self._folder) for table in self.structure]
@@ -113,7 +113,7 @@ class ModelScene(Table):
         Raises InputError.
         """
         model = self.model()
-        with told():
+        with refusing():
             system = compile(model, kernels, condense=condense)
         names = [p.name for p in system.parameters]
         for name in self.parameters:
@@ -123,7 +123,7 @@ class ModelScene(Table):
         for name in self.values:
             if name not in names:
                 raise unknown("[values]", name, names, "the name of a parameter of the model")
-        with told():
+        with refusing():
             return with_nominal(system, self.values) if self.values else system
 
     @field_validator("parameters", mode="before")
@@ -163,7 +163,7 @@ class ModelScene(Table):
 
 
 @contextmanager
-def told() -> Iterator[None]:
+def refusing() -> Iterator[None]:
     """Let what Python functions refuse be refused as bad input. Raises InputError."""
     try:
         yield

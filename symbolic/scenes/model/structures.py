@@ -20,7 +20,7 @@ from symbolic.structures.shaft import shaft
 
 BUILDERS: dict[str, Callable[..., Matrices]] = {"beam": beam, "shaft": shaft}
 SOURCES = ("file", "files", *BUILDERS)
-MOST = 500
+MOST_ELEMENTS = 500
 """Elements that a builder may have in a scene."""
 
 
@@ -74,7 +74,7 @@ class StructureTable(Table):
             return read_matrices(None, **paths)
         table = getattr(self, given[0])
         elements = table.get("elements")
-        if isinstance(elements, int) and elements > MOST:
-            raise refused(f"{where} elements", elements, f"a whole number from 1 to {MOST}")
+        if isinstance(elements, int) and elements > MOST_ELEMENTS:
+            raise refused(f"{where} elements", elements, f"a whole number from 1 to {MOST_ELEMENTS}")
         built: Matrices = builders()[given[0]].made(Bench(), f"{where} {given[0]}", table)
         return built

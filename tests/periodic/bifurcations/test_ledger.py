@@ -11,7 +11,10 @@ from support.equations import growing
 
 import periodic as per
 import symbolic as sym
+from periodic.bifurcations import turningpoint
 from periodic.bifurcations.ledger import Entry, gaps
+from periodic.correction.solution import Solution
+from periodic.tracing.steps.stepper import Stepper
 
 Label = per.Label
 
@@ -67,7 +70,7 @@ def diffusing() -> sym.CompiledSystem:
 def test_two_tori_one_way_within_a_step() -> None:
     """Assert both NS of the Brusselator, known by independent shooting, where 1 -> 5 are unstable."""
     system = diffusing()
-    born = per.equilibria(system, "l", (0.5, 0.6)).labelled(Label.HOPF)[0]
+    born = per.trace(system, "l", (0.5, 0.6), method=per.Equilibrium()).labelled(Label.HOPF)[0]
     assert born.parameter == pytest.approx(0.5112781470, abs=1e-9)
     # Nearer by, rounding decides whether the first orbit is this one or another of the branch.
     guess = per.hopf(system, born.orbit, "l", distance=0.05)
@@ -76,6 +79,42 @@ def test_two_tori_one_way_within_a_step() -> None:
     )
     assert places(branch, Label.TORUS) == pytest.approx([1.7475314261, 1.8172173465], rel=1e-8)
     assert branch.unaccounted == ()
+
+
+APART = [1e-2, 1e-4, 1e-5, -1e-5, -1e-4, -1e-2]
+
+
+@pytest.mark.parametrize("apart", APART)
+def test_torus_beside_a_neutral_saddle(apart: float) -> None:
+    """Assert the NS at c = 0 of one oscillator, where mu_1 mu_2 of another is 1 for c = apart.
+
+    Both real multipliers of that pass nothing there, but the product of all 1 - mu_i mu_j changes sign.
+    """
+
+    def rates(x: Any, p: Any, wave: Any) -> dict[str, Any]:
+        turned = 0.3 * wave.cos - p.c * x.v - 0.37 * x.x - 0.1 * x.x**3
+        return {"x": x.v, "v": turned, "y": x.w, "w": 0.5 * x.y - (p.c - apart) * x.w}
+
+    states, values = dict.fromkeys(("x", "v", "y", "w"), 0.0), {"Omega": 1.3, "c": 0.1}
+    system = sym.compile(sym.Equations(rates, states, values, frequency="Omega"))
+    branch = per.trace(system, "c", (-0.1, 0.1), start=0.1)
+    assert places(branch, Label.TORUS) == pytest.approx([0.0], abs=1e-9)
+    assert branch.unaccounted == ()
+
+
+def test_base_that_a_new_mesh_carries_past_a_special_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it is left: what lies behind the base of a step is not looked for in it."""
+    met, remeshed = list[Solution](), Stepper.remeshed
+
+    def carried(stepper: Stepper, new: Solution, due: bool) -> Solution:
+        met.append(new)
+        same = len(met) < 2 or turningpoint.unstable(met[-2]) == turningpoint.unstable(new)
+        return remeshed(stepper, new, due) if same else met[-2]
+
+    monkeypatch.setattr(Stepper, "remeshed", carried)
+    branch = per.trace(growing(), "mu", (0.0, 0.34))
+    assert len({turningpoint.unstable(solution) for solution in met}) == 2
+    assert places(branch, Label.TORUS) == pytest.approx([0.30], rel=1e-7)
 
 
 def test_two_doublings_within_a_step() -> None:
@@ -98,9 +137,9 @@ def test_two_doublings_within_a_step() -> None:
 @pytest.mark.parametrize("label", ["BP", "HB"])
 def test_two_changes_of_equilibria_within_a_step(label: str, part: float) -> None:
     """Assert that stability that is regained within a step is seen, wherever in the step it is lost."""
-    steps = per.equilibria(window("BP", 2.0), "mu", (0, 1)).values
+    steps = per.trace(window("BP", 2.0), "mu", (0, 1), method=per.Equilibrium()).values
     centre = steps[5] + part * (steps[6] - steps[5])
-    branch = per.equilibria(window(label, centre), "mu", (0, 1))
+    branch = per.trace(window(label, centre), "mu", (0, 1), method=per.Equilibrium())
     assert places(branch, Label(label)) == pytest.approx([centre - 0.01, centre + 0.01], rel=1e-9)
 
 
@@ -134,7 +173,7 @@ def test_hopf_points_of_several_pairs(pairs: int, ds: float) -> None:
 
     system = equations(rates, {f"x{k}": 0.0 for k in range(2 * pairs + 2)}, mu=0.0)
     control = per.ArclengthControl(ds=ds, ds_max=1.0)
-    branch = per.equilibria(system, "mu", (0, 1), control=control)
+    branch = per.trace(system, "mu", (0, 1), control=control, method=per.Equilibrium())
     assert places(branch, Label.HOPF) == pytest.approx([0.2 * (k + 1) for k in range(pairs)], rel=1e-9)
     assert branch.labelled(Label.BRANCH) == ()
 

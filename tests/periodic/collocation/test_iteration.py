@@ -14,7 +14,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.multipliers.unresolved import lost
+from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.native import call, iteration
 from periodic.collocation.native.estimate import estimated
 from periodic.correction.arclength import ArclengthConstraint
@@ -25,7 +25,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 Array = NDArray[np.float64]
 NEWTON = NewtonSettings()
@@ -163,14 +163,16 @@ def test_who_is_left_to_numpy() -> None:
     orbit = duffing().points[20].orbit
     constraint, guess = beside(compiled("duffing"), orbit, "Omega")
 
-    def chosen(system: per.System, free: tuple[int, ...] = (constraint.index,), count: int = 1) -> bool:
+    def chosen(
+        system: per.extend.System, free: tuple[int, ...] = (constraint.index,), count: int = 1
+    ) -> bool:
         return iteration.corrected(system, guess, free, [constraint] * count, NEWTON) is not None
 
     assert chosen(compiled("duffing"))
     assert not chosen(compiled("duffing", "numpy"))
     assert not chosen(compiled("duffing"), free=()) and not chosen(compiled("duffing"), count=2)
     assert not chosen(LinearOscillator())
-    many = replace(guess, nodes=np.zeros((len(guess.nodes), call.MOST + 1)))
+    many = replace(guess, nodes=np.zeros((len(guess.nodes), call.MOST_STATES + 1)))
     assert iteration.corrected(compiled("duffing"), many, (constraint.index,), [constraint], NEWTON) is None
 
 

@@ -15,12 +15,12 @@ from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, Meissn
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation import kinks
-from periodic.collocation.dense import Dense
-from periodic.collocation.kinks import Crossing, KinkSettings, match
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.outcome import Outcome
+from periodic.events import tying as kinks
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.tying import Crossing, KinkSettings, match
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh, uniform
 
@@ -109,8 +109,11 @@ def test_event_nodes_are_found_by_their_crossings(Omega: float, kinks: int) -> N
 def test_equal_switches_share_their_event_nodes(Omega: float, kinks: int) -> None:
     """Assert the sides of a switch whose nodes are those of another that is equal to it."""
     system, orbit = BilinearOscillator(zeta=DAMPING), standard(Omega).orbit
-    both: Any = SimpleNamespace(switch=lambda *given: np.repeat(system.switch(*given), 2, axis=1))
-    own, other = (Dense(both, orbit)._directions(switch) for switch in (0, 1))
+    switches = [*system.switches, *system.switches]
+    both: Any = SimpleNamespace(
+        switches=switches, switch=lambda *given: np.repeat(system.switch(*given), 2, axis=1)
+    )
+    own, other = (SwitchPolynomials(both, orbit)._directions(switch) for switch in (0, 1))
     assert own == other == [event.direction for event in orbit.mesh.events]
 
 

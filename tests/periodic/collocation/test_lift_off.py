@@ -12,7 +12,7 @@ from support.stops import errors, exactly, stopped
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.dense import Dense
+from periodic.events.switchpolynomials import SwitchPolynomials
 
 each_way = pytest.mark.parametrize("start", [0.2, 2.0], ids=["closes", "opens"])
 
@@ -64,7 +64,7 @@ def test_touches_of_a_rotor(start: float) -> None:
     expected = [0.89535324, 0.97103452, 1.17866921, 1.17958135, 1.18462761, 1.19334947]
     assert sorted(point.parameter for point in touches) == pytest.approx(expected, abs=1e-7)
     for point in touches:
-        dense = Dense(sym.scene("jeffcott-rub"), point.orbit)
+        dense = SwitchPolynomials(sym.scene("jeffcott-rub"), point.orbit)
         depths = [abs(dense.value(e)) for side in (-1, 1) for e in dense.minima(0, side)]
         assert min(depths) == pytest.approx(0, abs=1e-9)
 
@@ -87,7 +87,7 @@ def test_preloaded_stop(way: tuple[float, float]) -> None:
 def test_extremes_are_none_of_the_mesh_points() -> None:
     """Assert that a switch has as many minima as the motion, wherever intervals meet."""
     (touch,) = rotor(0.2).labelled(per.Label.GRAZING)[:1]
-    dense = Dense(sym.scene("jeffcott-rub"), touch.orbit)
+    dense = SwitchPolynomials(sym.scene("jeffcott-rub"), touch.orbit)
     radius = np.hypot(*(touch.orbit[name](np.linspace(0, touch.orbit.period, 4001)[:-1]) for name in "xy"))
     peaks = (radius >= np.roll(radius, 1)) & (radius > np.roll(radius, -1))
     assert len(dense.minima(0, -1)) == peaks.sum()

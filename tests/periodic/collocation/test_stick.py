@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import symbolic as sym
-from periodic.collocation.conditions import Limit
-from periodic.collocation.jumping import slide
-from periodic.collocation.jumping.slide import Place
-from periodic.collocation.stick import _stretch
+from periodic.events.rewrites import first
+from periodic.events.sticking import _stretch
+from periodic.events.violations import Breach, Violation
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme
@@ -75,9 +74,9 @@ def test_stretch_without_end() -> None:
 def test_part_of_the_way_to_a_limit(monkeypatch: pytest.MonkeyPatch, node: int, share: float) -> None:
     """Assert that a limit lies where its own value, not another's, is 0 on a line between two orbits."""
     known = {1: 0.3, 4: 0.1 / 3, 5: 2.0}
-    limits = [Place(0, at, Limit(at, 0, 1, 0.0), value, ()) for at, value in known.items()]
-    monkeypatch.setattr(slide, "_limits", lambda system, orbit, jump: limits)
-    system = sym.scene("duffing")
+    limits = [Violation(Breach.MODE, 0, at, 1, -value) for at, value in known.items()]
+    monkeypatch.setattr(first, "limits", lambda system, orbit, surface: limits)
+    system = sym.scene("jenkins-damper")
     orbit = at_rest(system, uniform(Scheme(), 8), system.nominal)
-    past = Place(0, node, Limit(node, 0, 1, 0.0), -0.1, ())
-    assert slide._share(system, orbit, past) == pytest.approx(share)
+    past = Violation(Breach.MODE, 0, node, 1, 0.1)
+    assert first._share(system, orbit, past) == pytest.approx(share)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.numpy_systems import LinearOscillator
 
-from periodic.collocation.multipliers import substeps as module
-from periodic.collocation.multipliers.substeps import GROWING, MOST, substeps
+from periodic.collocation.fastmotions import substeps as module
+from periodic.collocation.fastmotions.substeps import GROWING, MOST_SUBSTEPS, substeps
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.scheme import Array, Scheme
@@ -42,7 +42,7 @@ def test_rounding_is_no_growth(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize(
     ("exponents", "expected"),
-    [([-0.5, 2.0, -1e-2], [3]), ([-1e6, 2.0, 0.0], [MOST]), ([-1e6, 0.5, 0.0], [1])],
+    [([-0.5, 2.0, -1e-2], [3]), ([-1e6, 2.0, 0.0], [MOST_SUBSTEPS]), ([-1e6, 0.5, 0.0], [1])],
 )
 def test_growth_is_followed(
     exponents: list[float], expected: list[int], monkeypatch: pytest.MonkeyPatch

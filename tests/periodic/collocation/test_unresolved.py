@@ -7,7 +7,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.multipliers.unresolved import FAST, growth, lost
+from periodic.collocation.fastmotions.unresolved import FAST, growth, lost
 
 DAMPING = 1e-5
 """Ratio of both oscillators."""

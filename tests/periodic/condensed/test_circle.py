@@ -8,7 +8,7 @@ from support.cantilevers import cantilever, cubic
 
 import periodic as per
 from periodic.condensed.circle import Circle
-from periodic.condensed.floquet import Floquet
+from periodic.condensed.floquet import ModalFloquet
 from periodic.condensed.variations import CondensedVariations
 
 
@@ -20,7 +20,7 @@ def test_winding_counts_the_unstable(elements: int, states: int) -> None:
     counts = []
     for point in (branch.points[0], next(p for p in branch.points if not p.stable and not p.label.critical)):
         found = CondensedVariations.about(system, point.orbit, ())
-        moduli = np.abs(np.linalg.eigvals(Floquet(found.given).monodromy))
+        moduli = np.abs(np.linalg.eigvals(ModalFloquet(found.given).monodromy))
         assert len(moduli) == states
         for radius in (1.0, 0.8, 0.3):
             assert Circle(found, radius).outside() == (moduli > radius).sum()

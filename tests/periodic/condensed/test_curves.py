@@ -61,7 +61,7 @@ def curve(
     system: sym.CompiledSystem,
     start: per.Point,
     along: tuple[str, float],
-    determined: dict[str, per.Condition],
+    determined: dict[str, per.extend.Condition],
 ) -> float:
     """What is determined where a parameter has grown by a part of itself."""
     name, factor = along

@@ -13,9 +13,9 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 import symbolic as sym
 from periodic.condensed import floquet, subspace
-from periodic.condensed.floquet import Floquet
+from periodic.condensed.floquet import ModalFloquet
 from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.operator import Condensed
+from periodic.condensed.operator import CondensedOperator
 
 
 @pytest.mark.parametrize(("elements", "states"), [(17, 68), (100, 400)])
@@ -26,7 +26,7 @@ def test_leading_multipliers_are_the_largest(elements: int, states: int) -> None
     unstable = next(p for p in branch.points if not p.stable and not p.label.critical)
     method = replace(CondensedCollocation().at(1e-6), tolerance=1e-16)  # no mode is left out
     operator = method.linearise(system, unstable.orbit, ())
-    assert isinstance(operator, Condensed)
+    assert isinstance(operator, CondensedOperator)
     leading = operator.leading
     every = np.linalg.eigvals(leading.floquet.monodromy)
     assert len(every) == states
@@ -49,7 +49,7 @@ def test_of_many_alike_the_leading_tell_the_fold_alone(monkeypatch: pytest.Monke
 
     At the fold a pair of them has become real: one of the two leads, the other may be kept or not.
     """
-    monkeypatch.setattr(floquet, "SMALL", 10)
+    monkeypatch.setattr(floquet, "ALL_KEPT_UP_TO", 10)
     places = [sym.coordinate(f"q{k}") for k in range(12)]
     model = sym.CubicSpring(places[0], 0.1) + sym.HarmonicForce(places[0], 0.6, 1.6)
     for k, place in enumerate(places):
@@ -72,7 +72,7 @@ def test_subspace_holds_the_largest_of_every_orbit(
     found, dense = [], []
     largest, every = subspace._largest, subspace._all
 
-    def remembered(motions: Floquet, count: int) -> Any:
+    def remembered(motions: ModalFloquet, count: int) -> Any:
         values, vectors = largest(motions, count)
         found.append((values[:count], np.linalg.eigvals(motions.monodromy)))
         return values, vectors

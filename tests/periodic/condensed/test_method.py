@@ -14,11 +14,11 @@ import periodic as per
 import symbolic as sym
 from periodic.condensed.floquet import LASTING, Leading
 from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.operator import Condensed
+from periodic.condensed.operator import CondensedOperator
 from periodic.harmonic.split import SeriesLeading
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.tracing.suited import suited
+from periodic.tracing.methodchoice import chosen_method
 
 
 @cache
@@ -123,9 +123,9 @@ def test_increments_are_periodic() -> None:
     """Assert that what answers a step ends where it begins: of the equations, and of states that lack."""
     system, orbit = cantilever(1, cubic), branch(1)[2].orbit
     method = per.Collocation().at(1e-6)
-    problem, method = suited(method, per.Problem(system, "Omega", (3.0, 8.0)))
+    problem, method = chosen_method(method, per.Problem(system, "Omega", (3.0, 8.0)))
     operator = method.linearise(problem.system, orbit, problem.free)
-    assert isinstance(operator, Condensed)
+    assert isinstance(operator, CondensedOperator)
     held = [per.Amplitude("tip").linearise(problem.system, orbit, problem.free)]
     places = operator.system.places
     lacking = np.random.default_rng(1).standard_normal((*orbit.stages.shape[:2], len(places)))

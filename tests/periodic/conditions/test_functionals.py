@@ -371,13 +371,13 @@ def test_sensitivities_ask_for_an_orbit_that_meets_its_conditions() -> None:
 
 
 @pytest.mark.parametrize("condition", [per.TorusCondition(), per.DoublingCondition(), per.PhaseCondition()])
-def test_conditions_of_orbits_are_refused_for_equilibria(condition: per.Condition) -> None:
+def test_conditions_of_orbits_are_refused_for_equilibria(condition: per.extend.Condition) -> None:
     """Assert that what holds a periodic orbit holds no equilibrium."""
     system = sym.compile(
         sym.Equations(lambda x, p: {"x": x.v, "v": p.mu * x.v - x.x}, {"x": 0.0, "v": 0.0}, {"mu": -0.1})
     )
     with pytest.raises(ValueError, match="which holds orbits; it must be left out of equilibria"):
-        per.equilibria(system, "mu", (-0.2, -0.1), determined={"omega": condition})
+        per.trace(system, "mu", (-0.2, -0.1), determined={"omega": condition}, method=per.Equilibrium())
 
 
 def test_one_state_does_not_double() -> None:
@@ -392,6 +392,6 @@ def test_one_state_does_not_double() -> None:
 
 def test_special_points_by_no_number_are_refused() -> None:
     """Assert that a test function that gives no finite number is named, with the place."""
-    nothing = per.TestFunction(label=per.Label.USER, value=lambda solution: float("nan"))
+    nothing = per.extend.TestFunction(label=per.Label.USER, value=lambda solution: float("nan"))
     with pytest.raises(ValueError, match="^special point UZ gave nan at Omega = "):
         per.trace(sym.scene("duffing"), "Omega", (0.9, 1.0), watch=per.Watch(special=(nothing,)))

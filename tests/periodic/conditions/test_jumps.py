@@ -42,7 +42,7 @@ def with_stops() -> tuple[sym.CompiledSystem, per.Orbit]:
 @pytest.mark.parametrize("given", [with_one_impact, with_stops])
 @pytest.mark.parametrize("condition", [per.FoldCondition(), per.DoublingCondition(), per.TorusCondition()])
 def test_gradients(
-    given: Callable[[], tuple[sym.CompiledSystem, per.Orbit]], condition: per.Condition
+    given: Callable[[], tuple[sym.CompiledSystem, per.Orbit]], condition: per.extend.Condition
 ) -> None:
     """Assert gradients of conditions on the multipliers against differences, to 5 digits."""
     system, orbit = given()

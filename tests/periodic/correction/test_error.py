@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -128,3 +129,44 @@ def test_fine_is_finer() -> None:
     fine = duffing(accuracy=FINE, at=FREQUENCIES).labelled(per.Label.USER)
     for point, exact in zip(fine, oscillators(*TIGHT), strict=True):
         assert true_error(point, exact) < 1e-8
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-6])
+def test_peaks_of_steep_outputs(tol: float) -> None:
+    """Assert that errors of a disc's load, film and deflection at their extremes are told, to a third.
+
+    They are up to 22 times those of the states, each relative to its own peak to peak. What is less than the
+    tight orbits are good for is not told apart.
+    """
+    speeds = [speed * RPM for speed in SPEEDS[:3]]
+    system = disc_system("vitrea79-810N")
+    drafts, tight = (
+        per.trace(system, "speed", (500 * RPM, 290 * RPM), at=speeds, tol=t).labelled(per.Label.USER)
+        for t in (tol, 1e-9)
+    )
+    steep = [name for name in drafts[0].maximum if name not in {q.name for q in system.states}]
+    assert len(drafts) == len(tight) == 3 and steep
+    for point, exact in zip(drafts, tight, strict=True):
+        ends = [
+            max(abs(point.maximum[k] - exact.maximum[k]), abs(point.minimum[k] - exact.minimum[k]))
+            / exact.peak_to_peak(k)
+            for k in steep
+        ]
+        assert max(ends) < 1.5 * point.error.peaks + 1e-9
+        assert point.error.peaks < 3 * max(ends) + 1e-9
+    assert max(point.error.peaks for point in drafts) > 10 * max(point.error.orbit for point in drafts)
+
+
+def test_peaks_of_states_are_their_own() -> None:
+    """Assert that outputs that are states have no further error."""
+    for point in oscillators(1e-6, per.Family.RADAU, 5):
+        assert point.error.peaks == 0.0
+
+
+def test_peaks_are_kept(tmp_path: Path) -> None:
+    """Assert that a branch has them in a file."""
+    branch = per.trace(disc_system("vitrea79-810N"), "speed", (500 * RPM, 450 * RPM), tol=1e-4)
+    branch.save(tmp_path / "branch.nc")
+    again = per.Branch.load(tmp_path / "branch.nc")
+    assert [point.error.peaks for point in again] == [point.error.peaks for point in branch]
+    assert max(point.error.peaks for point in again) > 0

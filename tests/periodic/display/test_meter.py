@@ -51,10 +51,13 @@ def test_own_progress_takes_its_place(capsys: Capture) -> None:
 @pytest.mark.usefixtures("at_once")
 def test_one_bar_at_a_time(capsys: Capture) -> None:
     """Assert that a map counts its cells, and that traces within it have no bars of their own."""
-    task = per.Task(
-        duffing_system(0.1, 1.0, 0.5), "Omega", (0.3, 0.4), numbers={"peak": per.Highest(per.PeakToPeak("x"))}
+    task = per.maps.Task(
+        duffing_system(0.1, 1.0, 0.5),
+        "Omega",
+        (0.3, 0.4),
+        numbers={"peak": per.maps.Highest(per.PeakToPeak("x"))},
     )
-    per.map(task, {"F": [0.1, 0.2]}, store=None)
+    per.design_map(task, {"F": [0.1, 0.2]}, store=None)
     told = capsys.readouterr().err
     assert "mapping" in told and "2/2" in told and "tracing" not in told
 

@@ -64,7 +64,7 @@ def test_point_and_orbit() -> None:
 def test_equilibria() -> None:
     """Assert that a branch of equilibria is shown by its values."""
     system = duffing_system(0.1, 1.0, 0.0)
-    branch = per.equilibria(system, "k", (0.5, 1.5), method=per.Equilibrium(frequency="Omega"))
+    branch = per.trace(system, "k", (0.5, 1.5), method=per.Equilibrium(frequency="Omega"))
     headings = [cell.text for cell in parsed(branch._repr_html_()).iter("th")]
     assert headings == [None, "k (N/m)", "x (m)", "Re lambda max (1/s)", "stable"]
     assert "equilibrium" in branch[0]._repr_html_()

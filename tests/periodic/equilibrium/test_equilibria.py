@@ -45,14 +45,14 @@ def equations(function: Any, states: dict[str, float], **parameters: float) -> s
 @cache
 def origin() -> per.Branch:
     """Lorenz's origin."""
-    return per.equilibria(lorenz(), "rho", (0, 30), at=[28])
+    return per.trace(lorenz(), "rho", (0, 30), at=[28], method=per.Equilibrium())
 
 
 @cache
 def convection() -> per.Branch:
     """Lorenz's other equilibria, from the pitchfork."""
     guess = per.branched(lorenz(), origin().labelled(per.Label.BRANCH)[0].orbit, "rho")
-    return per.equilibria(lorenz(), "rho", (float(guess.parameter[1]), 30), guess=guess)
+    return per.trace(lorenz(), "rho", (float(guess.parameter[1]), 30), guess=guess, method=per.Equilibrium())
 
 
 def test_pitchfork_of_lorenz() -> None:
@@ -91,7 +91,9 @@ def test_hopf_point_of_lorenz() -> None:
 
 def test_pitchfork_seen_from_the_branch_that_turns() -> None:
     """Assert that the pitchfork is a BP, and no LP, on the branch that turns there."""
-    branch = per.equilibria(lorenz(), "rho", (0, 30), start=28, guess={"x": 8.0, "y": 8.0, "z": 27.0})
+    branch = per.trace(
+        lorenz(), "rho", (0, 30), start=28, guess={"x": 8.0, "y": 8.0, "z": 27.0}, method=per.Equilibrium()
+    )
     assert labels(branch) == ["HB", "BP", "HB"]
     assert places(branch) == pytest.approx([HOPF, 1, HOPF], rel=1e-12)
     assert branch[0].maximum["x"] == pytest.approx(-branch[-1].maximum["x"], rel=1e-12)
@@ -119,7 +121,7 @@ def test_unstable_orbits_of_lorenz() -> None:
 
 def test_feedback_control_from_rest_to_its_doubling() -> None:
     """Assert Hopf point, doubling and period of the feedback control system, without any simulation."""
-    branch = per.equilibria(feedback(), "alpha", (2, 0.5))
+    branch = per.trace(feedback(), "alpha", (2, 0.5), method=per.Equilibrium())
     (point,) = branch.labelled(per.Label.HOPF)
     assert point.parameter == pytest.approx(1.0, rel=1e-12)
     guess = per.hopf(feedback(), point.orbit, "alpha")
@@ -133,7 +135,7 @@ def test_feedback_control_from_rest_to_its_doubling() -> None:
 
 def test_orbits_shrink_to_the_hopf_point() -> None:
     """Assert that orbits traced towards their Hopf point end there, and that it is found again."""
-    (point,) = per.equilibria(feedback(), "alpha", (2, 0.5)).labelled(per.Label.HOPF)
+    (point,) = per.trace(feedback(), "alpha", (2, 0.5), method=per.Equilibrium()).labelled(per.Label.HOPF)
     guess = per.hopf(feedback(), point.orbit, "alpha", distance=0.2)
     orbits = per.trace(feedback(), "alpha", (0.9, 1.2), guess=guess, determined=ORBIT)
     assert orbits.stop.reason is per.Reason.EQUILIBRIUM
@@ -147,7 +149,7 @@ def test_reaction_of_auto() -> None:
 
     There is one between the folds, at u1 = (17 - sqrt(65))/28, where the eigenvalues' sum vanishes too.
     """
-    branch = per.equilibria(reaction(), "p1", (0, 0.15))
+    branch = per.trace(reaction(), "p1", (0, 0.15), method=per.Equilibrium())
     assert labels(branch) == ["LP", "LP", "HB"]
     u1 = np.array([(1 - np.sqrt(1 / 7)) / 2, (1 + np.sqrt(1 / 7)) / 2, (17 + np.sqrt(65)) / 28])
     assert [p.maximum["u1"] for p in branch.special_points[1:-1]] == pytest.approx(u1, rel=1e-12)
@@ -157,7 +159,7 @@ def test_reaction_of_auto() -> None:
 
 def test_orbits_of_the_brusselator() -> None:
     """Assert the Hopf point at B = 1 + A^2 and that stable orbits are born there."""
-    (point,) = per.equilibria(brusselator(), "B", (1, 4)).labelled(per.Label.HOPF)
+    (point,) = per.trace(brusselator(), "B", (1, 4), method=per.Equilibrium()).labelled(per.Label.HOPF)
     assert point.parameter == pytest.approx(2.69, rel=1e-12)
     assert point.multipliers == pytest.approx([1.3j, -1.3j], rel=1e-11, abs=1e-12)
     guess = per.hopf(brusselator(), point.orbit, "B")
@@ -168,7 +170,7 @@ def test_orbits_of_the_brusselator() -> None:
 
 def test_hopf_points_of_fitzhugh_and_nagumo() -> None:
     """Assert both Hopf points, v = -+ sqrt(1 - b e)."""
-    branch = per.equilibria(fitzhugh_nagumo(), "I", (0, 2))
+    branch = per.trace(fitzhugh_nagumo(), "I", (0, 2), method=per.Equilibrium())
     v = np.sqrt(1 - 0.08 * 0.8) * np.array([-1, 1])
     assert labels(branch) == ["HB", "HB"]
     assert places(branch) == pytest.approx((v + 0.7) / 0.8 - v + v**3 / 3, rel=1e-11)
@@ -178,7 +180,7 @@ def test_hopf_points_of_fitzhugh_and_nagumo() -> None:
 def test_orbits_of_stuart_and_landau(sign: float) -> None:
     """Assert that the orbit from the Hopf point is the exact one, super- and subcritical, of any size."""
     system = stuart_landau(sign)
-    (point,) = per.equilibria(system, "mu", (-1, 1)).labelled(per.Label.HOPF)
+    (point,) = per.trace(system, "mu", (-1, 1), method=per.Equilibrium()).labelled(per.Label.HOPF)
     assert point.parameter == pytest.approx(0, abs=1e-12)
     for distance in (None, 0.3):
         orbit = per.hopf(system, point.orbit, "mu", distance=distance)
@@ -191,7 +193,7 @@ def test_orbits_of_stuart_and_landau(sign: float) -> None:
 
 def hopf_point(system: sym.CompiledSystem, parameter: str, bounds: tuple[float, float]) -> per.Point:
     """The first Hopf point between two values."""
-    return per.equilibria(system, parameter, bounds).labelled(per.Label.HOPF)[0]
+    return per.trace(system, parameter, bounds, method=per.Equilibrium()).labelled(per.Label.HOPF)[0]
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -233,7 +235,7 @@ def circle() -> sym.CompiledSystem:
 @pytest.mark.parametrize("start, x", [(0.0, 1.0), (0.5, 1.0), (1.0, 0.0)])
 def test_closed_branch(start: float, x: float) -> None:
     """Assert that a circle of equilibria closes, from anywhere on it, a fold included."""
-    branch = per.equilibria(circle(), "mu", (-2, 2), start=start, guess={"x": x})
+    branch = per.trace(circle(), "mu", (-2, 2), start=start, guess={"x": x}, method=per.Equilibrium())
     assert branch.stop.reason is per.Reason.CLOSED
     # The branch that begins at a fold has it as its ends.
     assert {round(p.parameter, 9) for p in branch.labelled(per.Label.FOLD)} == {-1.0, 1.0}
@@ -250,7 +252,7 @@ def test_two_changes_within_a_step(label: str) -> None:
         turn = 1 if label == "HB" else 0
         return {"x": growth * x.x - turn * x.y, "y": turn * x.x + (growth if turn else -1) * x.y}
 
-    branch = per.equilibria(equations(rates, {"x": 0.0, "y": 0.0}, mu=0.0), "mu", (0, 1))
+    branch = per.trace(equations(rates, {"x": 0.0, "y": 0.0}, mu=0.0), "mu", (0, 1), method=per.Equilibrium())
     assert labels(branch) == [label] * 2
     assert places(branch) == pytest.approx([0.49, 0.51], rel=1e-11)
 
@@ -258,7 +260,7 @@ def test_two_changes_within_a_step(label: str) -> None:
 def test_fold_and_branch_point_within_a_step() -> None:
     """Assert that a branch point close to a fold is told from it: (mu - x^2)(x - a), a = 0.01."""
     system = equations(lambda x, p: {"x": (p.mu - x.x**2) * (x.x - p.a)}, {"x": 0.0}, mu=0.0, a=0.01)
-    branch = per.equilibria(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0})
+    branch = per.trace(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0}, method=per.Equilibrium())
     assert labels(branch) == ["BP", "LP"]
     assert places(branch) == pytest.approx([1e-4, 0], abs=1e-9)
 
@@ -266,7 +268,7 @@ def test_fold_and_branch_point_within_a_step() -> None:
 def test_pitchfork_of_one_state_seen_from_the_branch_that_turns() -> None:
     """Assert that x' = mu x - x^3 has a BP where mu = x^2 turns."""
     system = equations(lambda x, p: {"x": p.mu * x.x - x.x**3}, {"x": 0.0}, mu=0.0)
-    branch = per.equilibria(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0})
+    branch = per.trace(system, "mu", (-1, 1), start=1.0, guess={"x": 1.0}, method=per.Equilibrium())
     assert labels(branch) == ["BP"]
     assert places(branch) == pytest.approx([0], abs=1e-12)
 
@@ -279,7 +281,14 @@ def test_branch_points_of_curved_branches() -> None:
     }
     for made, middle, apart in curves.values():
         rates = sym.Equations(lambda x, p, f=made: {"x": -f(x, p)}, {"x": 0.0}, {"mu": 0.0})
-        branch = per.equilibria(sym.compile(rates), "mu", (-2, 2), start=0.0, guess={"x": 1.0 - 2 * middle})
+        branch = per.trace(
+            sym.compile(rates),
+            "mu",
+            (-2, 2),
+            start=0.0,
+            guess={"x": 1.0 - 2 * middle},
+            method=per.Equilibrium(),
+        )
         places = sorted(point.parameter for point in branch.labelled("BP"))
         assert places == pytest.approx([middle - apart, middle + apart], rel=1e-10)
 
@@ -289,7 +298,7 @@ def test_transcritical_branches() -> None:
     system = equations(lambda x, p: {"x": (p.mu - x.x) * (x.x + 2 * p.mu)}, {"x": 0.0}, mu=-1.0)
     lines = {1.0: 1.0, -2.0: -2.0}
     for slope in lines:
-        branch = per.equilibria(system, "mu", (-1, 1), guess={"x": -slope})
+        branch = per.trace(system, "mu", (-1, 1), guess={"x": -slope}, method=per.Equilibrium())
         (point,) = branch.labelled(per.Label.BRANCH)
         assert point.parameter == pytest.approx(0, abs=1e-9)
         other = per.branched(system, point.orbit, "mu", leaving=branch[2].orbit)
@@ -307,7 +316,7 @@ def test_equilibria_with_unknowns_and_any_omega() -> None:
         )
     )
     for omega in (1.0, 37.0):
-        end = per.equilibria(system, "F", (0, 2), values={"omega": omega})[-1]
+        end = per.trace(system, "F", (0, 2), values={"omega": omega}, method=per.Equilibrium())[-1]
         assert end.maximum["x"] == pytest.approx(1, rel=1e-12)
         pair = -0.1 + 1j * np.sqrt(4 - 0.01)
         assert end.multipliers == pytest.approx([pair, pair.conjugate()], rel=1e-11)
@@ -333,9 +342,7 @@ def test_lyapunov_coefficient_with_an_unknown() -> None:
 
 def test_orbits_from_an_equilibrium() -> None:
     """Assert that an equilibrium of the unexcited system is a guess for its forced orbits."""
-    still = per.equilibria(
-        duffing_system(0.1, 1.0, 0.0), "k", (1, 2), method=per.Equilibrium(frequency="Omega")
-    )
+    still = per.trace(duffing_system(0.1, 1.0, 0.0), "k", (1, 2), method=per.Equilibrium(frequency="Omega"))
     omega = np.sqrt(1 - 0.05**2)
     assert still[0].multipliers == pytest.approx([-0.05 + 1j * omega, -0.05 - 1j * omega], rel=1e-12)
     forced = per.trace(
@@ -376,25 +383,25 @@ def test_table_and_plot_show_outputs() -> None:
     "make, sentence",
     [
         (
-            lambda: per.equilibria(
+            lambda: per.trace(
                 duffing_system(0.1, 1.0, 0.5), "F", (0.1, 1), method=per.Equilibrium(frequency="Omega")
             ),
             "the system is excited: its equations depend on the phase",
         ),
         (
-            lambda: per.equilibria(duffing_system(0.1, 1.0, 0.5), "F", (0, 1)),
+            lambda: per.trace(duffing_system(0.1, 1.0, 0.5), "F", (0, 1), method=per.Equilibrium()),
             "frequency is 'omega'; it must be one of the parameters",
         ),
         (
-            lambda: per.equilibria(lorenz(), "omega", (0, 1)),
+            lambda: per.trace(lorenz(), "omega", (0, 1), method=per.Equilibrium()),
             "parameter is 'omega', the frequency; equilibria do not depend on it",
         ),
         (
-            lambda: per.equilibria(lorenz(), "rho", (0, 1), guess={"u": 1.0}),
+            lambda: per.trace(lorenz(), "rho", (0, 1), guess={"u": 1.0}, method=per.Equilibrium()),
             "guess has 'u'; it must be one of x, y, z",
         ),
         (
-            lambda: per.equilibria(lorenz(), "rho", (0, 1), guess={"x": np.nan}),
+            lambda: per.trace(lorenz(), "rho", (0, 1), guess={"x": np.nan}, method=per.Equilibrium()),
             "guess of x is nan; it must be a finite number",
         ),
         (
@@ -412,7 +419,9 @@ def test_refused(make: Any, sentence: str) -> None:
 
 def _rest() -> per.Orbit:
     """The Hopf point of Stuart and Landau."""
-    return per.equilibria(stuart_landau(), "mu", (-1, 1)).labelled(per.Label.HOPF)[0].orbit
+    return (
+        per.trace(stuart_landau(), "mu", (-1, 1), method=per.Equilibrium()).labelled(per.Label.HOPF)[0].orbit
+    )
 
 
 def test_no_orbits_begin_elsewhere() -> None:
@@ -428,7 +437,7 @@ def test_no_orbits_begin_elsewhere() -> None:
 def test_no_equilibrium() -> None:
     """Assert that a system without equilibria is a named stop and no traceback."""
     system = equations(lambda x, p: {"x": 1 + x.x**2 + p.a}, {"x": 0.3}, a=0.0)
-    branch = per.equilibria(system, "a", (0, 1))
+    branch = per.trace(system, "a", (0, 1), method=per.Equilibrium())
     assert branch.stop.reason is per.Reason.NO_START and len(branch) == 0
 
 
@@ -441,7 +450,7 @@ def test_long_steps_round_no_corner(place: float) -> None:
         return {"x": y * (p.mu - place - y**2)}
 
     system = sym.compile(sym.Equations(rates, {"x": 0.0}, {"mu": 0.0}))
-    branch = per.equilibria(system, "mu", (0, 1), control=per.ArclengthControl(ds=0.2))
+    branch = per.trace(system, "mu", (0, 1), control=per.ArclengthControl(ds=0.2), method=per.Equilibrium())
     assert [point.parameter for point in branch.labelled("BP")] == [pytest.approx(place, abs=1e-9)]
     states = [point.maximum["x"] for point in branch]
     assert states == pytest.approx(np.sin(3 * branch.values), abs=1e-9)

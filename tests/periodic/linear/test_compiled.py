@@ -15,8 +15,7 @@ from support.numpy_systems import LinearOscillator, Lines
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.condensation import Condensed
-from periodic.collocation.condensation import condensed as condense
+from periodic.collocation.elimination import EliminatedStages, eliminated
 from periodic.collocation.native import elimination
 from periodic.collocation.native.elimination import LARGE as FULL
 from periodic.collocation.native.elimination import routines
@@ -30,8 +29,8 @@ from periodic.orbit.scheme import Family, Scheme
 from periodic.system import linear_of
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
 from symbolic.scenes.names import scene_names
+from symbolic.scenes.reading import load
 
 Array = NDArray[np.float64]
 FREE = (0,)
@@ -60,6 +59,7 @@ class Rows:
     spoil: str = ""
     compiled: bool = True
     seed: int = 1
+    switches: tuple[()] = ()
 
     @property
     def states(self) -> range:
@@ -126,7 +126,7 @@ def close(found: Array, expected: Array, tolerance: float = 1e-11) -> None:
     assert np.abs(found - expected).max(initial=0.0) <= tolerance * np.abs(expected).max(initial=1.0)
 
 
-def compare(found: Condensed, expected: Condensed, tolerance: float = 1e-11) -> None:
+def compare(found: EliminatedStages, expected: EliminatedStages, tolerance: float = 1e-11) -> None:
     """Assert that two condensations are the same in all that they offer."""
     assert found.compiled is not None and expected.compiled is None
     assert found.residual == pytest.approx(expected.residual, rel=1e-9, abs=1e-12)
@@ -165,7 +165,7 @@ def test_random_equations(name: str, events: int) -> None:
     """Assert equal maps for every structure of kinematic rows, with and without unknowns and event nodes."""
     system = STRUCTURES[name]
     orbit = orbit_of(system, Scheme(), events)
-    compare(condense(system, orbit, FREE), condense(replace(system, compiled=False), orbit, FREE), 1e-10)
+    compare(eliminated(system, orbit, FREE), eliminated(replace(system, compiled=False), orbit, FREE), 1e-10)
 
 
 @pytest.mark.parametrize("ncol", range(2, 8))
@@ -174,7 +174,7 @@ def test_schemes(family: Family, ncol: int) -> None:
     """Assert equal maps for both families of points, from two to seven of them."""
     system = STRUCTURES["disc"]
     orbit = orbit_of(system, Scheme(family, ncol), 2)
-    compare(condense(system, orbit, FREE), condense(replace(system, compiled=False), orbit, FREE), 1e-10)
+    compare(eliminated(system, orbit, FREE), eliminated(replace(system, compiled=False), orbit, FREE), 1e-10)
 
 
 @pytest.mark.parametrize("compiled", [True, False])
@@ -191,7 +191,7 @@ def test_failures_are_named(spoil: str, error: type[Exception], compiled: bool) 
     """Assert the same exception from C and NumPy where equations are not finite or singular."""
     system = replace(STRUCTURES["disc"], spoil=spoil, compiled=compiled)
     with pytest.raises(error):
-        condense(system, orbit_of(system, Scheme(), 1), FREE)
+        eliminated(system, orbit_of(system, Scheme(), 1), FREE)
 
 
 def test_wrong_shape_is_refused() -> None:
@@ -199,7 +199,7 @@ def test_wrong_shape_is_refused() -> None:
     system = STRUCTURES["disc"]
     orbit = orbit_of(replace(system, n=2), Scheme(), 1)
     with pytest.raises(ValueError, match=r"^residual of the .* has shape \(20, 4\); it must be \(20, 3\)$"):
-        condense(system, orbit, FREE)
+        eliminated(system, orbit, FREE)
 
 
 @cache
@@ -228,7 +228,7 @@ def test_orbits_of_scenes(name: str) -> None:
     if linear_of(by_numpy) is not None:
         return  # the equations of a structure's places are not those of intervals
     orbit = transfer(expected.orbit, mesh, guess.phases)
-    compare(condense(by_c, orbit, FREE), condense(by_numpy, orbit, FREE), 1e-8)
+    compare(eliminated(by_c, orbit, FREE), eliminated(by_numpy, orbit, FREE), 1e-8)
 
 
 def test_branch_is_the_same() -> None:
@@ -263,16 +263,16 @@ def test_disc_with_events() -> None:
     by_numpy, by_c = both("vitrea79-810N")
     orbit = max((p.orbit for p in traces.disc().points), key=lambda o: len(o.phases))
     assert len(orbit.phases) > 0
-    compare(condense(by_c, orbit, FREE), condense(by_numpy, orbit, FREE), 1e-8)
+    compare(eliminated(by_c, orbit, FREE), eliminated(by_numpy, orbit, FREE), 1e-8)
 
 
 def test_intervals_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the same maps, bit for bit, from a few intervals at a time, kinks at their ends or not."""
     by_numpy, by_c = both("vitrea79-810N")
     orbit = max((p.orbit for p in traces.disc().points), key=lambda o: len(o.phases))
-    whole = condense(by_c, orbit, FREE)
+    whole = eliminated(by_c, orbit, FREE)
     monkeypatch.setattr(elimination, "MEMORY", 2e4)
-    parts = condense(by_c, orbit, FREE)
+    parts = eliminated(by_c, orbit, FREE)
     for name in ("step", "stages", "algebraic", "residual"):
         assert np.array_equal(getattr(parts, name), getattr(whole, name))
-    compare(parts, condense(by_numpy, orbit, FREE), 1e-6)
+    compare(parts, eliminated(by_numpy, orbit, FREE), 1e-6)

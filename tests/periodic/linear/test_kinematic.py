@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symbolic as sym
-from periodic.collocation.condensation import condensed
+from periodic.collocation.elimination import eliminated
 from periodic.linear import bordering as chaining
 from periodic.linear import kinematic
 from periodic.orbit.construction import at_rest
@@ -39,9 +39,9 @@ def test_positions_follow_from_velocities(scheme: Scheme, monkeypatch: pytest.Mo
     """Assert that eliminating kinematic rows first changes the condensed equations by rounding alone."""
     system = chain(6)
     guess = orbit(system, scheme)
-    found = condensed(system, guess, (0,))
+    found = eliminated(system, guess, (0,))
     monkeypatch.setattr(kinematic, "LARGE", 10**6)
-    plain = condensed(system, guess, (0,))
+    plain = eliminated(system, guess, (0,))
     assert np.abs(found.stages - plain.stages).max() < 1e-12 * np.abs(plain.stages).max()
     assert np.abs(found.step - plain.step).max() < 1e-12 * np.abs(plain.step).max()
 
@@ -64,9 +64,9 @@ def test_kinematic_rows_are_found() -> None:
 def test_chain_in_pairs(ntst: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that maps multiplied in pairs are those multiplied one after the other."""
     system = chain(2)
-    local = condensed(system, orbit(system, Scheme(ncol=3), ntst), (0,))
+    local = eliminated(system, orbit(system, Scheme(ncol=3), ntst), (0,))
     found = chaining.chain(local)
-    monkeypatch.setattr(chaining, "SMALL", 0)
+    monkeypatch.setattr(chaining, "PAIRED_UP_TO", 0)
     plain = chaining.chain(local)
     assert found.shape == plain.shape == (ntst + 1, 4, 6)
     assert np.abs(found - plain).max() < 1e-12 * np.abs(plain).max()

@@ -16,7 +16,7 @@ import periodic as per
 pytest.importorskip("adaptive")
 
 
-def kink(task: per.Task, branch: per.Branch) -> float:
+def kink(task: per.maps.Task, branch: per.Branch) -> float:
     """A number with a steep front at F = 1.3 and no value beyond 1.9."""
     F = branch[0].orbit.parameters["F"]
     if F > 1.9:
@@ -26,8 +26,8 @@ def kink(task: per.Task, branch: per.Branch) -> float:
 
 def test_cells_lie_where_the_number_changes(tmp_path: Path) -> None:
     """Assert that more cells lie at a front than evenly, and that failures say so."""
-    plan = per.Adaptive({"F": (1.0, 2.0)}, "kink", cells=32)
-    here = per.map(task(kink=kink), plan, 1, store=tmp_path / "map.nc")
+    plan = per.maps.Adaptive({"F": (1.0, 2.0)}, "kink", cells=32)
+    here = per.design_map(task(kink=kink), plan, 1, store=tmp_path / "map.nc")
     assert here["kink"].dims == ("cell",) and here.sizes["cell"] == 32 and (np.diff(here["F"]) > 0).all()
     near = np.abs(here["F"] - 1.3) < 0.05
     assert int(near.sum()) > 2 * 0.1 * 32
@@ -35,21 +35,21 @@ def test_cells_lie_where_the_number_changes(tmp_path: Path) -> None:
         np.tanh(50 * (here["F"].values[here["F"] <= 1.9] - 1.3))
     )
     assert (here["reason"][here["F"] > 1.9] == "kink: nothing here").all()
-    assert per.map(task(kink=kink), plan, 1, store=tmp_path / "map.nc").identical(here)
+    assert per.design_map(task(kink=kink), plan, 1, store=tmp_path / "map.nc").identical(here)
 
 
 def test_interrupted_sampling_goes_on_to_the_same_cells(tmp_path: Path) -> None:
     """Assert that a sampling in two parameters that is interrupted ends with the cells of one that is not."""
-    plan = per.Adaptive({"F": (0.5, 1.5), "zeta": (0.1, 0.4)}, "peak", cells=20)
+    plan = per.maps.Adaptive({"F": (0.5, 1.5), "zeta": (0.1, 0.4)}, "peak", cells=20)
 
-    def press(progress: per.Progress) -> None:
+    def press(progress: per.maps.Progress) -> None:
         if progress.done == 18:
             raise KeyboardInterrupt
 
-    with pytest.raises(per.MapInterrupted, match="after 18 of 20 cells"):
-        per.map(task(), plan, 1, store=tmp_path / "map.nc", progress=press)
-    found = per.map(task(), plan, 1, store=tmp_path / "map.nc")
-    whole = per.map(task(), plan, 1, store=None)
+    with pytest.raises(per.maps.MapInterrupted, match="after 18 of 20 cells"):
+        per.design_map(task(), plan, 1, store=tmp_path / "map.nc", progress=press)
+    found = per.design_map(task(), plan, 1, store=tmp_path / "map.nc")
+    whole = per.design_map(task(), plan, 1, store=None)
     for name in ("F", "zeta", "peak"):
         assert np.array_equal(found[name], whole[name])
 
@@ -57,23 +57,28 @@ def test_interrupted_sampling_goes_on_to_the_same_cells(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: per.Adaptive({}, "peak"), "bounds is empty; it must give the range"),
-        (lambda: per.Adaptive({"F": (2, 1)}, "peak"), r"bounds of F are \(2, 1\); they must be two rising"),
-        (lambda: per.Adaptive({"F": 3}, "peak"), "bounds of F are 3; they must be two rising"),
+        (lambda: per.maps.Adaptive({}, "peak"), "bounds is empty; it must give the range"),
         (
-            lambda: per.Adaptive({"F": (1, 2)}, "peak", cells=1),
+            lambda: per.maps.Adaptive({"F": (2, 1)}, "peak"),
+            r"bounds of F are \(2, 1\); they must be two rising",
+        ),
+        (lambda: per.maps.Adaptive({"F": 3}, "peak"), "bounds of F are 3; they must be two rising"),
+        (
+            lambda: per.maps.Adaptive({"F": (1, 2)}, "peak", cells=1),
             "cells is 1; it must be a whole number of at least 2",
         ),
         (
-            lambda: per.map(task(), per.Adaptive({"G": (1, 2)}, "peak"), 1, store=None),
+            lambda: per.design_map(task(), per.maps.Adaptive({"G": (1, 2)}, "peak"), 1, store=None),
             "bounds has 'G'; it must be one of the system's Omega, zeta, F",
         ),
         (
-            lambda: per.map(task(), per.Adaptive({"F": (1, 2)}, "fold"), 1, store=None),
+            lambda: per.design_map(task(), per.maps.Adaptive({"F": (1, 2)}, "fold"), 1, store=None),
             "number is 'fold'; it must be one of peak",
         ),
         (
-            lambda: per.map(task(e=ends), per.Adaptive({"F": (1, 2)}, "e", cells=2), 1, store=None),
+            lambda: per.design_map(
+                task(e=ends), per.maps.Adaptive({"F": (1, 2)}, "e", cells=2), 1, store=None
+            ),
             "number is 'e', of which a branch has several; it must have one",
         ),
     ],
@@ -88,4 +93,4 @@ def test_without_the_sampler(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the sentence where the package is not installed."""
     monkeypatch.setitem(sys.modules, "adaptive", None)
     with pytest.raises(ValueError, match="^grid is Adaptive; its sampler must be installed"):
-        per.map(task(), per.Adaptive({"F": (1, 2)}, "peak"), 1, store=None)
+        per.design_map(task(), per.maps.Adaptive({"F": (1, 2)}, "peak"), 1, store=None)

@@ -30,13 +30,14 @@ from support.maps import GRID, ends, height, process, task
 if __name__ == "__main__":
     with MPIPoolExecutor() as executor:
         print(executor.num_workers)
-        per.map(task(peak=height, ends=ends, process=process), GRID, executor, store=sys.argv[1], chunk=2)
+        given = task(peak=height, ends=ends, process=process)
+        per.design_map(given, GRID, executor, store=sys.argv[1], chunk=2)
 """
 
 
 def same(found: xr.Dataset) -> None:
     """Assert that a map has the bits that this process gives, from two others."""
-    here = per.map(task(peak=height, ends=ends), GRID, 1, store=None, chunk=2)
+    here = per.design_map(task(peak=height, ends=ends), GRID, 1, store=None, chunk=2)
     for name in ("peak", "ends", "points", "newton", "status"):
         assert np.array_equal(found[name], here[name]), name
     assert len(np.unique(found["process"])) == 2 and os.getpid() not in found["process"].values
@@ -54,10 +55,10 @@ def test_dask(tmp_path: Path) -> None:
             client.get_executor() as executor,
         ):
             given = task(peak=height, ends=ends, process=process)
-            same(per.map(given, GRID, executor, store=tmp_path / "map.nc", chunk=2))
+            same(per.design_map(given, GRID, executor, store=tmp_path / "map.nc", chunk=2))
             deadly = {"zeta": [0.1, 0.2, 0.3]}
             number = Deadly((0.2,), wait=0.5)  # a worker that dies while it starts is not replaced
-            found = per.map(task(z=number), deadly, executor, store=None, chunk=3)
+            found = per.design_map(task(z=number), deadly, executor, store=None, chunk=3)
     assert found["reason"].values.tolist() == ["", DIED, ""]
     assert found["z"].values[[0, 2]].tolist() == [0.1, 0.3]
 
@@ -81,14 +82,16 @@ def test_dask_whose_scheduler_goes_away(tmp_path: Path) -> None:
             with distributed.Client(scheduler_file=str(meeting), timeout=3) as client:
                 executor = client.get_executor()
                 with pytest.raises(
-                    per.MapStoppedError, match="^the executor went away .* the same call goes on"
+                    per.maps.MapStoppedError, match="^the executor went away .* the same call goes on"
                 ):
-                    per.map(given, GRID, executor, store=store, chunk=1, progress=lambda _: scheduler.kill())
+                    per.design_map(
+                        given, GRID, executor, store=store, chunk=1, progress=lambda _: scheduler.kill()
+                    )
         finally:
             scheduler.kill()
             worker.kill()
-    told: list[per.Progress] = []
-    found = per.map(given, GRID, 1, store=store, chunk=1, progress=told.append)
+    told: list[per.maps.Progress] = []
+    found = per.design_map(given, GRID, 1, store=store, chunk=1, progress=told.append)
     assert 1 < told[0].done < 12 and (found["status"] == "done").all()
 
 

@@ -27,7 +27,7 @@ def duffing() -> sym.CompiledSystem:
     return sym.scene("duffing")
 
 
-def numbers_of(task: per.Task, **values: float) -> dict[str, Any]:
+def numbers_of(task: per.maps.Task, **values: float) -> dict[str, Any]:
     """The numbers of one cell at the given or nominal parameters."""
     branch = task.traced(values)
     return {name: number(task, branch) for name, number in task.numbers.items()}
@@ -50,8 +50,8 @@ def linear() -> sym.CompiledSystem:
 )
 def test_peak_is_exact_between_points(kind: Any, method: Any) -> None:
     """Assert place (1e-7) and height (1e-7) of a linear resonance, with and without exact derivatives."""
-    task = per.Task(
-        kind(), "Omega", (0.5, 1.6), numbers={"peak": per.Highest(SWING)}, method=method, tol=1e-8
+    task = per.maps.Task(
+        kind(), "Omega", (0.5, 1.6), numbers={"peak": per.maps.Highest(SWING)}, method=method, tol=1e-8
     )
     peak = numbers_of(task)["peak"]
     assert peak[""] == pytest.approx(PEAK, rel=1e-9)
@@ -62,8 +62,8 @@ def test_peak_is_exact_between_points(kind: Any, method: Any) -> None:
 
 def test_extreme_at_an_end() -> None:
     """Assert that a number that only rises or falls is the one at the end of the branch."""
-    numbers = {"most": per.Highest(SWING), "least": per.Lowest(SWING)}
-    found = numbers_of(per.Task(linear(), "Omega", (0.3, 0.7), numbers=numbers))
+    numbers = {"most": per.maps.Highest(SWING), "least": per.maps.Lowest(SWING)}
+    found = numbers_of(per.maps.Task(linear(), "Omega", (0.3, 0.7), numbers=numbers))
     for name, omega in (("most", 0.7), ("least", 0.3)):
         exact = 2 / math.hypot(1 - omega**2, 2 * ZETA * omega)
         assert found[name]["at"] == omega and found[name][""] == pytest.approx(exact, rel=1e-6)
@@ -72,14 +72,14 @@ def test_extreme_at_an_end() -> None:
 def test_folds_sheets_and_stable_ranges() -> None:
     """Assert folds, three orbits between them and two stable ranges of Duffing's oscillator."""
     numbers = {
-        "folds": per.Places("LP"),
-        "heights": per.Places("LP", SWING),
-        "stable": per.StableRanges(),
-        "sheets": per.Sheets(SWING, 1.8),
-        "lone": per.Sheets(SWING, 2.5),
-        "none": per.Places("PD"),
+        "folds": per.maps.Places("LP"),
+        "heights": per.maps.Places("LP", SWING),
+        "stable": per.maps.StableRanges(),
+        "sheets": per.maps.Sheets(SWING, 1.8),
+        "lone": per.maps.Sheets(SWING, 2.5),
+        "none": per.maps.Places("PD"),
     }
-    found = numbers_of(per.Task(duffing(), "Omega", (0.3, 3.0), numbers=numbers))
+    found = numbers_of(per.maps.Task(duffing(), "Omega", (0.3, 3.0), numbers=numbers))
     upper, lower = found["folds"]
     assert [upper, lower] == pytest.approx([2.2119353, 1.4386701], rel=1e-6)
     assert found["stable"] == {"from": [0.3, lower], "to": [upper, 3.0]}
@@ -91,8 +91,11 @@ def test_folds_sheets_and_stable_ranges() -> None:
 
 def test_stable_extreme_is_the_fold() -> None:
     """Assert that the highest stable response of the lower sheet's side is exactly at a fold."""
-    numbers = {"high": per.Highest(SWING, stable=True), "low": per.Highest(per.Minimum("x"), stable=True)}
-    task = per.Task(
+    numbers = {
+        "high": per.maps.Highest(SWING, stable=True),
+        "low": per.maps.Highest(per.Minimum("x"), stable=True),
+    }
+    task = per.maps.Task(
         duffing(), "Omega", (0.3, 3.0), start=3.0, numbers=numbers, watch=per.Watch(stop={"LP": 1})
     )
     found = numbers_of(task)
@@ -102,45 +105,52 @@ def test_stable_extreme_is_the_fold() -> None:
 
 def test_no_stable_orbit_is_nan() -> None:
     """Assert that an extreme among no orbits is no number."""
-    task = per.Task(
-        LinearOscillator(zeta=-0.05), "Omega", (0.5, 0.8), numbers={"peak": per.Highest(SWING, stable=True)}
+    task = per.maps.Task(
+        LinearOscillator(zeta=-0.05),
+        "Omega",
+        (0.5, 0.8),
+        numbers={"peak": per.maps.Highest(SWING, stable=True)},
     )
     assert all(np.isnan(value) for value in numbers_of(task)["peak"].values())
 
 
 def test_units() -> None:
     """Assert the units of each number's parts."""
-    task = per.Task(duffing(), "Omega", (0.3, 3.0), numbers={"peak": per.Highest(SWING)})
-    assert per.Highest(SWING).units(task) == {"": "m", "at": "rad/s"}
-    assert per.Places("LP").units(task) == {"": "rad/s"}
-    assert per.Places("LP", SWING).units(task) == {"": "m"}
-    assert per.Sheets(SWING, 1.0).units(task) == {"": "m", "stable": ""}
+    task = per.maps.Task(duffing(), "Omega", (0.3, 3.0), numbers={"peak": per.maps.Highest(SWING)})
+    assert per.maps.Highest(SWING).units(task) == {"": "m", "at": "rad/s"}
+    assert per.maps.Places("LP").units(task) == {"": "rad/s"}
+    assert per.maps.Places("LP", SWING).units(task) == {"": "m"}
+    assert per.maps.Sheets(SWING, 1.0).units(task) == {"": "m", "stable": ""}
 
 
-def asked(numbers: Any) -> per.Task:
+def asked(numbers: Any) -> per.maps.Task:
     """A task that reads some numbers."""
-    return per.Task(linear(), "Omega", (1, 2), numbers=numbers)
+    return per.maps.Task(linear(), "Omega", (1, 2), numbers=numbers)
 
 
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: per.Highest("x"), "functional is 'x'; it must be one of an orbit"),
-        (lambda: per.Lowest(per.PeakToPeak), "functional is <class"),
-        (lambda: per.Places(3), "label is 3; it must be one of EP, LP"),
-        (lambda: per.Sheets(SWING, "1"), "at is '1'; it must be a number"),
-        (lambda: per.Task(linear(), "Omega", (1, 2), numbers={}), "numbers is empty; it must name"),
+        (lambda: per.maps.Highest("x"), "functional is 'x'; it must be one of an orbit"),
+        (lambda: per.maps.Lowest(per.PeakToPeak), "functional is <class"),
+        (lambda: per.maps.Places(3), "label is 3; it must be one of EP, LP"),
+        (lambda: per.maps.Sheets(SWING, "1"), "at is '1'; it must be a number"),
+        (lambda: per.maps.Task(linear(), "Omega", (1, 2), numbers={}), "numbers is empty; it must name"),
         (
-            lambda: per.Task(linear(), "Omega", (1, 2), numbers={"a": 3}),
+            lambda: per.maps.Task(linear(), "Omega", (1, 2), numbers={"a": 3}),
             "number a is 3; it must be a function",
         ),
         (
-            lambda: per.Task(linear(), "Omega", (1, 2), numbers={"s": per.Sheets(SWING, 9.0)}),
+            lambda: per.maps.Task(linear(), "Omega", (1, 2), numbers={"s": per.maps.Sheets(SWING, 9.0)}),
             "at is 9.0; it must lie within the bounds",
         ),
         (
-            lambda: per.Task(
-                linear(), "Omega", (1, 2), numbers={"p": per.Highest(SWING)}, watch=per.Watch(journal="j")
+            lambda: per.maps.Task(
+                linear(),
+                "Omega",
+                (1, 2),
+                numbers={"p": per.maps.Highest(SWING)},
+                watch=per.Watch(journal="j"),
             ),
             "watch has a journal or progress",
         ),
@@ -148,15 +158,15 @@ def asked(numbers: Any) -> per.Task:
             lambda: asked({"p": SWING}),
             "number p is PeakToPeak(output='x'), of an orbit; it must be of a branch",
         ),
-        (lambda: asked({"p": per.Highest(per.PeakToPeak("y"))}), "output is 'y'; it must be one of x"),
-        (lambda: asked({"p": per.Places("XX")}), "label is 'XX'; it must be one of EP, LP"),
+        (lambda: asked({"p": per.maps.Highest(per.PeakToPeak("y"))}), "output is 'y'; it must be one of x"),
+        (lambda: asked({"p": per.maps.Places("XX")}), "label is 'XX'; it must be one of EP, LP"),
         (
-            lambda: asked({"x/y": per.Places("LP")}),
+            lambda: asked({"x/y": per.maps.Places("LP")}),
             "numbers has 'x/y'; names must not be empty and have no /",
         ),
-        (lambda: asked({" ": per.Places("LP")}), "numbers has ' '; names must not"),
+        (lambda: asked({" ": per.maps.Places("LP")}), "numbers has ' '; names must not"),
         (
-            lambda: asked({"p": per.Highest(SWING), "p at": per.Places("LP")}),
+            lambda: asked({"p": per.maps.Highest(SWING), "p at": per.maps.Places("LP")}),
             "numbers gives 'p at' twice; it must be the name of one",
         ),
     ],

@@ -28,7 +28,7 @@ import periodic as per
 from support.maps import GRID, Counted, task
 def main():
     number = Counted(Path(sys.argv[1]), wait=float(sys.argv[3]))
-    per.map(task(f=number), GRID, int(sys.argv[4]), store=sys.argv[2], chunk=2)
+    per.design_map(task(f=number), GRID, int(sys.argv[4]), store=sys.argv[2], chunk=2)
 if __name__ == "__main__":
     main()
 """
@@ -63,13 +63,13 @@ def test_killed_run_goes_on(folder: Path, tmp_path: Path) -> None:
     """Assert that of a run that was killed only chunks under way are computed again, and all is there."""
     store = tmp_path / "map.nc"
     running = started(folder, store, 0.05)
-    with pytest.raises(per.MapFileError, match="another map is writing to it"):
-        per.map(task(f=Counted(folder, 0.05)), GRID, 1, store=store, chunk=2)
+    with pytest.raises(per.maps.MapFileError, match="another map is writing to it"):
+        per.design_map(task(f=Counted(folder, 0.05)), GRID, 1, store=store, chunk=2)
     running.send_signal(signal.SIGKILL)
     running.wait()
     before = len(cells(folder))
     assert 5 <= before < 12
-    found = per.map(task(f=Counted(folder, 0.05)), GRID, 1, store=store, chunk=2)
+    found = per.design_map(task(f=Counted(folder, 0.05)), GRID, 1, store=store, chunk=2)
     again = len(cells(folder)) - 12
     assert 0 <= again <= 2 and len(set(cells(folder))) == 12
     assert (found["f"] == found["F"]).all() and (found["status"] == "done").all()
@@ -102,10 +102,10 @@ def there(process: int) -> bool:
 def test_finished_map_is_read(folder: Path, tmp_path: Path) -> None:
     """Assert that the same call on a finished map computes nothing, and resume=False all anew."""
     given, store = task(f=Counted(folder)), tmp_path / "map.nc"
-    first = per.map(given, GRID, 1, store=store)
-    second = per.map(given, GRID, 1, store=store)
+    first = per.design_map(given, GRID, 1, store=store)
+    second = per.design_map(given, GRID, 1, store=store)
     assert first.identical(second) and len(cells(folder)) == 12
-    per.map(given, GRID, 1, store=store, resume=False)
+    per.design_map(given, GRID, 1, store=store, resume=False)
     assert len(cells(folder)) == 24
 
 
@@ -113,16 +113,16 @@ def test_interrupted_map_has_what_there_is(tmp_path: Path) -> None:
     """Assert that Ctrl-C leaves the cells so far in its exception and in the file, and the call goes on."""
     store = tmp_path / "map.nc"
 
-    def press(progress: per.Progress) -> None:
+    def press(progress: per.maps.Progress) -> None:
         if progress.done == 6:
             raise KeyboardInterrupt
 
-    with pytest.raises(per.MapInterrupted, match="interrupted after 6 of 12 cells") as caught:
-        per.map(task(), GRID, 1, store=store, chunk=3, progress=press)
+    with pytest.raises(per.maps.MapInterrupted, match="interrupted after 6 of 12 cells") as caught:
+        per.design_map(task(), GRID, 1, store=store, chunk=3, progress=press)
     for data in (caught.value.found, xr.load_dataset(store)):
         assert (data["status"] == "not done").sum() == 6 == np.isnan(data["peak"]).sum()
-    told: list[per.Progress] = []
-    found = per.map(task(), GRID, 1, store=store, chunk=3, progress=told.append)
+    told: list[per.maps.Progress] = []
+    found = per.design_map(task(), GRID, 1, store=store, chunk=3, progress=told.append)
     assert [p.done for p in told] == [9, 12] and (found["status"] == "done").all()
 
 
@@ -132,7 +132,11 @@ def test_interrupted_map_has_what_there_is(tmp_path: Path) -> None:
         ({"grid": {"F": [0.5, 1.0], "zeta": [0.1]}}, "grid zeta = .*; now they are"),
         ({"task": task(other=height)}, "numbers "),
         (
-            {"task": per.Task(LinearOscillator(), "Omega", (0.4, 0.55), numbers={"peak": height}, tol=1e-3)},
+            {
+                "task": per.maps.Task(
+                    LinearOscillator(), "Omega", (0.4, 0.55), numbers={"peak": height}, tol=1e-3
+                )
+            },
             "bounds ",
         ),
     ],
@@ -141,39 +145,39 @@ def test_other_map_is_not_gone_on_with(other: dict[str, Any], said: str, tmp_pat
     """Assert that a finished and an unfinished map of something else are left alone, in one sentence."""
     asked = {"task": task(), "grid": {"F": [0.5, 1.0], "zeta": [0.1, 0.2]}}
     finished, begun = tmp_path / "done.nc", tmp_path / "begun.nc"
-    per.map(**asked, executor=1, store=finished)
+    per.design_map(**asked, executor=1, store=finished)
     content = finished.read_bytes()
 
-    def press(progress: per.Progress) -> None:
+    def press(progress: per.maps.Progress) -> None:
         raise KeyboardInterrupt
 
-    with pytest.raises(per.MapInterrupted):
-        per.map(**asked, executor=1, store=begun, chunk=2, progress=press)
+    with pytest.raises(per.maps.MapInterrupted):
+        per.design_map(**asked, executor=1, store=begun, chunk=2, progress=press)
     begun.unlink()  # the journal is enough
     for store in (finished, begun):
-        with pytest.raises(per.MapFileError, match=f"holds a map made with .*{said}.*resume=False"):
-            per.map(**{**asked, **other}, executor=1, store=store)
+        with pytest.raises(per.maps.MapFileError, match=f"holds a map made with .*{said}.*resume=False"):
+            per.design_map(**{**asked, **other}, executor=1, store=store)
     assert finished.read_bytes() == content
 
 
 def test_foreign_files_are_left_alone(tmp_path: Path) -> None:
     """Assert that folders, other files and damaged ones are refused and stay as they are."""
     (tmp_path / "folder").mkdir()
-    with pytest.raises(per.MapFileError, match="which is no ordinary file; choose another"):
-        per.map(task(), GRID, 1, store=tmp_path / "folder")
-    with pytest.raises(per.MapFileError, match=r"cannot be written \(No such file or directory\)"):
-        per.map(task(), GRID, 1, store=tmp_path / "nowhere" / "map.nc")
+    with pytest.raises(per.maps.MapFileError, match="which is no ordinary file; choose another"):
+        per.design_map(task(), GRID, 1, store=tmp_path / "folder")
+    with pytest.raises(per.maps.MapFileError, match=r"cannot be written \(No such file or directory\)"):
+        per.design_map(task(), GRID, 1, store=tmp_path / "nowhere" / "map.nc")
     (tmp_path / "text.nc").write_text("my diary")
     xr.Dataset({"a": 1}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
-    per.map(task(), {"F": [1.0]}, 1, store=tmp_path / "damaged.nc")
+    per.design_map(task(), {"F": [1.0]}, 1, store=tmp_path / "damaged.nc")
     content = bytearray((tmp_path / "damaged.nc").read_bytes())
     content[len(content) // 2] ^= 1
     (tmp_path / "damaged.nc").write_bytes(content)
     for name in ("text.nc", "other.nc", "damaged.nc"):
         before = (tmp_path / name).read_bytes()
         for resume in (True, False):
-            with pytest.raises(per.MapFileError, match="which is another file or damaged; it is not"):
-                per.map(task(), {"F": [1.0]}, 1, store=tmp_path / name, resume=resume)
+            with pytest.raises(per.maps.MapFileError, match="which is another file or damaged; it is not"):
+                per.design_map(task(), {"F": [1.0]}, 1, store=tmp_path / name, resume=resume)
         assert (tmp_path / name).read_bytes() == before
 
 
@@ -181,17 +185,17 @@ def test_damaged_journal_is_gone_on_with_up_to_the_damage(tmp_path: Path) -> Non
     """Assert that of a journal that was cut short the whole chunks count."""
     store, journal = tmp_path / "map.nc", tmp_path / "map.nc.journal"
 
-    def press(progress: per.Progress) -> None:
+    def press(progress: per.maps.Progress) -> None:
         if progress.done == 9:
             shutil.copy(journal, tmp_path / "copy")
             raise KeyboardInterrupt
 
-    with pytest.raises(per.MapInterrupted):
-        per.map(task(), GRID, 1, store=store, chunk=3, progress=press)
+    with pytest.raises(per.maps.MapInterrupted):
+        per.design_map(task(), GRID, 1, store=store, chunk=3, progress=press)
     for part in (0.8, 0.0):
         content = (tmp_path / "copy").read_bytes()
         journal.write_bytes(content[: int(part * len(content))])
-        found = per.map(task(), GRID, 1, store=store, chunk=3)
+        found = per.design_map(task(), GRID, 1, store=store, chunk=3)
         assert (found["status"] == "done").all()
         store.unlink()
 
@@ -203,12 +207,12 @@ def test_full_disk_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     store = tmp_path / "map.nc"
 
-    def fill(progress: per.Progress) -> None:
+    def fill(progress: per.maps.Progress) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096 if progress.done < 9 else before[0], before[1]))
 
     try:
         with pytest.warns(UserWarning, match="cannot be written to .*; the map goes on") as warned:
-            found = per.map(task(), GRID, 1, store=store, chunk=1, progress=fill)
+            found = per.design_map(task(), GRID, 1, store=store, chunk=1, progress=fill)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
         signal.signal(signal.SIGXFSZ, handler)
@@ -224,7 +228,7 @@ def test_full_disk_to_the_end(tmp_path: Path) -> None:
     try:
         with pytest.warns(UserWarning, match="cannot be written to"):
             resource.setrlimit(resource.RLIMIT_FSIZE, (0, before[1]))
-            found = per.map(task(), {"F": [1.0, 2.0]}, 1, store=tmp_path / "map.nc")
+            found = per.design_map(task(), {"F": [1.0, 2.0]}, 1, store=tmp_path / "map.nc")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
         signal.signal(signal.SIGXFSZ, handler)
@@ -233,14 +237,14 @@ def test_full_disk_to_the_end(tmp_path: Path) -> None:
 
 def test_file_is_written_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the file of a map under way can be read, and says what is not done."""
-    monkeypatch.setattr(stores, "LEAST", 0.0)
+    monkeypatch.setattr(stores, "LEAST_SECONDS", 0.0)
     monkeypatch.setattr(stores, "RARELY", 0.0)
     store, seen = tmp_path / "map.nc", []
 
-    def look(progress: per.Progress) -> None:
+    def look(progress: per.maps.Progress) -> None:
         seen.append(int((xr.load_dataset(store)["status"] == "done").sum()))
 
-    per.map(task(), GRID, 1, store=store, chunk=4, progress=look)
+    per.design_map(task(), GRID, 1, store=store, chunk=4, progress=look)
     assert seen == [4, 8, 12]
 
 
@@ -258,7 +262,7 @@ def test_file_is_written_again_when_that_costs_little(
     monkeypatch.setattr(stores, "packed", slowly)
     with stores.Store(tmp_path / "map.nc", {}, False) as store:
         store.write(xr.Dataset(), False)
-        rest = max(stores.LEAST, stores.RARELY)
+        rest = max(stores.LEAST_SECONDS, stores.RARELY)
         for later, due in ((0.9 * rest, False), (0.2 * rest, True)):
             clock[0] += later
             assert store.due() is due

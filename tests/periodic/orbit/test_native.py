@@ -11,14 +11,14 @@ import symbolic as sym
 from periodic.orbit import extrema
 from symbolic.kernels import native
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)
 
 
 @pytest.mark.parametrize("method", [per.Collocation(), per.HarmonicBalance()])
-def test_outputs_in_c_are_those_in_numpy(method: per.Discretisation) -> None:
+def test_outputs_in_c_are_those_in_numpy(method: per.extend.Discretisation) -> None:
     """Assert outputs between mesh points, of piecewise polynomials and of Fourier series, to rounding."""
     x = sym.coordinate("x")
     model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.1) + sym.CubicSpring(x, 1.0)

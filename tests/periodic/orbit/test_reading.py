@@ -16,7 +16,7 @@ import periodic as per
 import symbolic as sym
 from periodic.orbit.layout import layout_of
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 SCENE = "vitrea79-810N"
 METHODS = {
@@ -84,7 +84,7 @@ def test_equilibria_are_constants() -> None:
     )
     system = sym.compile(cycle)
     assert system.frequency == ("omega",)
-    rest = per.equilibria(system, "mu", (-0.1, 0.2))
+    rest = per.trace(system, "mu", (-0.1, 0.2), method=per.Equilibrium())
     still = rest[0].orbit
     assert still["u"](np.zeros(3)) == pytest.approx(0.0, abs=1e-9) and still["u'"].unit == "1/s"
     with pytest.raises(ValueError, match="^orbit is an equilibrium; it has no period$"):

@@ -73,7 +73,7 @@ def test_page_is_one_file_of_at_most_6_MB(file: Path) -> None:
 
 def test_long_branch_is_thinned(branch: per.Branch, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Assert that special points and the ends stay."""
-    monkeypatch.setattr("periodic.results.interactive.content.MOST", 12)
+    monkeypatch.setattr("periodic.results.interactive.content.MOST_POINTS", 12)
     data = held(per.page(branch, tmp_path / "a.html"))
     assert len(data["points"]) < 20
     assert [p["label"] for p in data["points"] if p["label"]] == ["EP", "LP", "LP", "EP"]

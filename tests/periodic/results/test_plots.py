@@ -125,7 +125,7 @@ def test_column_in_the_place_of_a_peak_to_peak(axes: Axes) -> None:
 def test_orbit(axes: Axes) -> None:
     """Assert a signal over its period, with a line where the gears touch."""
     point = gears()[len(gears()) // 2]
-    assert per.plot_orbit(point, axes=axes) is axes
+    assert per.plots.orbit(point, axes=axes) is axes
     x, y = np.asarray(axes.get_lines()[0].get_xydata()).T
     assert x[-1] == pytest.approx(point.orbit.period) and y[0] == pytest.approx(y[-1], rel=1e-9)
     assert np.ptp(y) == pytest.approx(point.peak_to_peak("x"), rel=1e-4)
@@ -136,13 +136,13 @@ def test_orbit(axes: Axes) -> None:
 def test_signals_in_different_units(axes: Axes) -> None:
     """Assert one sentence."""
     with pytest.raises(ValueError, match=r"^names has x \(m\) and x' \(m/s\); signals in one picture must"):
-        per.plot_orbit(duffing()[3], ["x", "x'"], axes=axes)
+        per.plots.orbit(duffing()[3], ["x", "x'"], axes=axes)
 
 
 def test_phase_plane_is_in_SI(axes: Axes) -> None:
     """Assert dx/dt, not dx/dtau: the slope of x over time, and one dot for the period's beginning."""
     point = duffing()[5]
-    per.plot_phase(point.orbit, axes=axes)
+    per.plots.phase(point.orbit, axes=axes)
     line, dot = axes.get_lines()
     x, v = np.asarray(line.get_xydata()).T
     step = point.orbit.period / (len(x) - 1)
@@ -153,7 +153,7 @@ def test_phase_plane_is_in_SI(axes: Axes) -> None:
 def test_spectrum(axes: Axes) -> None:
     """Assert amplitudes that give the motion's mean square (Parseval)."""
     orbit = duffing()[5].orbit
-    per.plot_spectrum(orbit, axes=axes)
+    per.plots.spectrum(orbit, axes=axes)
     orders, heights = np.asarray(axes.get_lines()[0].get_xydata()).T
     assert orders.tolist() == list(range(1, 21))
     x = orbit["x"](np.arange(4096) / 4096 * orbit.period)
@@ -164,13 +164,13 @@ def test_spectrum(axes: Axes) -> None:
 def test_what_cannot_be_drawn_is_refused(axes: Axes) -> None:
     """Assert one sentence for counts of harmonics, diagrams, curves and axes that are none."""
     with pytest.raises(ValueError, match="^harmonics is -3; it must be a whole number of at least 1$"):
-        per.plot_spectrum(duffing()[5], axes=axes, harmonics=-3)
+        per.plots.spectrum(duffing()[5], axes=axes, harmonics=-3)
     with pytest.raises(ValueError, match="^harmonics is 0; it must be a whole number of at least 1$"):
-        per.plot_waterfall(duffing(), axes=axes, harmonics=0)
+        per.plots.waterfall(duffing(), axes=axes, harmonics=0)
     with pytest.raises(ValueError, match="^diagram is Branch.*; it must be what symbolic.campbell returns$"):
-        per.plot_campbell(duffing(), axes)  # type: ignore[arg-type]
+        per.plots.campbell(duffing(), axes)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="^curves is empty; it must have a branch that is traced with"):
-        per.plot_regions([], axes)
+        per.plots.regions([], axes)
     with pytest.raises(ValueError, match="^axes is a Figure; it must be one Axes of matplotlib$"):
         per.plot(duffing(), axes=axes.figure)  # type: ignore[arg-type]
 
@@ -178,19 +178,19 @@ def test_what_cannot_be_drawn_is_refused(axes: Axes) -> None:
 def test_multipliers(axes: Axes) -> None:
     """Assert marks at the multipliers, in the colour of their stability, and large ones at the rim."""
     point = min(duffing(), key=lambda p: -np.abs(p.multipliers).max())
-    per.plot_multipliers(point, axes)
+    per.plots.multipliers(point, axes)
     drawn = np.vstack([np.asarray(c.get_offsets()) for c in axes.collections])
     expected = sorted((m.real, m.imag) for m in point.multipliers if abs(m) <= 1.6)
     assert [pair for pair in expected if not np.isclose(drawn, pair).all(axis=1).any()] == []
-    per.plot_multipliers(duffing(), axes)
+    per.plots.multipliers(duffing(), axes)
     with pytest.raises(ValueError, match="^points is 3; it must be a Point, or a Branch that has points$"):
-        per.plot_multipliers(3, axes)  # type: ignore[arg-type]
+        per.plots.multipliers(3, axes)  # type: ignore[arg-type]
 
 
 def test_waterfall(axes: Axes) -> None:
     """Assert frequencies in Hz above each value of the parameter."""
     branch = duffing()
-    per.plot_waterfall(branch, axes=axes)
+    per.plots.waterfall(branch, axes=axes)
     rows = [c for c in axes.collections if isinstance(c, LineCollection)]
     assert 20 < len(rows) <= len(branch)
     for row in rows:
@@ -204,22 +204,22 @@ def test_regions(axes: Axes) -> None:
     system = sym.scene("duffing")
     fold = per.trace(system, "Omega", (0.8, 2.5), start=0.8).labelled("LP")[0]
     border = per.trace(system, "Omega", (0.9, 3.0), guess=fold.orbit, determined={"F": per.FoldCondition()})
-    per.plot_regions(border, axes)
+    per.plots.regions(border, axes)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("Omega (rad/s)", "F (N)")
     assert [text.get_text() for text in axes.texts] == ["CP"]
     with pytest.raises(
         ValueError, match="^a curve over Omega has no second parameter; it must be traced with"
     ):
-        per.plot_regions(duffing(), axes)
+        per.plots.regions(duffing(), axes)
     over_force = per.trace(
         system, "F", (0.5, 0.51), guess=fold.orbit, determined={"Omega": per.FoldCondition()}
     )
     with pytest.raises(
         ValueError, match=r"^curves are in the planes of \[\('F', 'Omega'\), \('Omega', 'F'\)\]"
     ):
-        per.plot_regions([border, over_force], axes)
+        per.plots.regions([border, over_force], axes)
     with pytest.raises(ValueError, match="^curves is empty; it must have a branch"):
-        per.plot_regions([], axes)
+        per.plots.regions([], axes)
 
 
 def test_campbell(axes: Axes) -> None:
@@ -229,25 +229,25 @@ def test_campbell(axes: Axes) -> None:
     for k in (0, 1, -4, -3):
         stiff[k, k] += 1e7
     diagram = sym.campbell(sym.Matrices(shaft.M, shaft.C, stiff, G=shaft.G), np.linspace(1, 1000, 40), 4)
-    per.plot_campbell(diagram, axes)
+    per.plots.campbell(diagram, axes)
     marks = [line for line in axes.get_lines() if line.get_label() == "critical speeds"]
     x, y = np.asarray(marks[0].get_xydata()).T
     assert x == pytest.approx(diagram.critical() * 30 / np.pi) and y == pytest.approx(x / 60)
     assert axes.get_xlabel() == "speed (rev/min)" and len(x) >= 2
 
 
-@pytest.mark.parametrize("draw", [per.plot_orbit, per.plot_phase, per.plot_spectrum])
+@pytest.mark.parametrize("draw", [per.plots.orbit, per.plots.phase, per.plots.spectrum])
 def test_what_does_not_move_is_refused(draw: Callable[..., Axes], axes: Axes) -> None:
     """Assert one sentence for equilibria and for what is no orbit."""
     system = sym.compile(
         sym.Equations(lambda x, p: {"x": p.a - x.x}, states={"x": 0.0}, parameters={"a": 1.0})
     )
-    still = per.equilibria(system, "a", (0.5, 1.5), start=1.0)[0]
+    still = per.trace(system, "a", (0.5, 1.5), start=1.0, method=per.Equilibrium())[0]
     with pytest.raises(ValueError, match="^orbit is an equilibrium; it has no motion to show$"):
         draw(still, axes=axes)
     with pytest.raises(ValueError, match="^orbit is 3; it must be an Orbit or a Point of a branch$"):
         draw(3, axes=axes)
-    per.plot_multipliers(still, axes)
+    per.plots.multipliers(still, axes)
     assert axes.get_xlabel() == "real part (1/s)"
 
 

@@ -101,7 +101,7 @@ def collocated(speed: float) -> list[per.Point]:
     return user_points(by_collocation(), speed * RPM)
 
 
-def shot(guess: per.Orbit, rpm: tuple[float, float], method: per.Discretisation) -> per.Branch:
+def shot(guess: per.Orbit, rpm: tuple[float, float], method: per.extend.Discretisation) -> per.Branch:
     """The disc's branch from an orbit at one of two speeds in rev/min to the other, in few steps."""
     bounds = (rpm[0] * RPM, rpm[1] * RPM)
     return per.trace(disc_scene(), "speed", bounds, guess=guess, method=method, control=FEW_STEPS)
@@ -234,13 +234,13 @@ def test_sensitivities(scheme: per.Scheme) -> None:
         nodes[shooting.starts(8, 2)] += size * direction[:n]
         parameter[speed] *= 1 + size * direction[n]
         moved = replace(orbit, nodes=nodes, parameter=parameter)
-        return shooting.condense(disc_scene(), moved, (), 2, 1e-13).orbit
+        return shooting.segment_maps(disc_scene(), moved, (), 2, 1e-13).orbit
 
-    condensed = shooting.condense(disc_scene(), orbit, (speed,), 2, 1e-13)
+    maps = shooting.segment_maps(disc_scene(), orbit, (speed,), 2, 1e-13)
     for direction in np.eye(n + 1):
         low, high = flowed(direction, -step), flowed(direction, step)
         outer = orbit.parameter[[speed]] * direction[n:]
-        stages, algebraic = condensed.recover(np.tile(direction[:n], (9, 1)), outer, 0.0)
+        stages, algebraic = maps.recover(np.tile(direction[:n], (9, 1)), outer, 0.0)
         assert stages == pytest.approx((high.stages - low.stages) / (2 * step), abs=2e-7)
         assert algebraic == pytest.approx((high.algebraic - low.algebraic) / (2 * step), abs=2e-7)
 

@@ -11,7 +11,7 @@ from support.stops import exactly, stopped
 
 import periodic as per
 import symbolic as sym
-from periodic.shooting.flow import condense
+from periodic.shooting.flow import segment_maps
 from periodic.system import index_of
 
 TOUCH = 0.7106873691
@@ -56,8 +56,8 @@ def test_an_orbit_through_a_stop_is_none() -> None:
     parameter = before.parameter.copy()
     parameter[index_of(system, "Omega")] = 0.710688
     through = replace(before, parameter=parameter)
-    assert condense(system, before, (), 1, 1e-11).residual < 1e-7
-    assert condense(system, through, (), 1, 1e-11).residual > 1e-5
+    assert segment_maps(system, before, (), 1, 1e-11).residual < 1e-7
+    assert segment_maps(system, through, (), 1, 1e-11).residual > 1e-5
 
 
 def test_harmonics_beside_a_touch() -> None:
@@ -74,7 +74,7 @@ def test_harmonics_beside_a_touch() -> None:
 
 
 @pytest.mark.parametrize("method", [per.Shooting(), per.HarmonicBalance()])
-def test_equations_that_jump_are_refused(method: per.Discretisation) -> None:
+def test_equations_that_jump_are_refused(method: per.extend.Discretisation) -> None:
     """Assert that friction by sign, whose multipliers these methods would miss, is refused; a wave is not."""
 
     def compiled(force: object) -> sym.CompiledSystem:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from periodic.condensed.floquet import LeadingSpectrum
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.stability.winding import meetings
 
 TURN = 2 * np.pi

@@ -258,7 +258,7 @@ def test_the_loop_spends_no_more_than_it_may() -> None:
     assert run.stop == per.Stop.max_newton(40) and 0 < len(run.collected) <= len(points)
 
 
-def failing(system: per.System, orbit: per.Orbit) -> float:
+def failing(system: per.extend.System, orbit: per.Orbit) -> float:
     """A functional that cannot be called."""
     raise ZeroDivisionError("division by zero")
 
@@ -293,7 +293,7 @@ def test_functionals_that_fail_are_named(watch: per.Watch, sentence: str) -> Non
         ),
     ],
 )
-def test_phases_of_excited_systems_are_refused(condition: per.Condition, sentence: str) -> None:
+def test_phases_of_excited_systems_are_refused(condition: per.extend.Condition, sentence: str) -> None:
     """Assert that a condition of free oscillations is refused for a system that is excited."""
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}"):
         per.trace(SYSTEM, "Omega", RANGE, determined={"F": condition})

@@ -11,10 +11,10 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.method import scheme_for
+from periodic.collocation.meshed import scheme_for
 
 NAN, INFINITE = math.nan, math.inf
-A_METHOD = "it must be Collocation(), Shooting() or HarmonicBalance()"
+A_METHOD = "it must be Collocation(), Shooting(), HarmonicBalance() or Equilibrium()"
 REFUSED_TRACES = [
     ({"parameter": "speed"}, "parameter is 'speed'; it must be one of Omega, zeta, F"),
     ({"parameter": ""}, "parameter is ''; it must be one of Omega, zeta, F"),
@@ -124,8 +124,8 @@ def test_short_names_of_results() -> None:
 def test_unfinished_discretisation() -> None:
     """Assert that a discretisation without one of its five methods cannot be made."""
 
-    class Half(per.Discretisation):
-        def guess(self, system: per.System, parameter: object, near: object) -> per.Orbit:
+    class Half(per.extend.Discretisation):
+        def guess(self, system: per.extend.System, parameter: object, near: object) -> per.Orbit:
             raise NotImplementedError
 
     with pytest.raises(TypeError, match="abstract"):
@@ -175,7 +175,7 @@ def test_columns_that_there_are_already_are_refused() -> None:
         (per.extrema, ("a", None)),
         (per.doubled, (LinearOscillator(), None, "Omega")),
         (per.sensitivities, (LinearOscillator(), None, {})),
-        (per.equilibria, ("a", "Omega", (0.0, 1.0))),
+        (per.trace, ("a", "Omega", (0.0, 1.0))),
     ],
 )
 def test_what_is_no_orbit_or_system_is_refused(function: Any, arguments: tuple[Any, ...]) -> None:

@@ -90,16 +90,23 @@ def test_way_that_ends_before_the_wanted_value_is_none(factor: float) -> None:
 
 
 @pytest.mark.parametrize(("friction", "holds"), [(0.6, True), (0.1, False)])
-def test_what_friction_holds_is_said(friction: float, holds: bool) -> None:
-    """Assert that two masses that friction does not let slide have no first orbit, with that reason."""
+def test_what_friction_holds_is_followed(friction: float, holds: bool) -> None:
+    """Assert that two masses that friction does not let slide move as one, where they were put: to 1e-8.
+
+    2 q'' + .1 q' + 5 q = .5 cos(w t).
+    """
     x, y = sym.coordinate("x"), sym.coordinate("y")
     parts: list[sym.Part] = [sym.HarmonicForce(x, 0.5, 0.6), sym.CoulombFriction(x, friction, to=y)]
     for q, k in ((x, 1.0), (y, 4.0)):
         parts += [sym.Mass(q, 1.0), sym.Spring(q, k), sym.Damper(q, 0.05)]
     branch = per.trace(sym.compile(sym.combine(parts)), "Omega", (0.6, 0.7), control=FEW)
-    assert (branch.stop.reason is per.Reason.NO_START) is holds
-    told = "a simulation left to settle: d(x - y)/dt = 0 holds all along, at a place that is not determined; "
-    assert (told in branch.stop.detail) is holds
+    assert branch.stop.reason is per.Reason.MAX_POINTS
+    for point in branch:
+        assert (point.orbit.mesh.modes != ()) is holds
+        w = point.parameter
+        as_one = 2 * 0.5 / abs(5 - 2 * w**2 + 0.1j * w)
+        apart = [abs(point.peak_to_peak(q) - as_one) for q in "xy"]
+        assert (max(apart) < 1e-8 * as_one) is holds
 
 
 EPS = 1e-3
@@ -147,3 +154,26 @@ def test_what_nothing_holds_is_named() -> None:
     branch = per.trace(free, "Omega", (0.5, 2.0), tol=per.Accuracy.DRAFT, control=few)
     assert branch.stop.reason is per.Reason.NO_START
     assert "; nothing holds x and y; nor was one found from" in branch.stop.detail
+
+
+@pytest.mark.parametrize("method", [per.Collocation(), per.Shooting(), per.HarmonicBalance()])
+def test_well_by_name(method: per.extend.Discretisation) -> None:
+    """Assert that of two wells, -x + x^3, the orbit in the one named is found: about 1 or -1, mirrored."""
+    system = forced(
+        lambda x, p, wave: {"x": x.v, "v": -0.2 * x.v + x.x - x.x**3 + 0.05 * wave.cos}, Omega=0.6
+    )
+    left, right = (
+        per.trace(system, "Omega", (0.6, 0.8), guess={"x": well}, method=method, control=FEW, tol=1e-8)
+        for well in (-1.0, 1.0)
+    )
+    assert left[0].maximum["x"] < -0.9 and right[0].minimum["x"] > 0.9
+    assert left[0].minimum["x"] == pytest.approx(-right[0].maximum["x"], rel=1e-8)
+    returns(right, lambda x, v, wave: -0.2 * v + x - x**3 + 0.05 * wave)
+
+
+def test_well_that_is_no_state_is_refused() -> None:
+    """Assert that a guess by names takes states and unknowns with finite values alone."""
+    system = forced(lambda x, p, wave: {"x": x.v, "v": -x.v - x.x + wave.cos}, Omega=0.6)
+    for guess, said in (({"u": 1.0}, "guess has 'u'; it must be one of x, v"), ({"x": np.inf}, "finite")):
+        with pytest.raises(ValueError, match=said):
+            per.trace(system, "Omega", (0.6, 0.8), guess=guess)

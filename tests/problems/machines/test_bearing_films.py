@@ -28,7 +28,7 @@ PRELOAD = 3e-6
 def traced(count: int) -> per.Point:
     """The bearing at 10 krpm."""
     x, y = (sym.coordinate(q, scale=1e-6) for q in "xy")
-    film = sym.SeriesFilm(sym.PowerFilm(H0, W0, BETA), 2, squeeze=SQUEEZE)
+    film = sym.films.SeriesFilm(sym.films.PowerFilm(H0, W0, BETA), 2, squeeze=SQUEEZE)
     speed = sym.parameter("speed", 1e4 * RPM, "rad/s")
     law = sym.HertzLaw(STIFFNESS)
     bearing = sym.RollingBearing(x, y, count, law, -PRELOAD, speed, 40.1e-3, OUTER, film=film)

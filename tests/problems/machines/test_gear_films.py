@@ -19,7 +19,7 @@ def system(squeeze: float | None) -> sym.CompiledSystem:
     """The gear pair of Kahraman & Singh, without dimension, with a film on either flank."""
     x = sym.coordinate("x", unit="")
     m, frequency = sym.parameter("m", 1.0), sym.parameter("Omega", 1.2, "rad/s")
-    film = sym.SeriesFilm(sym.PowerFilm(H0, W0, BETA), typical=W0, squeeze=squeeze)
+    film = sym.films.SeriesFilm(sym.films.PowerFilm(H0, W0, BETA), typical=W0, squeeze=squeeze)
     mesh = sym.GearMesh(x, 1.0, 1.0, (0.2, 0.1, 0.05), film=film)
     error = sym.TransmissionError(x, m, (0.01, 0.004, 0.002), frequency)
     return sym.compile(sym.Mass(x, m) + sym.Damper(x, 0.1) + sym.ConstantForce(x, 0.1) + mesh + error)

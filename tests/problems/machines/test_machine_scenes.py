@@ -169,7 +169,7 @@ def branch(name: str) -> per.Branch:
 
 
 def _range(name: str) -> tuple[float, float]:
-    from symbolic.scenes.files import load
+    from symbolic.scenes.reading import load
 
     begin, end = load(name).trace.ends
     return (begin * RPM, end * RPM) if max(begin, end) > 100 else (begin, end)

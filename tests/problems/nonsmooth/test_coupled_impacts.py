@@ -25,9 +25,6 @@ MASS, INVERSE = np.array([[2.0, 1.0], [1.0, 1.0]]), np.array([[1.0, -1.0], [-1.0
 STIFFNESS = np.array([[3.0, -1.0], [-1.0, 2.0]])
 DAMPING = STIFFNESS / 32
 
-FOLDED = 1e-5
-"""How near a fold multipliers at a given parameter are not told."""
-
 
 @cache
 def branch() -> per.Branch:
@@ -60,11 +57,14 @@ def apart(one: ArrayLike, two: ArrayLike) -> float:
 
 
 def beyond_doubt() -> list[per.Point]:
-    """Points with impacts, but at touches, where multipliers have two values, and beside folds."""
+    """Points with impacts, but at touches, where multipliers have two values, and at folds.
+
+    Beside a fold they are those of the orbit of the same parameter: 2e-7 from one that is 40 times as much as
+    they are off on the branch itself.
+    """
     touches = {point.parameter for point in branch().labelled(Label.GRAZING)}
-    folds = [p.parameter for p in branch().labelled(Label.FOLD) if p.parameter not in touches]
-    struck = [p for p in branch() if len(p.orbit.phases) and p.parameter not in touches]
-    return [p for p in struck if np.abs(p.parameter - np.array(folds)).min() > FOLDED]
+    folds = {point.parameter for point in branch().labelled(Label.FOLD)}
+    return [p for p in branch() if len(p.orbit.phases) and p.parameter not in touches | folds]
 
 
 def test_multipliers_are_off_by_what_is_claimed() -> None:
@@ -74,7 +74,7 @@ def test_multipliers_are_off_by_what_is_claimed() -> None:
     assert max(np.abs(point.multipliers).max() for point in points) > 4000
     for point in points:
         found = exact(point)
-        assert apart(point.multipliers, found.multipliers) < max(1.2 * point.error.multiplier, 5e-9)
+        assert apart(point.multipliers, found.multipliers) < max(1.2 * point.error.multiplier, 1e-9)
 
 
 def test_touches_and_patterns() -> None:

@@ -19,13 +19,14 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 import periodic as per
 from periodic import Reason
 from periodic.bifurcations.locate import special_points
-from periodic.bifurcations.turning import Found
-from periodic.collocation.event import event_rows
-from periodic.collocation.jumping.turn import LastTurn
+from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
+from periodic.events.noderows import event_rows
+from periodic.events.rewrites.rewrite import Ends
+from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit
-from periodic.stability.spectrum import Spectrum
+from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 from periodic.tracing import continuation
 
@@ -239,13 +240,14 @@ def test_seven_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFi
 
 def test_what_ends_where_friction_turns_leaves_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that beyond the end of an excursion each mesh that is tried lacks its event nodes."""
-    gone, beyond = [], LastTurn.beyond
+    gone, beyond = [], Ends.beyond
 
-    def noted(end: LastTurn, system: System, orbit: Orbit) -> Iterator[Beyond]:
+    def noted(end: Ends, system: System, orbit: Orbit) -> Iterator[Beyond]:
         for found in beyond(end, system, orbit):
-            gone.append(len(orbit.mesh.events) - len(found.mesh.events))
+            if end.site.row is REVERSAL:
+                gone.append(len(orbit.mesh.events) - len(found.mesh.events))
             yield found
 
-    monkeypatch.setattr(LastTurn, "beyond", noted)
+    monkeypatch.setattr(Ends, "beyond", noted)
     traced(drawn("friction", 119))
     assert gone and min(gone) >= 2

@@ -16,8 +16,8 @@ import pytest
 import periodic as per
 from reports.app.cli import main
 from reports.app.trace.picture import draw
-from symbolic.scenes.files import load
 from symbolic.scenes.names import scene_names
+from symbolic.scenes.reading import load
 
 FILES = {"branch.nc", "branch.csv", "branch.json", "branch.png"}
 HELD = FILES | {"settings.json"}

@@ -55,7 +55,7 @@ def test_map_over_one_parameter(tmp_path: Path) -> None:
 def test_cells_without_numbers(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert exit code 3 and the first reason where some branches have no numbers."""
 
-    def peak(task: per.Task, branch: per.Branch) -> float:
+    def peak(task: per.maps.Task, branch: per.Branch) -> float:
         if branch[0].orbit.parameters["F"] > 0.15:
             raise ArithmeticError("too much force")
         return 1.0

@@ -12,9 +12,9 @@ import pytest
 from support.commands import refusal
 
 from reports.app.cli import main
-from symbolic.scenes.files import load
 from symbolic.scenes.model.catalogue import catalogue
 from symbolic.scenes.names import scene_names
+from symbolic.scenes.reading import load
 
 Capture = pytest.CaptureFixture[str]
 Patch = pytest.MonkeyPatch

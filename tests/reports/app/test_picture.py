@@ -14,7 +14,7 @@ import periodic as per
 import symbolic as sym
 from reports.app import drawing
 from reports.app.trace import picture
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 
 @pytest.fixture

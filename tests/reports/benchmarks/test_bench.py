@@ -19,7 +19,7 @@ import symbolic as sym
 from periodic.correction.newton import correct
 from reports import benchmarks
 from reports.benchmarks import others
-from reports.benchmarks.peers.told import folds
+from reports.benchmarks.peers.answers import folds
 from reports.benchmarks.work import FOLDS, OFF_RESONANCE, chain_model, converged, fold_error, linearisations
 
 

@@ -35,7 +35,7 @@ def stretched(gap: float) -> sym.CompiledSystem:
 AT_LEAST = "it must be a number of at least 0"
 REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: sym.HertzLaw(-1.0), "stiffness of a HertzLaw is -1.0; it must be a positive number"),
-    (lambda: sym.PowerFilm(1e-6, 0.0), "load of a PowerFilm is 0.0; it must be a positive number"),
+    (lambda: sym.films.PowerFilm(1e-6, 0.0), "load of a PowerFilm is 0.0; it must be a positive number"),
     (lambda: system(sym.RigidStop(X, -0.5, 0.8)), "the rigid stop at x = -0.5 leaves no equilibrium"),
     (lambda: system(sym.RigidStop(X, -0.5, 0.8, below=True)), "the rigid stop at x = 0.5 leaves no equi"),
     (lambda: system(sym.Spring(X, 1.0, to=X)), "to is 'x' too; it must be another coordinate"),
@@ -44,7 +44,10 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
     (lambda: sym.Model(()), "parts is (); it must be a sequence of at least one Part"),
     (lambda: sym.Iwan(X, 1.0, 1.0), "limits is 1.0; it must be a sequence of numbers"),  # type: ignore[arg-type]
     (lambda: sym.GearMesh(X, 1.0, 1.0, 0.2), "variation is 0.2; it must be a sequence"),  # type: ignore[arg-type]
-    (lambda: sym.SeriesFilm(sym.PowerFilm(1e-6, 1.0), 0), "contacts is 0; it must be a whole number"),
+    (
+        lambda: sym.films.SeriesFilm(sym.films.PowerFilm(1e-6, 1.0), 0),
+        "contacts is 0; it must be a whole number",
+    ),
     (lambda: bearing(clearance=-1.0), "clearance of x_y is -1.0; it must be a number from -0.0001 to 0.01"),
     (lambda: bearing(clearance=1.0), "clearance of x_y is 1.0; it must be a number from -0.0001 to 0.01"),
     (lambda: bearing(law=1e9), "law is 1000000000.0; it must be a ContactLaw"),
@@ -56,9 +59,9 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
     ),
     (lambda: sym.simulate(system(), {"m": -1.0}), f"'m' is -1.0; {AT_LEAST}"),
     (
-        lambda: per.map(
-            per.Task(system(), "Omega", (0.5, 1.0), numbers={"n": lambda task, branch: 1.0}),
-            per.Grid({"m": [1.0, -1.0]}),
+        lambda: per.design_map(
+            per.maps.Task(system(), "Omega", (0.5, 1.0), numbers={"n": lambda task, branch: 1.0}),
+            per.maps.Grid({"m": [1.0, -1.0]}),
         ),
         f"'m' is -1.0; {AT_LEAST}",
     ),

@@ -12,7 +12,7 @@ import os, signal, sys, threading, time
 from contextlib import nullcontext
 import numpy as np
 import symbolic as sym
-from reports.app.interrupts import heard_at_once, heard_once, unheard
+from reports.app.interrupts import interrupting_at_once, interrupting_once, ignoring_interrupts
 from symbolic.integration.flow import Flow
 
 block, number, how, length = sys.argv[1:]
@@ -33,7 +33,8 @@ before = signal.getsignal(signal.SIGINT)
 threading.Timer(0.3, os.kill, (os.getpid(), signal.Signals[number])).start()
 begin = time.monotonic()
 try:
-    with {"plain": nullcontext, "once": heard_once, "at once": heard_at_once, "unheard": unheard}[block]():
+    blocks = {"plain": nullcontext, "once": interrupting_once, "at once": interrupting_at_once}
+    with (blocks | {"ignored": ignoring_interrupts})[block]():
         run()
         print("returned")
 except BaseException as error:
@@ -59,7 +60,7 @@ def test_signal_ends_a_long_integration(block: str, number: str, raised: str, ho
 
 def test_signal_that_is_not_heard() -> None:
     """Assert that an integration runs through where signals are ignored."""
-    ended, _, kept = said("unheard", "SIGINT", "flow", "2e3")
+    ended, _, kept = said("ignored", "SIGINT", "flow", "2e3")
     assert (ended, kept) == ("returned", "True")
 
 

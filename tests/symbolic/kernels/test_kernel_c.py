@@ -15,8 +15,8 @@ import symbolic as sym
 from symbolic.kernels import csource, kernel, native
 from symbolic.kernels.choice import ChosenKernel, Kernels
 from symbolic.scenes.building import build as build_scene
-from symbolic.scenes.files import load
 from symbolic.scenes.names import scene_names
+from symbolic.scenes.reading import load
 
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)

@@ -21,7 +21,7 @@ from symbolic.kernels import choice, kernel, native
 from symbolic.kernels.choice import ChosenKernel, Kernels
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)

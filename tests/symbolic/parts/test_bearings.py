@@ -28,7 +28,7 @@ WAVES = {
     "inner": {"waves": (sym.RaceWave("inner", 5, 1e-6, 0.3),), "passages": "31/10"},
     "ball": {"waves": (sym.RaceWave("ball", 4, 1e-6),), "passages": 3.1, "spin": "5/2"},
     "rollers": {"law": sym.HertzLaw(1e9, 10 / 9), "elements": 12, "clearance": -1e-6},
-    "film": {"film": sym.SeriesFilm(sym.PowerFilm(0.3e-6, 100.0), contacts=2)},
+    "film": {"film": sym.films.SeriesFilm(sym.films.PowerFilm(0.3e-6, 100.0), contacts=2)},
 }
 
 
@@ -73,7 +73,7 @@ def test_refused(given: dict[str, Any], said: str) -> None:
 def test_film_in_series(approach: float) -> None:
     """Assert the load of film and contact in series against a root finder, to 1e-11, and its slope."""
     assembly, d = sym.Assembly(), ca.SX.sym("d")
-    load = sym.SeriesFilm(sym.PowerFilm(0.3e-6, 100.0, 13.7), contacts=2).load(assembly, LAW, d)
+    load = sym.films.SeriesFilm(sym.films.PowerFilm(0.3e-6, 100.0, 13.7), contacts=2).load(assembly, LAW, d)
     numbers = [number.parameter for number in assembly.numbers.taken]
     arguments = [d, ca.vertcat(*[number.symbol for number in numbers])]
     function = ca.Function("load", arguments, [load, ca.jacobian(load, d)])

@@ -10,7 +10,7 @@ import pytest
 
 import symbolic as sym
 from symbolic.scenes import laws
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import HertzDiscScene
 
 DISCS = [name for name in sym.scene_names() if isinstance(load(name), HertzDiscScene)]

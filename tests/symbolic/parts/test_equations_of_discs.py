@@ -102,7 +102,7 @@ def test_sum_with_mechanical_parts(order: int) -> None:
     parts = [sym.Mass(q, 1.0), sym.Spring(q, k), feedback][::order]
     system = sym.compile(sym.combine(parts))
     eigenvalues = np.linalg.eigvals([[0, 1, 0], [-3, 5, -2], [3, 0, -1]])
-    orbit = per.equilibria(system, "k", (3, 4))[0]
+    orbit = per.trace(system, "k", (3, 4), method=per.Equilibrium())[0]
     assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(eigenvalues), rel=1e-12)
     names = [o.name for o in system.outputs]
     assert sorted(names) == ["q", "speed", "u"]

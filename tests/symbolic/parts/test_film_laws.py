@@ -15,7 +15,7 @@ import periodic as per
 import symbolic as sym
 from symbolic.scenes.building import build, disc_model
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 
 SPEED, RADIUS, CROWN, VISCOSITY, PIEZO = 360 * RPM, 0.051, 0.102, 0.890, 25.9e-9
@@ -80,7 +80,7 @@ def test_steel_and_crown_are_parameters(law: str) -> None:
             film_at_rest("calibrated", change)
 
 
-def disc(law: sym.ThicknessLaw, speed: sym.Parameter) -> sym.CompiledSystem:
+def disc(law: sym.films.ThicknessLaw, speed: sym.Parameter) -> sym.CompiledSystem:
     """The squeeze-film scene with a law."""
     x = sym.coordinate("x")
     pair = sym.ContactPair(x)
@@ -92,13 +92,13 @@ def disc(law: sym.ThicknessLaw, speed: sym.Parameter) -> sym.CompiledSystem:
 def test_equations_with_a_law_are_those_with_its_thickness_put_in() -> None:
     """Assert that the residual with any law is that with h0 for a parameter, the formula in its place."""
     speed = sym.parameter("speed", SPEED, "rad/s")
-    given = disc(sym.GivenThickness(1e-6), speed)
-    rolling = sym.Rolling(speed, RADIUS, VISCOSITY, PIEZO)
-    laws: list[sym.ThicknessLaw] = [
-        sym.CalibratedThickness(speed, RADIUS, VISCOSITY, PIEZO),
-        sym.RegressionThickness(rolling),
-        sym.ConstantThickness(rolling, sym.Compliance.TWO_BODY),
-        sym.HamrockDowsonThickness(rolling),
+    given = disc(sym.films.GivenThickness(1e-6), speed)
+    rolling = sym.films.Rolling(speed, RADIUS, VISCOSITY, PIEZO)
+    laws: list[sym.films.ThicknessLaw] = [
+        sym.films.CalibratedThickness(speed, RADIUS, VISCOSITY, PIEZO),
+        sym.films.RegressionThickness(rolling),
+        sym.films.ConstantThickness(rolling, sym.films.Compliance.TWO_BODY),
+        sym.films.HamrockDowsonThickness(rolling),
     ]
     g = given.expressions
     for law in laws:
@@ -121,7 +121,9 @@ def test_equations_with_a_law_are_those_with_its_thickness_put_in() -> None:
 def without_unknown(part: sym.Part) -> sym.Part:
     """The same part; a squeeze film with its rate in place of its equation."""
     if isinstance(part, sym.SqueezeFilm):
-        return sym.ExplicitSqueezeFilm(part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze)
+        return sym.films.ExplicitSqueezeFilm(
+            part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze
+        )
     return part
 
 
@@ -187,7 +189,7 @@ def test_floor_out_of_range(floor: float) -> None:
     """Assert that a floor that is not between 0 and 1 is refused."""
     x, speed = sym.coordinate("x"), sym.parameter("speed", SPEED, "rad/s")
     pair = sym.ContactPair(x)
-    film = sym.CavitatingFilm(pair, sym.GivenThickness(3.85e-6), speed, RADIUS, floor=floor)
+    film = sym.films.CavitatingFilm(pair, sym.films.GivenThickness(3.85e-6), speed, RADIUS, floor=floor)
     parts = [sym.ReducedMass(x, MASS, MASS), sym.Preload(pair, PRELOAD), sym.Hertz(pair, HERTZ), film]
     with pytest.raises(ValueError, match="it must lie between 0 and 1"):
         sym.compile(sym.combine(parts))

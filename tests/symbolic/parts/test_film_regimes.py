@@ -28,7 +28,7 @@ def joined(m: float, l_: float, d: float = 1.0) -> float:
 @pytest.mark.parametrize(("m", "l_", "d"), [(100, 10, 1), (5, 2, 1), (1e-3, 1, 0.3), (3000, 20, 0.25)])
 def test_film_is_that_of_the_formula(m: float, l_: float, d: float) -> None:
     """Assert H to rounding."""
-    assert sym.film_regime(m, l_, d).thickness == pytest.approx(joined(m, l_, d), rel=1e-12)
+    assert sym.films.film_regime(m, l_, d).thickness == pytest.approx(joined(m, l_, d), rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -42,15 +42,15 @@ def test_film_is_that_of_the_formula(m: float, l_: float, d: float) -> None:
 )
 def test_film_tends_to_each_regime(m: float, l_: float, name: str) -> None:
     """Assert the name, and that H is the asymptote of its regime far inside it."""
-    found = sym.film_regime(m, l_)
+    found = sym.films.film_regime(m, l_)
     assert found.name == name
     assert found.thickness == pytest.approx(found.asymptotes[name], rel=0.08)
 
 
-ROLLING = sym.Rolling(speed=37.7, radius=0.051, viscosity=0.89, piezoviscosity=25.9e-9)
+ROLLING = sym.films.Rolling(speed=37.7, radius=0.051, viscosity=0.89, piezoviscosity=25.9e-9)
 
 
-def thickness(law: sym.FilmLaw, load: float) -> float:
+def thickness(law: sym.films.FilmLaw, load: float) -> float:
     """h of a law under a load, in m."""
     assembly = sym.Assembly()
     return assembly.nominal(law.thickness(assembly, assembly.parameter(load, "W")))
@@ -61,11 +61,11 @@ def test_regime_of_the_papers_disc() -> None:
     e = 207e9 / (1 - 0.3**2)
     u = 0.89 * 2 * 37.7 * 0.051 / (e * 0.0255)
     m, l_ = 810 / (e * 0.0255**2) * u**-0.75, 25.9e-9 * e * u**0.25
-    found = sym.RegimeFilm(ROLLING).regime(810.0)
+    found = sym.films.RegimeFilm(ROLLING).regime(810.0)
     assert found.name == "piezoviscous-rigid"
     assert found.thickness == pytest.approx(joined(m, l_, 0.25), rel=1e-12)
     film = found.thickness * 0.0255 * u**0.5
-    assert thickness(sym.RegimeFilm(ROLLING), 810.0) == pytest.approx(film, rel=1e-12)
+    assert thickness(sym.films.RegimeFilm(ROLLING), 810.0) == pytest.approx(film, rel=1e-12)
     assert 6e-6 < film < 8e-6  # central; the paper prints 3.85 um, the minimum of Hamrock and Dowson is 4.26
 
 
@@ -74,7 +74,7 @@ def test_line_film() -> None:
     e = 207e9 / (1 - 0.3**2)
     film = 3.06 * 0.0255 * (0.89 * 37.7 * 0.051 / (e * 0.0255)) ** 0.69
     film *= (25.9e-9 * e) ** 0.56 * (810 / (e * 0.0255 * 0.01)) ** -0.10
-    assert thickness(sym.LineFilm(ROLLING, 0.01), 810.0) == pytest.approx(film, rel=1e-12)
+    assert thickness(sym.films.LineFilm(ROLLING, 0.01), 810.0) == pytest.approx(film, rel=1e-12)
     assembly = sym.Assembly()
     law = sym.PalmgrenLaw(0.01)
     deflection = assembly.nominal(law.preloaded(assembly, assembly.parameter(810.0, "Q")).delta0)
@@ -104,9 +104,9 @@ def test_power_law_is_the_squeeze_film() -> None:
     for general in (False, True):
         x = sym.coordinate("x")
         pair = sym.ContactPair(x)
-        film: sym.Part = sym.SqueezeFilm(pair, sym.GivenThickness(3.85e-6), SPEED, 0.051, 20.0, 2460.0)
+        film: sym.Part = sym.SqueezeFilm(pair, sym.films.GivenThickness(3.85e-6), SPEED, 0.051, 20.0, 2460.0)
         if general:
-            film = sym.LubricantFilm(pair, sym.PowerFilm(3.85e-6, 810.0, 20.0), SPEED, 0.051, 123.0)
+            film = sym.LubricantFilm(pair, sym.films.PowerFilm(3.85e-6, 810.0, 20.0), SPEED, 0.051, 123.0)
         system = disc(film, pair=pair, x=x)
         branches.append(
             per.trace(system, "speed", (230 * RPM, 400 * RPM), start=400 * RPM, at=[300 * RPM, 280 * RPM])
@@ -147,7 +147,7 @@ def closes_in_time(speed: float, orbit: per.Orbit, reduction: bool) -> None:
     """Assert that an orbit of the line contact comes back to its start."""
     omega, u, mass, q = 120 * speed, 0.051 * speed, 20.4, 810.0
     stiffness = 8.06e10 * 0.01 ** (8 / 9)
-    delta0, h0 = (q / stiffness) ** 0.9, thickness(sym.LineFilm(rolling(speed), 0.01), q)
+    delta0, h0 = (q / stiffness) ** 0.9, thickness(sym.films.LineFilm(rolling(speed), 0.01), q)
     height = 1.27e-6 * (1 - (ripple(q, u) if reduction else 0.0))
 
     def rates(t: float, y: Any) -> list[float]:
@@ -163,14 +163,14 @@ def closes_in_time(speed: float, orbit: per.Orbit, reduction: bool) -> None:
     np.testing.assert_allclose((end - begin) / size, 0, atol=1e-6)
 
 
-def rolling(speed: float) -> sym.Rolling:
+def rolling(speed: float) -> sym.films.Rolling:
     """The paper's discs and oil at a speed in rad/s."""
-    return sym.Rolling(speed=speed, radius=0.051, viscosity=0.89, piezoviscosity=25.9e-9)
+    return sym.films.Rolling(speed=speed, radius=0.051, viscosity=0.89, piezoviscosity=25.9e-9)
 
 
 def test_circular_reduction() -> None:
     """Assert A_d/A_i of a circular contact by hand, Hertz' a = (3 W r/(2 E'))^(1/3) of r = R_x to 0.2 %."""
-    wavy = sym.PointReduction(sym.Rolling(37.7, 0.051, 0.89, 25.9e-9, crown=0.0255))
+    wavy = sym.films.PointReduction(sym.films.Rolling(37.7, 0.051, 0.89, 25.9e-9, crown=0.0255))
     assembly = sym.Assembly()
     wave = assembly.parameter(2.67e-3, "wavelength", "m")
     found = assembly.nominal(wavy.ripple(assembly, assembly.parameter(810.0, "W"), wave))
@@ -211,7 +211,7 @@ def test_what_makes_no_film_is_refused() -> None:
     """Assert one sentence for each."""
     x = sym.coordinate("x")
     pair = sym.ContactPair(x)
-    film = sym.LubricantFilm(pair, sym.PowerFilm(3.85e-6, 810.0), SPEED, 0.051, 0.0)
+    film = sym.LubricantFilm(pair, sym.films.PowerFilm(3.85e-6, 810.0), SPEED, 0.051, 0.0)
     with pytest.raises(ValueError, match="^squeeze is 0; it must be a positive number$"):
         disc(film, pair=pair, x=x)
     number: object = 100.0
@@ -220,7 +220,7 @@ def test_what_makes_no_film_is_refused() -> None:
     with pytest.raises(ValueError, match="^below is 'no'; it must be True or False$"):
         sym.OneSidedSpring(x, 1.0, below="no")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="^M is -1; it must be a positive number$"):
-        sym.film_regime(-1, 1)
+        sym.films.film_regime(-1, 1)
     changes: list[tuple[str, dict[str, str | float | None], str]] = [
         (
             "vitrea79-810N",

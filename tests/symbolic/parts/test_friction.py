@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 
 import periodic as per
 import symbolic as sym
+from symbolic.equations.surfaces import Kind
 
 STIFFNESS, LIMIT, PLACE = 0.5, 0.1, 1.15
 
@@ -51,3 +54,105 @@ def test_equal_sliders_are_one() -> None:
     several = sym.compile(sym.combine([*parts, sym.Iwan(q, STIFFNESS, (LIMIT / 2, LIMIT / 2))]))
     first = per.trace(several, "Omega", (1.3, 1.4), start=1.3)[0]
     assert first.peak_to_peak("x") == pytest.approx(slid()[0].peak_to_peak("x"), rel=1e-12)
+
+
+def exact(*sliders: Any) -> sym.CompiledSystem:
+    """An oscillator with exact sliders."""
+    q = sym.coordinate("x")
+    parts = [sym.Mass(q, 1.0), sym.Spring(q, 1.0), sym.HarmonicForce(q, 1.0, 1.3)]
+    return sym.compile(sym.combine([*parts, *(replace(slider, q=q) for slider in sliders)]))
+
+
+@pytest.mark.parametrize(("mode", "carried"), [(1, 1.0), (-1, 1.0), (2, 0.0)])
+def test_modes_of_an_exact_slider(mode: int, carried: float) -> None:
+    """Assert z' = 0 held and z' = u' carried, and f = F and -F at the releases."""
+    q = sym.coordinate("x")
+    system = exact(sym.Jenkins(q, 2.0, 0.3, creep=None))
+    (slider,) = system.surfaces
+    assert slider.kind == Kind.SLIDER and slider.releases is not None and slider.column == 0
+    state, rate, phase = np.array([[0.4, 0.7, 0.1]]), np.zeros((1, 3)), np.array([0.2])
+    rate[0] = 0.7, (np.cos(0.2) - 0.4 - 2.0 * 0.3) / 1.3**2, 0.7 * carried
+    at = rate, state, np.zeros((1, 0)), phase, system.nominal
+    found = system.linearise_beside(*at, np.array([[float(mode)]]))
+    np.testing.assert_allclose(found.residual, 0, atol=1e-15)
+    guards = system.switch(state, phase, system.nominal)[0]
+    np.testing.assert_allclose(guards[[slider.switch, *slider.releases]], [0.7, 0.15, 0.45], rtol=1e-14)
+    assert not system.guards_depend
+
+
+def test_exact_slider_creeps_where_the_state_decides() -> None:
+    """Assert that without given modes the equations are those of the usual creep."""
+    q = sym.coordinate("x")
+    systems = [exact(sym.Jenkins(q, 2.0, 0.3, creep=creep)) for creep in (None, 1e-2)]
+    draw = np.random.default_rng(1)
+    rate, state = draw.normal(size=(2, 5, 3))
+    rows = [s.residual(rate, state, np.zeros((5, 0)), np.zeros(5), s.nominal) for s in systems]
+    np.testing.assert_allclose(rows[0], rows[1], rtol=1e-14)
+
+
+def test_unequal_sliders_side_by_side() -> None:
+    """Assert that Iwan's sliders of own stiffnesses are those of as many parts, whatever they are called."""
+    q = sym.coordinate("x")
+    together = exact(sym.Iwan(q, (2.0, 1.0), (0.3, 0.1), creep=None))
+    apart = exact(*(sym.Jenkins(q, k, limit, creep=None) for k, limit in ((2.0, 0.3), (1.0, 0.1))))
+    assert [v.name for v in apart.states[2:]] == ["z of x", "z of x (2)"]
+    assert len(together.surfaces) == len(apart.surfaces) == 2
+    rate, state = np.random.default_rng(1).normal(size=(2, 5, 4))
+    for side in (np.zeros((5, 2)), np.tile([2.0, 1.0], (5, 1))):
+        found = [
+            s.linearise_beside(rate, state, np.zeros((5, 0)), np.zeros(5), s.nominal, side).residual
+            for s in (together, apart)
+        ]
+        np.testing.assert_allclose(found[0], found[1], rtol=1e-14)
+    with pytest.raises(ValueError, match="one for each of the 2 limits"):
+        sym.Iwan(q, (1.0, 2.0, 3.0), (0.1, 0.2))
+
+
+def test_two_frictions_of_one_speed() -> None:
+    """Assert that they are one surface, which sticks up to the sum of both."""
+    q = sym.coordinate("x")
+    system = exact(sym.CoulombFriction(q, 0.3), sym.CoulombFriction(q, 0.2))
+    (surface,) = system.surfaces
+    assert surface.kind == Kind.SLIDING and surface.releases is not None
+    up, down = system.switch(np.zeros((1, 2)), np.array([np.pi / 2]), system.nominal)[0, [1, 2]]
+    assert (up, down) == pytest.approx((-0.5 / 1.3**2, 0.5 / 1.3**2))
+
+
+def pressed(part: type[sym.CoulombFriction] | type[sym.Jenkins]) -> sym.CompiledSystem:
+    """Friction of x under a load that a second coordinate varies and takes away; the slider is exact."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    load = sym.NormalLoad(y, coefficient=0.9, stiffness=2.0, preload=0.3)
+    slider = sym.Jenkins(x, 4.0, load, creep=None)
+    parts = [sym.Mass(x, 1.0), sym.Spring(x, 1.0), sym.Mass(y, 1.0), sym.Spring(y, 2.0), sym.Damper(y, 0.1)]
+    parts += [slider if part is sym.Jenkins else sym.CoulombFriction(x, load), sym.Damper(x, 0.1)]
+    parts += [sym.HarmonicForce(x, 0.4, 0.9), sym.HarmonicForce(y, 1.0, 0.9, phase=1.0)]
+    return sym.compile(sym.combine(parts))
+
+
+def test_friction_under_a_load_that_moves() -> None:
+    """Assert where it sticks: up to mu max(N0 + k y, 0), and nowhere when it is lifted off."""
+    system = pressed(sym.CoulombFriction)
+    state, phase, p = np.array([[0.1, 0.0, 0.2, 0.3], [0.1, 0.0, -0.2, 0.3]]), np.zeros(2), system.nominal
+    (surface,) = (s for s in system.surfaces if s.kind == Kind.SLIDING)
+    up, down = system.switch(state, phase, p)[:, surface.releases].T * 0.9**2
+    limit = 0.9 * np.array([0.7, 0.0])
+    np.testing.assert_allclose([up, down], [0.3 - limit, 0.3 + limit], rtol=1e-14)
+
+
+@pytest.mark.parametrize("part", [sym.CoulombFriction, sym.Jenkins])
+def test_motion_under_a_load_that_moves(part: Any) -> None:
+    """Assert Coulomb's law along a motion: the force within the limit, and on it against what slips."""
+    system = pressed(part)
+    motion = sym.simulate(system, settle=3, samples=4000, tolerance=1e-9)
+    limit = 0.9 * np.maximum(0.3 + 2.0 * motion["y"], 0.0)
+    assert (limit == 0).any() and limit.max() > 0.5
+    if part is sym.Jenkins:
+        force = motion["force of z of x"]
+        assert (np.abs(force) <= limit + 1e-7).all() and (np.abs(force) < limit - 1e-3).any()
+        inside = np.abs(force) < limit - 1e-3
+        carried = np.abs(np.diff(motion["z of x"]))
+        assert carried[inside[1:] & inside[:-1]].max() < 1e-9 < carried.max()
+    else:
+        sliding = [e.after for e in motion.events if system.surfaces[e.surface].kind == Kind.SLIDING]
+        assert {*sliding} == {-1, 1, 2}
+        assert (np.abs(motion["x'"][limit == 0]) > 1e-9).mean() > 0.9

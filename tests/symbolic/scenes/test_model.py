@@ -15,10 +15,10 @@ from support.models import draw, residual_in_order
 import symbolic as sym
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import Override, load
 from symbolic.scenes.model.catalogue import catalogue
 from symbolic.scenes.model.composing import composed
 from symbolic.scenes.model.scene import ModelScene
+from symbolic.scenes.reading import Override, load
 
 HEAD = 'title = "Mine"\nkind = "model"\n'
 COORDINATES = '[[coordinate]]\nname = "x"\nstart = 0.4\n[[coordinate]]\nname = "y"\nscale = 2.0\n'
@@ -294,7 +294,8 @@ def test_law_of_another_protocol_is_refused(part: str, law: str, other: str) -> 
 
 def test_every_part_of_symbolic_is_in_the_catalogue() -> None:
     """Assert that text can give all parts but those that hold functions, models or matrices."""
-    parts = {n for n in sym.__all__ if isinstance(v := getattr(sym, n), type) and issubclass(v, sym.Part)}
+    public = {name: getattr(namespace, name) for namespace in (sym, sym.films) for name in namespace.__all__}
+    parts = {n for n, value in public.items() if isinstance(value, type) and issubclass(value, sym.Part)}
     assert parts - set(catalogue()) <= {"Part", "Equations", "ThirdOrder", "Structure"}
 
 

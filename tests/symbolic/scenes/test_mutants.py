@@ -12,7 +12,7 @@ from support.mutations import SCENES, mutant
 from reports.app.cli import main
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import Scene
 
 BLOCK = 500

@@ -6,8 +6,8 @@ import pytest
 
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.files import load
 from symbolic.scenes.names import scene_names, short_name
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene, OscillatorScene
 
 SIZES = {

@@ -68,8 +68,10 @@ def test_contact_without_preload_or_hertz(missing: int) -> None:
 def test_film_without_hertz() -> None:
     """Assert that a film alone is no contact, and that a contact is called by its own name."""
     pair = sym.ContactPair(X, name="rollers")
-    law = sym.CalibratedThickness(37.7, 0.051, 0.890, 25.9e-9)
-    text = sentence(compiled(sym.Mass(X, 1.0), sym.Preload(pair, 810.0), sym.QuasistaticFilm(pair, law)))
+    law = sym.films.CalibratedThickness(37.7, 0.051, 0.890, 25.9e-9)
+    text = sentence(
+        compiled(sym.Mass(X, 1.0), sym.Preload(pair, 810.0), sym.films.QuasistaticFilm(pair, law))
+    )
     assert text.startswith("contact 'rollers' lacks a part")
 
 

@@ -16,7 +16,7 @@ from symbolic.scenes.axes import RPM
 RANGE = (100.0, 500.0)
 """Speeds of the paper's frequency plots, rev/min."""
 
-NEAR = 0.01
+RANGE_ABOUT = 0.01
 """How far about the highest point the branch is traced more closely, as a part of its speed."""
 
 
@@ -43,7 +43,10 @@ def highest(disc: CompiledSystem, found: Branch) -> tuple[float, float]:
     A cubic spline in the chord length runs through the points of a closer trace about the highest one.
     """
     top = max(found, key=lambda point: point.maximum["x"] - point.minimum["x"])
-    around = max(found.values.min(), (1 - NEAR) * top.parameter) / RPM, (1 + NEAR) * top.parameter / RPM
+    around = (
+        max(found.values.min(), (1 - RANGE_ABOUT) * top.parameter) / RPM,
+        (1 + RANGE_ABOUT) * top.parameter / RPM,
+    )
     closer = traced(disc, "speed", around, guess=top.orbit, step=ArclengthControl(ds_max=0.05))
     speed, swing = closer.values / RPM, closer.peak_to_peak("x")
     steps = np.hypot(np.diff(speed) / np.ptp(speed), np.diff(swing) / np.ptp(swing))

@@ -7,7 +7,7 @@ from functools import cache
 import symbolic as sym
 from symbolic.motion.linear import Modes, modes
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.system.compiled import with_values
 
 PAPER_SPEED = ("trace.from_rpm", "360")

@@ -15,7 +15,7 @@ from symbolic.arrays import Array
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import disc_model
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values
 
@@ -40,14 +40,16 @@ def started(form: Form, name: str = "vitrea79-810N") -> sym.CompiledSystem:
     scene = load(name)
     assert isinstance(scene, DiscScene)
     model = sym.combine(_with_start(part, form) for part in disc_model(scene).parts)
-    return sym.compile(sym.ThirdOrder(model) if form is Form.THIRD_ORDER else model)
+    return sym.compile(sym.films.ThirdOrder(model) if form is Form.THIRD_ORDER else model)
 
 
 def _with_start(part: sym.Part, form: Form) -> sym.Part:
     if isinstance(part, sym.Waviness):
         return sym.RampedWaviness(part.pair, part.amplitude, part.waves, part.speed)
     if isinstance(part, sym.SqueezeFilm) and form is Form.THREE_STATE:
-        return sym.ExplicitSqueezeFilm(part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze)
+        return sym.films.ExplicitSqueezeFilm(
+            part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze
+        )
     return part
 
 

@@ -13,11 +13,11 @@ import numpy as np
 
 import periodic as per
 from periodic.correction.newton import Correction, correct
-from periodic.correction.refinement import refined, remeshed
 from periodic.correction.solver import Solver
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined, remeshed
 from reports.studies.trade.methods.problems import Problem, nearby
 
 INTERPOLATED = 100.0
@@ -72,7 +72,7 @@ class Harmonics:
 class Adaptive:
     """A method whose error estimate is to fall below its tolerance, on meshes that it chooses."""
 
-    method: per.Discretisation
+    method: per.extend.Discretisation
     tol: per.Tolerance
 
     def solve(self, problem: Problem) -> Correction:
@@ -84,7 +84,7 @@ class Adaptive:
         asked = per.Problem(problem.system, problem.parameter, problem.bounds)
         return Solver(asked, self.method.at(self.tol.orbit), self.tol)
 
-    def _accurate(self, solution: per.Solution) -> per.Solution:
+    def _accurate(self, solution: per.extend.Solution) -> per.extend.Solution:
         if not solution.ok:
             raise FailedError(solution.outcome.value)
         if solution.error.orbit > INTERPOLATED * self.tol.orbit:
@@ -92,7 +92,9 @@ class Adaptive:
         return solution
 
 
-def _reached(solver: Solver, begin: per.Orbit, values: Array, halvings: int = HALVINGS) -> per.Solution:
+def _reached(
+    solver: Solver, begin: per.Orbit, values: Array, halvings: int = HALVINGS
+) -> per.extend.Solution:
     """Solve at other parameters; where Newton fails, half way first, as continuation does."""
     found = refined(solver, solver.at_parameter(replace(begin, parameter=values), 1.0), fixed=True)
     if found.ok or not halvings:
@@ -129,7 +131,7 @@ def shooting(integrator: float) -> Adaptive:
     return Adaptive(method, tolerance(min(1e3 * integrator, 0.1)))
 
 
-def _converged(method: per.Discretisation, problem: Problem, guess: per.Orbit) -> Correction:
+def _converged(method: per.extend.Discretisation, problem: Problem, guess: per.Orbit) -> Correction:
     at = replace(guess, parameter=problem.values)
     found = correct(method.linearise, problem.system, at, settings=NEWTON)
     if found.ok:

@@ -21,7 +21,7 @@ from reports.studies.trade.methods.problems import Problem
 REPEATS = 5
 """How many times a solution is timed; the median counts."""
 
-ENOUGH = 2.0
+TIMING_SECONDS = 2.0
 """s after which it is not timed again."""
 
 PHASES = np.linspace(0, 2 * np.pi, 1024, endpoint=False)
@@ -91,7 +91,7 @@ def timed(work: Callable[[], T]) -> tuple[T, float]:
             clock = time.process_time()
             result = work()
             spent.append(time.process_time() - clock)
-            if len(spent) == REPEATS or sum(spent) > ENOUGH:
+            if len(spent) == REPEATS or sum(spent) > TIMING_SECONDS:
                 return result, statistics.median(spent)
 
 

@@ -17,7 +17,7 @@ from reports.benchmarks.work import chain_model
 from symbolic.integration.flow import Flow
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.building import build, disc_model
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 from symbolic.scenes.schema import DiscScene
 from symbolic.system.compiled import with_values
 
@@ -95,7 +95,9 @@ def _explicit_disc() -> sym.CompiledSystem:
 
 def _without_unknown(part: sym.Part) -> sym.Part:
     if isinstance(part, sym.SqueezeFilm):
-        return sym.ExplicitSqueezeFilm(part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze)
+        return sym.films.ExplicitSqueezeFilm(
+            part.pair, part.law, part.speed, part.radius, part.beta, part.squeeze
+        )
     return part
 
 

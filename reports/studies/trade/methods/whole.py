@@ -25,7 +25,7 @@ class Traced:
     family: str
     setting: str
     tol: float | per.Tolerance
-    method: per.Discretisation
+    method: per.extend.Discretisation
 
     def branch(self, problem: Problem) -> per.Branch:
         """Return the branch."""
@@ -144,7 +144,7 @@ def shot(tolerances: Sequence[float]) -> Iterator[Traced]:
 
 
 def folds_near(
-    problem: Problem, branch: per.Branch, method: per.Discretisation, tol: per.Tolerance
+    problem: Problem, branch: per.Branch, method: per.extend.Discretisation, tol: per.Tolerance
 ) -> list[float]:
     """Return the folds of a branch located anew by another method, from the last points before them.
 
@@ -161,7 +161,7 @@ def folds_near(
 
 
 def _about(
-    problem: Problem, near: per.Point, fold: float, method: per.Discretisation, tol: per.Tolerance
+    problem: Problem, near: per.Point, fold: float, method: per.extend.Discretisation, tol: per.Tolerance
 ) -> per.Branch:
     """Trace from a point over a fold and no further. Raises ArithmeticError where that does not succeed."""
     branch = per.trace(

@@ -5,10 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from periodic.condensed.modal.moments import NEAR, Moments
+from periodic.condensed.modal.moments import SERIES_UP_TO, Moments
 from periodic.orbit.scheme import Family, Scheme
 
-EXPONENTS = [0.0, 0.1j, -2 + 1j, (NEAR - 0.01) * 1j, (NEAR + 0.01) * 1j, 5j, -3.1 + 0.2j, 40j, -50 + 3j]
+EXPONENTS = [
+    0.0,
+    0.1j,
+    -2 + 1j,
+    (SERIES_UP_TO - 0.01) * 1j,
+    (SERIES_UP_TO + 0.01) * 1j,
+    5j,
+    -3.1 + 0.2j,
+    40j,
+    -50 + 3j,
+]
 
 
 @pytest.mark.parametrize("ncol", [2, 5, 7])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from periodic.condensed.modal.reduction import SHARE, Modes, audible, reduced, reduced_slope
+from periodic.condensed.modal.reduction import SHARE, Modes, reduced, reduced_slope, retained_modes
 
 
 def along(step: float) -> Modes:
@@ -56,5 +56,5 @@ def test_which_are_left_out() -> None:
     outputs = np.abs(exponents) * np.array([[1e-9, 1.0, 2e-4, 1e-4]])
     modes = Modes(exponents, np.ones((4, 1), complex), outputs + 0j, np.zeros((1, 1)), np.zeros((1, 1)))
     for least, expected in ((3.1e-4, [1, 1, 0, 0]), (2.9e-4, [1, 1, 1, 0]), (0.9e-4, [1, 1, 1, 1])):
-        found = audible(modes, [0], 2 * np.pi, least / SHARE)
+        found = retained_modes(modes, [0], 2 * np.pi, least / SHARE)
         assert found.tolist() == [bool(kept) for kept in expected]

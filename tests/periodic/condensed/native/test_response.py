@@ -64,7 +64,7 @@ def test_tables(both: tuple[Response, Response]) -> None:
     for name in ("growth", "moment", "slope"):
         expected, found = getattr(plain.table, name), getattr(fast.table, name)
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=rounding * np.abs(expected).max())
-    for name in ("local", "impulse", "shown"):
+    for name in ("local", "impulse", "stage_outputs"):
         close(getattr(fast, name), getattr(plain, name))
     for response in both:
         assert np.array_equal(response.grown, response.table.growth[:, :, -1])

@@ -14,7 +14,7 @@ PHASES = np.linspace(0, 2 * np.pi, 11)
 
 
 @pytest.mark.parametrize("method", [per.Collocation(), per.HarmonicBalance()])
-def test_motion_is_that_of_all_states(method: per.Discretisation) -> None:
+def test_motion_is_that_of_all_states(method: per.extend.Discretisation) -> None:
     """Assert deflection and slope, and their velocities, to 7 digits of their peaks."""
     full, system = cantilever(2, cubic, condense=False), cantilever(2, cubic)
     given = {"at": 3.1, "tol": 1e-8}

@@ -122,7 +122,7 @@ def test_branch_without_points(ending: str, tmp_path: Path) -> None:
 
 def test_equilibria_have_no_orbits(tmp_path: Path) -> None:
     """Assert that a branch of equilibria is exported as its points."""
-    branch = per.equilibria(
+    branch = per.trace(
         duffing_system(0.1, 1.0, 0.0), "k", (0.5, 1.5), method=per.Equilibrium(frequency="Omega")
     )
     assert per.export(branch, tmp_path / "rest.csv") == [tmp_path / "rest.csv"]

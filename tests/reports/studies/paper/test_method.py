@@ -32,7 +32,7 @@ from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import rows
 from symbolic.motion.linear import modes
 from symbolic.scenes.building import build
-from symbolic.scenes.files import load
+from symbolic.scenes.reading import load
 
 OIL_A, OIL_B = "vitrea79-810N", "turbo33-810N"
 AT = (240.0, 245.0, 270.0, 290.0, 315.0, 320.0, 360.0)

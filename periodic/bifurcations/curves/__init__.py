@@ -1,1 +1,0 @@
-"""Special points of curves in two parameters."""

@@ -1,0 +1,110 @@
+"""Turning points of a branch by their kinds: folds, and other special points at which branches turn as well.
+
+A branch of doubled orbits turns where it meets the orbits that it came from, at their PD, and one of lopsided
+orbits where it leaves a symmetric branch: from there these are branch points (BP).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.bifurcations.branchpoint import branching
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError, WithinStep
+from periodic.correction.identity import from_itself
+from periodic.correction.solution import Solution
+
+MERGED = 0.05
+"""Largest distance of the orbit at a pitchfork from its shifted copies, as a part of that at the step's
+ends."""
+
+BESIDE = 1e-3
+"""Distance from a turn, as a part of the step, at which its multipliers are looked at on either side, and
+beyond which another special point is not the turn itself."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A special point at `distance` from the step's base; `name` is the user's of an event or limit."""
+
+    label: Label
+    distance: float
+    solution: Solution
+    name: str = ""
+
+    @property
+    def shrunk(self) -> bool:
+        """Whether a branch of orbits ends at an equilibrium there."""
+        return self.label is Label.HOPF and not self.solution.orbit.equilibrium
+
+
+def named(within: WithinStep, turn: Found, new: Solution, ds: float) -> Found:
+    """Return a turn of the branch by its name.
+
+    BP where its orbit has a smaller period than those at the step's ends: it equals its copy one or more
+    excitation periods later, and the branch beyond consists of such copies of the same orbits. HB where an
+    autonomous orbit has shrunk to an equilibrium: the branch beyond consists of the same orbits half a period
+    later. BP also where a multiplier touches 1 without passing it: the branch leaves another there, which
+    goes on. On a curve in two parameters it is at most a cusp. Raises RejectedError where a multiplier passes
+    1 and comes back within the step: a fold and a branch point.
+    """
+    base, problem = within.base, within.solver.problem
+    if codim2.picked(problem) is not None:
+        return replace(turn, label=codim2.turn(turn.solution, base, new))
+    if shrinks(turn.solution, base, new):
+        return replace(turn, label=Label.HOPF)
+    apart = [from_itself(solution) for solution in (turn.solution, base, new)]
+    if apart[0] < MERGED * max(apart[1:]) < np.inf:
+        return replace(turn, label=Label.BRANCH)
+    decides = new.discretisation.stability
+    tests = (*codim2.TESTS[decides], *codim2.BESIDE_FOLDS[decides])
+    labels = [test.label for test in tests if test.touches(turn.solution, base, new)]
+    if labels and codim2.BESIDE_FOLDS[decides] and problem.trivial < 2 and _passes(within, turn, ds):
+        raise RejectedError("the branch turns beside a branch point")
+    return replace(turn, label=labels[0]) if labels else turn
+
+
+def _passes(within: WithinStep, turn: Found, ds: float) -> bool:
+    """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
+    before, after = (branching(within.at(turn.distance + side * BESIDE * ds)) for side in (-1, 1))
+    return before * after < 0
+
+
+def shrinks(turn: Solution, *ends: Solution) -> bool:
+    """Whether autonomous orbits shrink to an equilibrium at a turn of their branch."""
+    return turn.problem.autonomous and turn.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
+
+
+def is_one(point: Found, turn: Found, ds: float) -> bool:
+    """Whether a special point is the turn of the branch, which has its name already."""
+    return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds
+
+
+def at_once(before: Solution, after: Solution) -> list[Label]:
+    """Return the special points that coincide with a grazing, by the orbits just before and beyond it.
+
+    There multipliers jump, or change too fast to be followed, and only the numbers of unstable ones before
+    and beyond say what has crossed: one through 1 where the branch turns, one through 1 or -1 where their
+    number changes from even to odd (Feigin; di Bernardo et al., Piecewise-smooth Dynamical Systems, 3.1),
+    pairs otherwise.
+    """
+    if codim2.picked(before.problem) is not None:
+        return []
+    turned = before.tangent.parameter * after.tangent.parameter < 0
+    decides = before.discretisation.stability
+    every = codim2.TESTS[decides] + (() if turned else codim2.BESIDE_FOLDS[decides])
+    tests = [test for test in every if test.label is not Label.TORUS]
+    changed = [test for test in tests if test.value(before) * test.value(after) < 0]
+    sure = [test for test in changed if test.genuine(before) or test.genuine(after)]
+    rest = abs(unstable(after) - unstable(before)) - turned - len(sure)
+    alone = [test for test in changed if test not in sure][: max(rest, 0) % 2]
+    labels = [test.label for test in (*sure, *alone)]
+    return [Label.FOLD] * turned + labels + [Label.TORUS] * (max(rest, 0) // 2)
+
+
+def unstable(solution: Solution) -> int:
+    """Return how many multipliers lie outside the unit circle."""
+    return int((np.abs(solution.spectrum.nontrivial) > 1).sum())

@@ -1,0 +1,149 @@
+"""Elimination of the stages, interval by interval, in NumPy or in C (condensation of parameters).
+
+With y the event nodes' phases and the free parameters, what is left of interval j is an affine map
+
+    dx_{j+1} = step[j] (1, dx_j, dy).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.collocation.native.elimination import Routines, routines
+from periodic.collocation.residual import eliminate, evaluated, rows_of
+from periodic.events.impacts import applied
+from periodic.events.impacts import jumps as jumps_of
+from periodic.linear.bordering import Chain
+from periodic.linear.kinematic import kinematic, solve
+from periodic.orbit.jump import Jump
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.system import LinearisationLike, System
+
+
+@dataclass(frozen=True)
+class EliminatedStages:
+    """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
+
+    algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one;
+    perturbed (N, n, n+q) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
+    `periodic.linear.bordering.Eliminated`.
+    """
+
+    orbit: Orbit
+    step: Array
+    stages: Array
+    algebraic: Array
+    residual: float
+    compiled: Routines | None = None
+    perturbed: Array | None = None
+
+    @property
+    def origin(self) -> NDArray[np.int_]:
+        """Each mesh point follows from the one before it."""
+        return np.arange(len(self.step))
+
+    def reduced(self, row: Row) -> Row:
+        """Return a row in mesh-point states and y alone, its stages eliminated."""
+        if row.stages is None:
+            return row
+        n = row.nodes.shape[1]
+        each = np.einsum("jln,jlnw->jw", row.stages, self.stages)
+        nodes = row.nodes.copy()
+        nodes[:-1] += each[:, 1 : 1 + n]
+        return Row(row.value + float(each[:, 0].sum()), nodes, row.outer + each[:, 1 + n :].sum(axis=0))
+
+    def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
+        """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
+        orbit, (count, ncol, n) = self.orbit, self.orbit.stages.shape
+        if self.compiled is not None:
+            return self.compiled.recover(orbit, self.stages, self.algebraic, nodes, outer, constant)
+        width, q = self.stages.shape[3], len(outer)
+        given = np.empty((count, width, 1))
+        given[:, 0, 0], given[:, 1 : 1 + n, 0], given[:, 1 + n :, 0] = constant, nodes[:-1], outer
+        stages = (self.stages.reshape(count, ncol * n, width) @ given).reshape(count, ncol, n)
+        if orbit.algebraic.shape[2] == 0:
+            return stages, np.zeros_like(orbit.algebraic)
+        inner = np.empty((count, ncol, 1 + 2 * n + q, 1))
+        knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
+        inner[..., 0, 0], inner[..., 1 + 2 * n :, 0] = constant, outer
+        inner[..., 1 : 1 + n, 0] = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
+        inner[..., 1 + n : 1 + 2 * n, 0] = stages
+        return stages, -(self.algebraic @ inner)[..., 0]
+
+
+def eliminate_stages(
+    system: System, orbit: Orbit, line: LinearisationLike, jumps: Sequence[Jump] = ()
+) -> EliminatedStages:
+    """Eliminate all that is local from equations evaluated at an orbit's collocation points, with its jumps.
+
+    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where a local
+    matrix is singular.
+    """
+    smooth = _eliminate(system, orbit, line)
+    step, perturbed = applied(orbit, smooth.step, jumps)
+    return replace(smooth, step=step, perturbed=perturbed)
+
+
+def _eliminate(system: System, orbit: Orbit, line: LinearisationLike) -> EliminatedStages:
+    compiled = routines(system, line)
+    if compiled is not None:
+        return EliminatedStages(orbit, *compiled.eliminate_stages(orbit, line), compiled)
+    rows = rows_of(orbit, line)
+    count, ncol, n = orbit.stages.shape
+    reduced, algebraic = eliminate(rows, n)
+    width = reduced.shape[2]
+    local = reduced.reshape(count, ncol, n, width)
+    weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
+    start = local[..., 1 : 1 + n] * weights[:, :, :1, None]
+    right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
+    stages = solve_stages(local, right, weights)
+    steps = _steps(orbit, stages)
+    return EliminatedStages(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), rows.residual)
+
+
+def eliminated(system: System, orbit: Orbit, free: tuple[int, ...]) -> EliminatedStages:
+    """Return the collocation equations at an orbit, linearised, without their stages.
+
+    Raises as `eliminate_stages`.
+    """
+    return eliminate_stages(system, orbit, evaluated(system, orbit, free), jumps_of(system, orbit, free))
+
+
+def elimination(
+    system: System, orbit: Orbit, line: LinearisationLike, own: Sequence[Row], jumps: Sequence[Jump]
+) -> Chain:
+    """The linear solver of `Collocation` by default: stages eliminated, intervals chained and bordered."""
+    return Chain(eliminate_stages(system, orbit, line, jumps), own)
+
+
+def solve_stages(local: Array, right: Array, weights: Array) -> Array:
+    """Solve each interval's rows for its stages: -right (N, ncol, n, w) over the stage matrix."""
+    count, ncol, n, _ = local.shape
+    by_rate, by_state = local[..., 1 : 1 + n], local[..., 1 + n : 1 + 2 * n]
+    found = kinematic(by_rate, by_state)
+    if found is not None:
+        return solve(found, by_rate, by_state, right, weights[:, :, 1:])
+    matrix = by_rate[:, :, :, None] * weights[:, :, None, 1:, None]
+    each = np.arange(ncol)
+    matrix[:, each, :, each, :] += np.moveaxis(by_state, 1, 0)
+    size = ncol * n
+    solution = np.linalg.solve(matrix.reshape(count, size, size), -right.reshape(count, size, -1))
+    return solution.reshape(count, ncol, n, -1).astype(float, copy=False)
+
+
+def _steps(orbit: Orbit, stages: Array) -> Array:
+    end, n = orbit.mesh.scheme.end, orbit.nodes.shape[1]
+    if end[-1] == 1.0 and not end[:-1].any():
+        steps = stages[:, -1].copy()
+    else:
+        steps = np.einsum("l,jlnw->jnw", end[1:], stages)
+    steps[:, np.arange(n), 1 + np.arange(n)] += end[0]
+    begin = orbit.nodes[:-1]
+    steps[:, :, 0] += end[1:] @ (orbit.stages - begin[:, None]) + (begin - orbit.nodes[1:])
+    return steps

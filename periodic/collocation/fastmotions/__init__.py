@@ -1,0 +1,1 @@
+"""Motions too fast for the mesh: followed in substeps, or reported as unresolved."""

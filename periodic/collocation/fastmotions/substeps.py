@@ -1,0 +1,97 @@
+"""Perturbations that grow or decay faster than the mesh resolves, followed in substeps.
+
+A slow motion beside a repelling equilibrium of the fast states, as of a canard, is smooth, and few intervals
+have it to all digits; perturbations grow by exp(z) in one of them, z the interval's width times an eigenvalue
+of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So what
+grows by more than GROWING in an interval is followed on shorter ones along the same polynomials, and what
+decays fast with it, as both may cancel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.collocation.fastmotions.unresolved import jacobians
+from periodic.correction.newton import Correction
+from periodic.linear.bordering import Chain
+from periodic.linear.operator import Operator
+from periodic.orbit.construction import transfer
+from periodic.orbit.mesh import Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.system import System, jumps_of, resets_of
+
+GROWING = 1.0
+"""Motions whose rate times interval z has a real part beyond this are followed in substeps."""
+
+EACH, FASTEST = 0.7, 2.0
+"""Largest Re z of a growing motion in a substep, and largest |z| of any other motion there."""
+
+ROUNDING = float(np.finfo(float).eps)
+"""Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""
+
+MOST_SUBSTEPS = 64
+"""Most substeps of an interval."""
+
+Equations = Callable[[System, Orbit, tuple[int, ...]], Operator]
+
+
+@dataclass(frozen=True)
+class SteppedCorrection(Correction):
+    """A correction that knows how perturbations pass from place to place, on intervals that resolve them."""
+
+    system: System | None = None
+    equations: Equations | None = None
+
+    @cached_property
+    def stepping(self) -> Operator | None:
+        """The linearised equations, in substeps where there is fast growth; None where no more is known."""
+        assert self.system is not None and self.equations is not None
+        if self.gentle:
+            return self.operator
+        return stepping(self.equations, self.system, self.orbit, self.operator)
+
+
+def stepping(
+    equations: Equations, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
+) -> Operator | None:
+    """Return equations that resolve how perturbations of an orbit grow: `operator` where that does.
+
+    finer: in substeps so many times as short, as an error estimate has them. Raises FAILURES.
+    """
+    if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
+        return operator
+    counts = substeps(system, orbit, finer)
+    return operator if (counts == 1).all() else equations(system, divided(orbit, counts), ())
+
+
+def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
+    """Return into how many each interval is to be divided, shape (N,); one each where nothing grows fast."""
+    one = np.ones(orbit.mesh.ntst, dtype=int)
+    jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
+    if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
+        return one
+    exponents = np.linalg.eigvals(jacobian)
+    growth = exponents.real.max(axis=1)
+    growth[growth <= ROUNDING * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
+    if growth.max() <= GROWING:
+        return one
+    needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)
+    return np.clip(np.ceil(needed), 1, MOST_SUBSTEPS).astype(int)
+
+
+def divided(orbit: Orbit, counts: NDArray[np.int_]) -> Orbit:
+    """Return the same piecewise polynomial with each interval divided into so many."""
+    mesh, breaks, begin = orbit.mesh, [], 0
+    for ends in mesh.breaks:
+        own = counts[begin : begin + len(ends) - 1]
+        inner = [np.linspace(a, b, k, endpoint=False) for a, b, k in zip(ends, ends[1:], own, strict=False)]
+        breaks.append(np.concatenate([*inner, ends[-1:]]))
+        begin += len(own)
+    return transfer(
+        orbit, Mesh(mesh.scheme, tuple(breaks), mesh.events, mesh.period, mesh.modes), orbit.phases
+    )

@@ -1,1 +1,0 @@
-"""Events at which states or rates jump: how they begin and end, and how perturbations pass them."""

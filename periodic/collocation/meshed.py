@@ -1,0 +1,187 @@
+"""Collocation on meshes tied to the events of the motion, whatever the unknowns are: settings and events.
+
+Its leaves are `Collocation`, of all states, and `CondensedCollocation`, of the places of a linear part.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass, fields, replace
+from typing import ClassVar, Self
+
+import numpy as np
+
+from periodic.checks import whole
+from periodic.collocation.elimination import elimination
+from periodic.collocation.fastmotions.substeps import SteppedCorrection
+from periodic.collocation.local import relax
+from periodic.correction.change import Change
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import ErrorEstimate
+from periodic.correction.newton import Correction
+from periodic.correction.outcome import FAILURES, Outcome
+from periodic.events import motions, tying
+from periodic.events.modes import completed, group, of_held, of_kind
+from periodic.events.rewrites.first import ENDS_BELOW, first_change
+from periodic.events.tying import KinkSettings
+from periodic.events.violations import Breach, Violation, refusals, violations, word
+from periodic.linear.operator import LinearSolver
+from periodic.orbit.construction import at_rest, transfer
+from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.equidistribution import redistribute
+from periodic.system import Kind, System
+
+DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
+"""Collocation points in each interval down to a tolerance."""
+
+FOLLOWED = 1e-8
+"""Tolerance with which motions are followed in time for their events."""
+
+WRONG = {
+    Breach.GRAZED: Outcome.GRAZING,
+    Breach.THROUGH: Outcome.THROUGH_STOP,
+    Breach.HELD: Outcome.SLIDES,
+    Breach.REVERSED: Outcome.EVENTS_CROSSED,
+}
+"""Outcome of an orbit that violates its word, by the first kind of violation in this order."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshMethod(Discretisation):
+    """A piecewise polynomial in each of ntst intervals, event nodes where the equations change.
+
+    Settings are fields, as `Collocation` describes them.
+    """
+
+    scheme: Scheme | None = None
+    ntst: int = 24
+    ntst_min: int = 8
+    ntst_max: int = 1000
+    kinks: KinkSettings | None = None
+    solver: LinearSolver = elimination
+    condense: bool | None = None
+    tolerance: float = 1e-7
+
+    ends_below: ClassVar[float] = ENDS_BELOW
+    """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
+
+    def __post_init__(self) -> None:
+        if not (self.condense is None or isinstance(self.condense, bool)):
+            raise ValueError(f"condense is {self.condense!r}; it must be True, False or None")
+        check_intervals(self.ntst, self.ntst_min, self.ntst_max)
+        check_scheme(self.scheme)
+        if self.kinks is not None and not isinstance(self.kinks, KinkSettings):
+            raise ValueError(f"kinks is {self.kinks!r}; it must be KinkSettings(...)")
+        if not callable(self.solver):
+            raise ValueError(f"solver is {self.solver!r}; it must be a function that makes an Operator")
+
+    @property
+    def shortest(self) -> float:
+        """Width (rad) below which no interval is halved: what happens within it is below the tolerance."""
+        return 0.005 * self.tolerance
+
+    @abstractmethod
+    def _scheme_at(self, tolerance: float) -> Scheme:
+        """The scheme for a tolerance, where none is chosen."""
+
+    def at(self, tolerance: float) -> Self:
+        """Return it with scheme, depth of event nodes and meshes for a tolerance."""
+        return replace(
+            self,
+            scheme=self.scheme or self._scheme_at(tolerance),
+            kinks=(self.kinks or KinkSettings()).at(tolerance),
+            tolerance=tolerance,
+        )
+
+    def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
+        """Return the orbit at rest, or one carried to this scheme, its hard intervals solved locally."""
+        scheme = self.scheme or Scheme()
+        if near is None:
+            return at_rest(system, uniform(scheme, self.ntst), parameter)
+        if near.equilibrium:
+            near = transfer(near, uniform(scheme, self.ntst), near.phases)
+        old = near.mesh
+        mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
+        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
+        return relax(system, self._tied(system, adopted))
+
+    def _tied(self, system: System, orbit: Orbit) -> Orbit:
+        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
+        held = of_held(system)
+        if not held or any(group(system, orbit.mesh, k) for k in held):
+            return orbit
+        settings = (self.kinks or KinkSettings()).at(self.tolerance)
+        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
+        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        return transfer(orbit, mesh, phases)
+
+    def accepted(self, system: System, correction: Correction) -> Correction:
+        """Return it as failed where an event node is not a crossing in its own direction."""
+        found = refusals(system, correction.orbit)
+        wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
+        if wrong is not None:
+            return replace(correction, outcome=wrong)
+        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
+        return SteppedCorrection(**given, system=system, equations=self.linearise)
+
+    def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
+        """Return where a switch touches its level on the way, or two event nodes meet."""
+        return first_change(system, before, after, self.shortest, self.ends_below)
+
+    def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
+        """The error of an orbit that slips where it should be held, or the reverse: infinite; else 0."""
+        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
+        if self._unknown(system, orbit):
+            return np.inf
+        return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
+
+    @staticmethod
+    def _unknown(system: System, orbit: Orbit) -> bool:
+        """Whether an elastic slider has no mode all along: then it creeps, as in none of its modes."""
+        modes = dict(orbit.mesh.modes)
+        own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
+        return any(not group(system, orbit.mesh, switch) for switch in own)
+
+    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+        """Return a guess with the events of the orbit's own motion, where that can be followed."""
+        try:
+            motion = motions.followed(system, orbit, FOLLOWED)
+        except FAILURES:
+            return None
+        return None if motion is None else self.guess(system, motion.parameter, motion)
+
+    def _breached(self, found: list[Violation], breach: Breach) -> bool:
+        """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
+        least = self.tolerance if breach is Breach.THROUGH else -np.inf
+        return any(v.breach is breach and v.depth > least for v in found)
+
+    def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
+        """Return the event nodes where the equations change; None where the orbit passes others."""
+        return word(system, orbit)
+
+
+def mode_violations(system: System, orbit: Orbit) -> list[Violation]:
+    """Return where an orbit slips that should be held, or the reverse."""
+    return [v for v in violations(system, orbit) if v.breach is Breach.MODE] if of_held(system) else []
+
+
+def scheme_for(tolerance: float) -> Scheme:
+    """Return the scheme for a tolerance."""
+    points = (points for least, points in DEGREES.items() if tolerance >= least)
+    return Scheme(Family.RADAU, next(points, max(DEGREES.values())))
+
+
+def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
+    """Raise ValueError for numbers of intervals that are none, or not in order."""
+    for name, value in {"ntst": ntst, "ntst_min": ntst_min, "ntst_max": ntst_max}.items():
+        whole(name, value)
+    if not ntst_min <= ntst <= ntst_max:
+        raise ValueError(f"ntst is {ntst}; it must lie from ntst_min = {ntst_min} to ntst_max = {ntst_max}")
+
+
+def check_scheme(scheme: object) -> None:
+    """Raise ValueError for what is no scheme, nor left open."""
+    if scheme is not None and not isinstance(scheme, Scheme):
+        raise ValueError(f"scheme is {scheme!r}; it must be Scheme(family, ncol)")

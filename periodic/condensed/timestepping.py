@@ -1,0 +1,329 @@
+"""A motion of a split system in time: modes exact over each step, forces constant in it.
+
+At the end of a step what is held is at rest, by a part of its jump between -1 and 1, or slips on the side of
+its speed: a linear complementarity problem that Murty's rule of the least index solves, which ends where the
+mobility of the joints is a P-matrix (Murty, Linear Complementarity, 1988, 4). What an elastic slider is
+carried along ends the step at its limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.condensed.modal.moments import Complex
+from periodic.events.modes import linearise
+from periodic.orbit.orbit import FORCED
+from periodic.orbit.scheme import Array
+from periodic.system import (
+    STUCK,
+    Kind,
+    LinearisationLike,
+    ModesLike,
+    System,
+    guards,
+    guards_gradient,
+    jumps_of,
+    linear_of,
+    surfaces_of,
+)
+
+STEP_ITERATIONS = 8
+"""Newton steps in a step in time."""
+
+STEP_INCREMENT = 1e-10
+"""Increment at which a step in time is solved."""
+
+PARTS = 8
+"""Shorter steps in one in which a mode changes."""
+
+PIVOTS = 200
+"""Most changes of a mode until all are consistent."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A surface at which motions may be held: its index among all, and what `SurfaceLike` has."""
+
+    index: int
+    slides: bool
+    switch: int
+    up: int
+    down: int
+    column: int
+    place: tuple[int, tuple[float, ...]] | None
+
+
+def joints_of(system: System) -> list[Joint]:
+    """Return the surfaces of a system at which motions may be held."""
+    return [
+        Joint(i, s.kind == Kind.SLIDING, s.switch, *s.releases, s.column, s.place)
+        for i, s in enumerate(surfaces_of(system))
+        if s.releases is not None and s.column is not None
+    ]
+
+
+@dataclass(frozen=True)
+class Changed:
+    """A change of mode: of which surface, by its index, at about which phase, in which step of a motion."""
+
+    surface: int
+    before: int
+    after: int
+    phase: float
+    step: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a step of a width does to modes z: z+ = grown z + kicked f, the states then local f more."""
+
+    width: float
+    grown: Complex
+    kicked: Complex
+    local: Array
+
+    @classmethod
+    def over(cls, width: float, modes: ModesLike) -> Step:
+        """Return it."""
+        turned = modes.exponents * width
+        with np.errstate(all="ignore"):
+            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
+        kicked = (width * mean)[:, None] * modes.inputs
+        return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
+
+
+def _width(length: float) -> float:
+    """The width of a step, the same where it differs in its last digits."""
+    return float(f"{length:.9e}")
+
+
+@dataclass
+class Motion:
+    """A motion in time.
+
+    Parameters
+    ----------
+    system : System
+        A system with a linear part.
+    parameter : ndarray, shape (p,)
+        Its parameters.
+    state, unknown : ndarray
+        States to begin with (n,), and guesses of the unknowns (m,).
+    modes : ModesLike
+        Modes of the linear part.
+    z : ndarray of complex, shape (J,)
+        What they begin with.
+    side : ndarray, shape (columns,)
+        The surfaces' modes to begin with.
+    begin : float
+        Phase to begin with.
+    """
+
+    system: System
+    parameter: Array
+    state: Array
+    unknown: Array
+    modes: ModesLike
+    z: Complex
+    side: Array
+    begin: float = 0.0
+    phases: list[float] = field(default_factory=list, init=False)
+    states: list[Array] = field(default_factory=list, init=False)
+    unknowns: list[Array] = field(default_factory=list, init=False)
+    sides: list[Array] = field(default_factory=list, init=False)
+    events: list[Changed] = field(default_factory=list, init=False)
+    _known: dict[float, Step] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        part = linear_of(self.system)
+        assert part is not None
+        self.places, self.forces = list(part.states), list(part.forces)
+        self.own = np.setdiff1d(np.arange(len(self.state)), self.places)
+        self.joints = joints_of(self.system)
+        self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
+
+    @classmethod
+    def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
+        """Return the motion from rest of the linear part, own states and guesses of the unknowns given."""
+        part = linear_of(system)
+        assert part is not None
+        modes = part.modes(parameter)
+        rest = np.zeros(len(modes.exponents), dtype=complex)
+        return cls(system, parameter, state, unknown, modes, rest, np.zeros(len(jumps_of(system))))
+
+    def _slider(self, joint: Joint) -> tuple[int, int]:
+        """The row of a slider, another one where it is carried, and the state that is its place."""
+        given = np.zeros((1, len(self.state))), self.state[None], self.unknown[None], np.array([self.begin])
+        columns = np.arange(len(self.side)) == joint.column
+        held, carried = (
+            linearise(self.system, *given, self.parameter, np.where(columns, mode, 1.0)[None]).d_state[0]
+            for mode in (STUCK, 1)
+        )
+        row = int(np.abs(held - carried).max(axis=1).argmax())
+        moved = linearise(self.system, *given, self.parameter, np.where(columns, STUCK, 1.0)[None]).d_rate[0]
+        return row, int(np.abs(moved[row]).argmax())
+
+    def pace(self, steps: int, shortest: float = np.inf) -> None:
+        """Take so many steps in a period from now on, but shorter ones (rad) where modes change."""
+        self.steps, self.shortest = steps, shortest
+
+    @property
+    def phase(self) -> Array:
+        """The phases of the states that are kept."""
+        return np.array(self.phases)
+
+    def period(self) -> None:
+        """Follow it over a period, whose phases, states, unknowns, modes and events are kept."""
+        self.phases, self.events = [self.begin], []
+        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.side]
+        for k in range(self.steps):
+            self._advance(self.begin + FORCED * k / self.steps, self.begin + FORCED * (k + 1) / self.steps)
+
+    def _advance(self, begin: float, end: float) -> None:
+        """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
+        before = self.z, self.state, self.unknown, self.side
+        self._step(end, _width(end - begin))
+        if end - begin > self.shortest and not np.array_equal(before[3], self.side):
+            self.z, self.state, self.unknown, self.side = before
+            ends = np.linspace(begin, end, PARTS + 1)
+            for first, last in pairwise(ends):
+                self._advance(float(first), float(last))
+            return
+        self.phases.append(end)
+        self.states.append(self.state)
+        self.unknowns.append(self.unknown)
+        self.sides.append(self.side)
+        self._noted(len(self.states) - 2)
+
+    def _step(self, tau: float, width: float) -> None:
+        """Take a step to a phase. Raises FloatingPointError."""
+        step = self._over(width)
+        for _ in range(PIVOTS):
+            x, unknown, parts = self._solved(tau, step)
+            wrong = self._wrong(x, parts, tau)
+            if wrong is None:
+                break
+            column, mode = wrong
+            self.side = np.where(np.arange(len(self.side)) == column, mode, self.side)
+        if wrong is not None or not np.isfinite(x).all():
+            raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
+        self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
+        self.state, self.unknown = x, unknown
+
+    def _over(self, width: float) -> Step:
+        """What a step of a width does, kept."""
+        if width not in self._known:
+            self._known[width] = Step.over(width, self.modes)
+        return self._known[width]
+
+    def _wrong(self, x: Array, parts: Array, tau: float) -> tuple[int, int] | None:
+        """The first column whose mode is not that at the end of a step, and the mode that it should have."""
+        values = self.values(x, tau, self.side)
+        for joint in self.joints:
+            i, mode = joint.column, self.side[joint.column]
+            up, down, ahead = values[joint.up], values[joint.down], values[joint.switch] * mode
+            if not joint.slides:
+                place = self.sliders[i][1]
+                ahead = (x[place] - self.state[place]) * mode
+            if mode != STUCK and (ahead < 0 or mode == 0):
+                return i, STUCK
+            if mode == STUCK and joint.slides and abs(parts[i]) > 1:
+                return i, int(np.sign(parts[i]))
+            if mode == STUCK and not joint.slides and not up <= 0 <= down:
+                return i, 1 if up > 0 else -1
+        return None
+
+    def values(self, x: Array, tau: float, side: Array) -> Array:
+        """Return the guards at a state in given modes."""
+        return np.asarray(guards(self.system, x[None], np.array([tau]), self.parameter, side[None])[0])
+
+    @property
+    def _stuck(self) -> tuple[NDArray[np.int_], list[int]]:
+        """The columns of what is held by a part of its jump, and its guards."""
+        kept = [joint for joint in self.joints if joint.slides and self.side[joint.column] == STUCK]
+        return np.array([joint.column for joint in kept], dtype=int), [joint.switch for joint in kept]
+
+    def _solved(self, tau: float, step: Step) -> tuple[Array, Array, Array]:
+        """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
+        x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
+        shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
+        for _ in range(STEP_ITERATIONS):
+            x[self.places] = shown + step.local @ unknown[self.forces]
+            change = -np.linalg.solve(*self._equations(x, unknown, parts, tau, step)).astype(float)
+            x[self.own] += change[:own]
+            unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
+            parts[self._stuck[0]] += change[own + len(unknown) :]
+            if np.abs(change).max() < STEP_INCREMENT * (1 + np.abs(unknown).max()):
+                break
+        x[self.places] = shown + step.local @ unknown[self.forces]
+        return x, unknown, parts
+
+    def _equations(
+        self, x: Array, unknown: Array, parts: Array, tau: float, step: Step
+    ) -> tuple[Array, Array]:
+        """Rows at the end of a step by own states, unknowns and parts of jumps, and what is left of them.
+
+        Where it is stuck a switch is 0, and the equations lie between those of its two sides.
+        """
+        system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
+        given = ((x - self.state) / step.width)[None], x[None], unknown[None], at, self.parameter
+        columns = np.arange(len(self.side))
+        upper = np.where(np.isin(columns, stuck), 1.0, self.side)
+        line, left = self._carried(linearise(system, *given, upper[None]), x, tau), []
+        for i in stuck:
+            lower = np.where(columns == i, -1.0, upper)
+            left.append(self._carried(linearise(system, *given, lower[None]), x, tau).residual[0])
+        halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
+        residual = line.residual[0] + halves @ (parts[stuck] - 1)
+        driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]
+        given_rows = np.append(driven.any(axis=1), np.ones(len(unknown), dtype=bool))
+        held = self.values(x, tau, self.side)[switches]
+        gradient = guards_gradient(system, x[None], at, self.parameter, self.side[None])[0][0, switches]
+        states = np.concatenate([(line.d_state[0] + line.d_rate[0] / step.width)[given_rows], gradient])
+        unknowns = np.zeros((len(states), len(unknown)))
+        unknowns[: given_rows.sum()] = line.d_algebraic[0][given_rows]
+        unknowns[:, self.forces] += states[:, self.places] @ step.local
+        across = np.concatenate([halves[given_rows], np.zeros((len(stuck), len(stuck)))])
+        rows = np.concatenate([states[:, self.own], unknowns, across], axis=1)
+        return rows, np.concatenate([residual[given_rows], held])
+
+    def _carried(self, line: LinearisationLike, x: Array, tau: float) -> LinearisationLike:
+        """Put the limits of sliders that are carried along in the place of their rows."""
+        for joint in self.joints:
+            mode = self.side[joint.column]
+            if joint.slides or mode not in (-1, 1):
+                continue
+            row, switch = self.sliders[joint.column][0], joint.up if mode > 0 else joint.down
+            at = x[None], np.array([tau]), self.parameter, self.side[None]
+            line.residual[0, row] = guards(self.system, *at)[0, switch]
+            line.d_rate[0, row], line.d_algebraic[0, row] = 0.0, 0.0
+            line.d_state[0, row] = guards_gradient(self.system, *at)[0][0, switch]
+        return line
+
+    def _noted(self, k: int) -> None:
+        """Keep the changes of mode of a step; what is at rest at the beginning of all has had none."""
+        old, new = self.sides[k], self.sides[k + 1]
+        for joint in self.joints:
+            before, after = int(old[joint.column]), int(new[joint.column])
+            if before and before != after:
+                begin, end = self.phases[k : k + 2]
+                phase = begin + (end - begin) * self._share(k, joint, before, after)
+                self.events.append(Changed(joint.index, before, after, phase, k))
+
+    def _share(self, k: int, joint: Joint, before: int, after: int) -> float:
+        """At which part of a step a joint changes its mode, by what its guards do in the mode before it."""
+        first, last = (self.values(self.states[i], self.phases[i], self.sides[k]) for i in (k, k + 1))
+        if before == STUCK:
+            switch = joint.up if after > 0 else joint.down
+            begun, ended = first[switch], last[switch]
+        elif joint.slides:  # its releases are the rates of the guard on its two sides
+            begun = first[joint.switch]
+            width = self.phases[k + 1] - self.phases[k]
+            ended = begun + width * first[joint.up if before > 0 else joint.down]
+        else:
+            begun, ended = first[joint.switch], last[joint.switch]
+        return float(begun / (begun - ended)) if begun * ended < 0 else 0.5

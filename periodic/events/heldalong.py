@@ -1,0 +1,35 @@
+"""What no event node changes any more: modes of surfaces all along, and the place where something is HELD."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from periodic.events.modes import mode_after, sides
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import HELD, STUCK, System, surfaces_of
+
+
+def all_along(
+    system: System, orbit: Orbit, events: tuple[EventNode, ...]
+) -> tuple[tuple[tuple[int, int], ...], Array | None]:
+    """Return the modes of surfaces that lose their event nodes, with those that have none, and parameters.
+
+    What slips no more is held where it is: that is its place from there on. The parameters are None where
+    none has changed.
+    """
+    modes, parameter = dict(orbit.mesh.modes), orbit.parameter.copy()
+    for surface in surfaces_of(system):
+        had = any(mode_after(surface, event) is not None for event in orbit.mesh.events)
+        has = any(mode_after(surface, event) is not None for event in events)
+        if surface.releases is None or surface.place is None or surface.column is None or has or not had:
+            continue
+        mode = sides(system, orbit)[:, surface.column]
+        stuck = np.flatnonzero(mode == STUCK)
+        if len(stuck):
+            place, weights = surface.place
+            parameter[place] = float(orbit.nodes[stuck[-1]] @ np.array(weights))
+            modes[surface.switch] = HELD
+    changed = not np.array_equal(parameter, orbit.parameter)
+    return tuple(modes.items()), parameter if changed else None

@@ -1,0 +1,67 @@
+"""What an impact brings about: it takes guards of other surfaces to their other side.
+
+An impact of a mass reverses its speed, and with it the speed at which friction on the mass slides. The mode
+of that surface changes at the impact's own event node.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.events.modes import mode_after, sides
+from periodic.events.rates import before
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
+
+SHALLOW = 1e-9
+"""A guard that is as near to its level, as a part of its largest value, is on neither side."""
+
+
+@dataclass(frozen=True)
+class Sides:
+    """A guard just before and just after an impact, in parts of its largest value, and its mode before."""
+
+    before: float
+    after: float
+    mode: int
+
+    @property
+    def reached(self) -> int:
+        """The side to which the impact takes it; the mode that it had where it is on none."""
+        return int(np.sign(self.after)) if abs(self.after) > SHALLOW else self.mode
+
+
+def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Sides:
+    """Return the sides of a guard about an impact."""
+    interval, x, phase = before(orbit, index)
+    after = orbit.nodes[orbit.mesh.starts[index]][None]
+    states = np.concatenate([orbit.stages.reshape(-1, x.shape[1]), x, after])
+    tau = np.concatenate([orbit.stage_phases.ravel(), phase, phase])
+    values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
+    values = values / (float(np.abs(values).max()) or 1.0)
+    early, late = float(values[-2]), float(values[-1])
+    mode = 0 if surface.column is None else int(sides(system, orbit)[interval, surface.column])
+    if mode == 0 and abs(early) > SHALLOW:
+        mode = int(np.sign(early))
+    return Sides(early, late, mode)
+
+
+def others(system: System, event: EventNode) -> list[SurfaceLike]:
+    """Return the surfaces that an impact may take to their other sides."""
+    bent = (Kind.KINK, Kind.JUMP, Kind.SLIDING, Kind.SLIDER)
+    return [s for s in surfaces_of(system) if s.kind in bent and s.switch != event.switch]
+
+
+def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, int], ...]:
+    """Return the modes that an impact of an orbit brings about, as its event node has them."""
+    event, found = orbit.mesh.events[index], list[tuple[int, int]]()
+    for surface in others(system, event):
+        told, own = mode_after(surface, event), beside(system, orbit, index, surface)
+        if told == STUCK and abs(own.after) <= SHALLOW:
+            found.append((surface.switch, STUCK))
+        elif own.reached not in (0, own.mode):
+            found.append((surface.switch, own.reached))
+    return tuple(found)

@@ -1,0 +1,109 @@
+"""Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
+
+The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
+it is told by `periodic.events.saltation`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from periodic.events.modes import modes_in, of_kind
+from periodic.events.rates import before, rate_before
+from periodic.events.saltation import mapped, saltation
+from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.orbit.scheme import Array
+from periodic.system import Kind, System, guards, guards_gradient, jumps_of, resets_of
+
+
+def tied(system: System, orbit: Orbit) -> list[int]:
+    """Return the indices of the orbit's event nodes that are impacts."""
+    resets = resets_of(system)
+    return [i for i, event in enumerate(orbit.mesh.events) if event.switch in resets]
+
+
+def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
+    """Return the event nodes of an orbit at which its state or its rates jump, linearised.
+
+    Raises numpy.linalg.LinAlgError where one has no rates.
+    """
+    jumping = {*resets_of(system), *jumps_of(system), *carrying(system)}
+    return [
+        _jump(system, orbit, i, free)
+        for i, event in enumerate(orbit.mesh.events)
+        if (event.switch in jumping or {k for k, _ in event.modes} & jumping) and not _settling(system, event)
+    ]
+
+
+def _settling(system: System, event: EventNode) -> bool:
+    """Whether an event node is no more than elastic sliders that come to be held: no rate jumps there."""
+    sliders = {surface.switch for surface in of_kind(system, Kind.SLIDER)}
+    return event.switch in sliders and {k for k, _ in event.modes} <= sliders
+
+
+def carrying(system: System) -> list[int]:
+    """Return the switches at which elastic sliders give way: the rate of their place jumps there."""
+    return [k for surface in of_kind(system, Kind.SLIDER) for k in surface.releases or ()]
+
+
+def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
+    switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
+    interval, x, phase = before(orbit, index)
+    after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, orbit.parameter)
+    by_outer = np.zeros((x.shape[1], k + len(free)))
+    by_outer[:, index] = by_phase[0]
+    by_outer[:, k:] = by_parameter[0][:, list(free)]
+    carried = saltation(system, orbit, index, free)(x, phase, orbit.parameter)
+    return Jump(index, interval, x[0], after[0], by_state[0], by_outer, carried)
+
+
+def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> tuple[Array, Array | None]:
+    """Return the steps (N, n, w) with impacts at their ends, and the steps of perturbations at fixed tau.
+
+    The latter have shape (N, n, n+q), None where there are no impacts: their columns are the states, then the
+    free parameters.
+    """
+    if not found:
+        return step, None
+    n, k = step.shape[1], len(orbit.phases)
+    perturbed = np.concatenate([step[:, :, 1 : 1 + n], step[:, :, 1 + n + k :]], axis=2)
+    for jump in found:
+        j, start = jump.interval, orbit.nodes[jump.interval + 1]
+        own = step[j].copy()
+        own[:, 0] += start - jump.before
+        perturbed[j] = jump.saltation[:, :n] @ perturbed[j]
+        perturbed[j, :, n:] += jump.saltation[:, n:]
+        step[j] = jump.by_state @ own
+        step[j, :, 0] += jump.after - start
+        step[j, :, 1 + n :] += jump.by_outer
+    return step, perturbed
+
+
+def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
+    """Return the condition of an impact, linearised: s(x-, phi, p) = 0 where the interval before it ends."""
+    switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
+    interval, x, phase = before(orbit, index)
+    side = modes_in(system, orbit, interval)
+    d_state, d_phase, d_parameter = guards_gradient(system, x, phase, orbit.parameter, side)
+    nodes, stages = np.zeros_like(orbit.nodes), np.zeros_like(orbit.stages)
+    nodes[interval] = end[0] * d_state[0, switch]
+    stages[interval] = end[1:, None] * d_state[0, switch]
+    outer = np.zeros(k + len(free))
+    outer[index] = d_phase[0, switch]
+    outer[k:] = d_parameter[0, switch, list(free)]
+    value = guards(system, x, phase, orbit.parameter, side)[0, switch]
+    return Row(float(value), nodes, outer, stages)
+
+
+def slope_before(system: System, orbit: Orbit, index: int) -> float:
+    """ds/dtau with which a switch arrives at its impact."""
+    switch = orbit.mesh.events[index].switch
+    interval, x, phase = before(orbit, index)
+    side = modes_in(system, orbit, interval)
+    d_state, d_phase, _ = guards_gradient(system, x, phase, orbit.parameter, side)
+    return float(d_phase[0, switch] + d_state[0, switch] @ rate_before(orbit, index))

@@ -1,0 +1,236 @@
+"""The word of an orbit: the modes of its surfaces between its event nodes.
+
+An event node is a transition: it takes its own surface, and what follows at once, from one mode to another.
+So the mode of a surface in an interval is that of the last event node that changed it, whatever the last
+digits of the state say. A surface that no event node changes keeps to the side on which the orbit is, but for
+what is shallow, so that an orbit is smooth past the grazing up to which it is followed; else the state
+decides. See `periodic.system.SurfaceLike`.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+
+from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import (
+    STUCK,
+    Jumping,
+    Kind,
+    LinearisationLike,
+    SurfaceLike,
+    System,
+    surfaces_of,
+)
+
+LOOKS = 3
+"""States at which guards are compared."""
+
+SHALLOW = 0.05
+"""How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
+
+
+_KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
+    weakref.WeakKeyDictionary()
+)
+"""Modes by meshes, with the system whose they are."""
+
+
+def surface_of(system: System, switch: int) -> SurfaceLike:
+    """Return the surface that a switch is the guard or a release of."""
+    return next(s for s in surfaces_of(system) if switch == s.switch or switch in (s.releases or ()))
+
+
+def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
+    """Return the surfaces of some kinds."""
+    return [surface for surface in surfaces_of(system) if surface.kind in kinds]
+
+
+def bends(system: System) -> list[int]:
+    """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
+    return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
+
+
+def twins(system: System, switch: int) -> list[int]:
+    """Return the guards of surfaces at which motions may be held that are one function, this one first.
+
+    The speeds at which elastic sliders side by side are strained are one: those that slip stop at once.
+    """
+    held = of_held(system)
+    if switch not in held or len(held) < 2:
+        return [switch]
+    state, _ = system.rest(system.nominal)
+    moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
+    values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
+    same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
+    return [switch, *same]
+
+
+def of_held(system: System) -> list[int]:
+    """Return the guards of the surfaces at which motions may be held."""
+    return [surface.switch for surface in surfaces_of(system) if surface.releases is not None]
+
+
+def sliding(system: System, switch: int) -> int | None:
+    """Return the guard of the surface along which motions slide that a switch belongs to, if it does."""
+    surface = surface_of(system, switch)
+    return None if surface.releases is None else surface.switch
+
+
+def releases(system: System, switch: int) -> tuple[int, int]:
+    """Return the switches (up, down) at which what a guard holds is released."""
+    found = surface_of(system, switch).releases
+    assert found is not None
+    return found
+
+
+def column(system: System, switch: int) -> int:
+    """Return the column of a guard's surface among the modes."""
+    found = surface_of(system, switch).column
+    assert found is not None
+    return found
+
+
+def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
+    """Return the mode of a surface after an event node, None where that leaves it as it is."""
+    own = dict(event.modes).get(surface.switch)
+    if own is not None:
+        return own
+    passes = event.switch == surface.switch or event.switch in (surface.releases or ())
+    return event.direction if passes and surface.kind != Kind.IMPACT else None
+
+
+def group(system: System, mesh: Mesh, switch: int) -> list[int]:
+    """Return the event nodes that change the mode of a guard's surface, in order."""
+    surface = surface_of(system, switch)
+    return [j for j, event in enumerate(mesh.events) if mode_after(surface, event) is not None]
+
+
+def sticks(system: System, mesh: Mesh, switch: int, node: int) -> int | None:
+    """Return the event node at which sticking ends that begins at one; None where none does."""
+    if mode_after(surface_of(system, switch), mesh.events[node]) != STUCK:
+        return None
+    own = group(system, mesh, switch)
+    return own[(own.index(node) + 1) % len(own)]
+
+
+def sides(system: System, orbit: Orbit) -> Array:
+    """Return the mode of each surface with a column in each interval, shape (N, columns).
+
+    1 and -1 are the signs of its guard, STUCK says that it is held at 0; where it is 0 the state decides.
+    """
+    own = [s for s in surfaces_of(system) if s.column is not None]
+    if not own:
+        return np.zeros((orbit.mesh.ntst, 0))
+    found = _by_nodes(system, orbit.mesh, own).copy()
+    for surface in own:
+        column = cast(int, surface.column)
+        if np.isnan(found[0, column]):
+            found[:, column] = _whole(system, orbit, surface)
+    return found
+
+
+def _by_nodes(system: System, mesh: Mesh, own: Sequence[SurfaceLike]) -> Array:
+    """The modes that a mesh says, in each interval; NaN where it says none. They are kept with it."""
+    kept = _KEPT.get(mesh)
+    if kept is None or kept[0]() is not system:
+        found = np.stack([_along(mesh, surface) for surface in own], axis=1)
+        found = found[:, np.argsort([cast(int, surface.column) for surface in own], kind="stable")]
+        kept = weakref.ref(system), found
+        _KEPT[mesh] = kept
+    return kept[1]
+
+
+def _along(mesh: Mesh, surface: SurfaceLike) -> Array:
+    """The mode of a surface in each interval."""
+    changes = [(int(j), mode_after(surface, e)) for j, e in zip(mesh.starts, mesh.events, strict=True)]
+    changes = [(j, mode) for j, mode in changes if mode is not None]
+    whole = changes[-1][1] if changes else dict(mesh.modes).get(surface.switch)
+    found = np.full(mesh.ntst, np.nan if whole is None else whole, dtype=float)
+    for j, mode in changes:
+        found[j:] = mode
+    return found
+
+
+def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
+    """The side of a jump all along an orbit without event nodes of it, 0 if it has none."""
+    if surface.releases is not None:
+        return 0
+    states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
+    values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
+    side = 1 if values.max() > -values.min() else -1
+    return side if (side * values).min() > -SHALLOW * np.abs(values).max() else 0
+
+
+def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, ...]:
+    """Return event nodes with their modes where they come from a file that has none.
+
+    Sticking begins where the next event node of a surface is one of its releases.
+    """
+    found = list(events)
+    for surface in surfaces_of(system):
+        own = [j for j, e in enumerate(events) if mode_after(surface, e) is not None]
+        for j, after in zip(own, [*own[1:], *own[:1]], strict=True):
+            released = events[after].switch in (surface.releases or ())
+            if released and events[j].switch == surface.switch and not events[j].modes:
+                found[j] = replace(events[j], modes=((surface.switch, STUCK),))
+    return tuple(found)
+
+
+def inconsistency(system: System, events: Sequence[EventNode]) -> str:
+    """Return where event nodes are no word of what is held and released; '' where they are one.
+
+    Each transition of a surface begins in the mode in which the one before ended.
+    """
+    for surface in surfaces_of(system):
+        if surface.releases is None:
+            continue
+        own = [(e, cast(int, mode_after(surface, e))) for e in events if mode_after(surface, e) is not None]
+        for (_, before), (event, after) in zip(own[-1:] + own[:-1], own, strict=True):
+            if not _follows(surface, event, before, after):
+                return f"{surface.name} goes to mode {after} from mode {before}"
+    return ""
+
+
+def _follows(surface: SurfaceLike, event: EventNode, before: int, after: int) -> bool:
+    """Whether a transition may begin in a mode."""
+    if event.switch == surface.switch:
+        return before == -event.direction
+    if event.switch in (surface.releases or ()):
+        return before == STUCK and after == event.direction
+    return before != after
+
+
+def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
+    """Return the modes in one interval as `guards` take them, shape (1, columns), or none of them."""
+    if not getattr(system, "guards_depend", False):
+        return np.zeros((1, 0))
+    return sides(system, orbit)[interval][None]
+
+
+def modes_at(system: System, orbit: Orbit, phase: Array) -> Array:
+    """Return the modes at phases (K,), shape (K, columns)."""
+    return sides(system, orbit)[orbit.locate(phase)[0]]
+
+
+def linearise(
+    system: System,
+    rate: Array,
+    state: Array,
+    algebraic: Array,
+    phase: Array,
+    parameter: Array,
+    side: Array,
+    free: tuple[int, ...] = (),
+) -> LinearisationLike:
+    """Linearise the equations in given modes (points, columns) of the surfaces."""
+    if not side.any():
+        return system.linearise(rate, state, algebraic, phase, parameter, free)
+    beside = cast(Jumping, system)
+    return beside.linearise_beside(rate, state, algebraic, phase, parameter, side, free)

@@ -1,0 +1,182 @@
+"""The word of a simulated motion, and the orbit that it is a guess of.
+
+A motion that was followed from event to event in time tells what happened, and in which modes its surfaces
+were: that is the orbit's word. Joints that neither slip nor come to rest in all of the period are HELD.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from typing import cast
+
+import numpy as np
+
+from periodic.events.modes import twins
+from periodic.events.rewrites.sites import Node, ordered
+from periodic.orbit.construction import constant
+from periodic.orbit.layout import layout_of
+from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.scheme import Array, Scheme
+from periodic.system import (
+    HELD,
+    STUCK,
+    Followed,
+    Happened,
+    Kind,
+    Moving,
+    SurfaceLike,
+    System,
+    linear_of,
+    surfaces_of,
+)
+
+PER_PERIOD, LEAST = 60, 4
+"""Intervals in a period, and in the shortest segment."""
+
+SAME = 1e-9
+"""Events that lie so near to each other (rad) are one."""
+
+APART = 1e-5
+"""How far from each other (rad) events are put that are one in time, but do not bring each other about."""
+
+ASIDE = 1e-10
+"""How far beside an event (rad) the motion is looked at, which may jump there."""
+
+
+def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
+    """Return the event nodes of what happened along a motion, with their phases."""
+    surfaces, found = surfaces_of(system), list[Node]()
+    rows = sorted(events, key=lambda event: event.phase)
+    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME)):
+        each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
+        for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
+            node = _node(system, surfaces[apart[0].surface], apart)
+            found.append((node, apart[0].phase + count * APART))
+    return found
+
+
+def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
+    """What happens at one phase, in sets that bring each other about, or are one by their nature."""
+    surfaces = surfaces_of(system)
+    if _brings_about(system, surfaces[each[0].surface]):
+        return [each]
+    found = dict[int, list[Happened]]()
+    for event in each:
+        found.setdefault(min(twins(system, surfaces[event.surface].switch)), []).append(event)
+    return list(found.values())
+
+
+def _brings_about(system: System, surface: SurfaceLike) -> bool:
+    """Whether an event at a surface may bring about others: an impact, and joints that know of each other."""
+    return surface.kind == Kind.IMPACT or getattr(system, "guards_depend", False)
+
+
+def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> EventNode:
+    """The event node of what happens at once, the first of which brings the others about."""
+    surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
+    for event in each:
+        if surfaces[event.surface].kind != Kind.IMPACT and (event is not first or event.after == STUCK):
+            modes.append((surfaces[event.surface].switch, event.after))
+    switch, direction = _passage(system, surface, first)
+    return EventNode(switch, direction, modes=tuple(modes))
+
+
+def _rank(surface: SurfaceLike, event: Happened) -> int:
+    """What brings the others about that happen at once: an impact, then what comes to rest."""
+    return 0 if surface.kind == Kind.IMPACT else 2 if event.before == STUCK else 1
+
+
+def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
+    """The switch that passes its level at an event, and the direction."""
+    if surface.kind == Kind.IMPACT:
+        return surface.switch, system.switches[surface.switch].direction
+    if event.before == STUCK and surface.releases is not None:
+        return surface.releases[0 if event.after > 0 else 1], event.after
+    return surface.switch, -event.before if event.after == STUCK else event.after
+
+
+def orbit_of(
+    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float
+) -> Orbit | None:
+    """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
+
+    Raises what the integration raises.
+    """
+    if not any(surface.releases is not None for surface in surfaces_of(system)):
+        return None
+    whole = system.motion(state, algebraic, parameter, np.array([0.0, FORCED]), tolerance)
+    if not hasattr(whole, "modes"):
+        return None
+    whole = cast(Followed, whole)
+    nodes = word_of(system, whole.events)
+    changed = {k for event, _ in nodes for k in (event.switch, *(k for k, _ in event.modes))}
+    mesh, phases = _mesh(system, nodes)
+    modes, parameter = list[tuple[int, int]](), parameter.copy()
+    for index, surface in enumerate(surfaces_of(system)):
+        if surface.releases is None or changed & {surface.switch, *surface.releases}:
+            continue
+        mode = whole.modes[index]
+        if mode == STUCK and surface.place is not None:
+            place, weights = surface.place
+            parameter[place] = float(np.dot(weights, state))
+            mode = HELD
+        modes.append((surface.switch, mode))
+    mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
+    return _on(system, mesh, phases, state, algebraic, parameter, tolerance)
+
+
+def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
+    """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
+
+    It may violate its word: that of the motion does not. Raises what the integration raises.
+    """
+    if not hasattr(system, "motion") or linear_of(system) or orbit.mesh.period != FORCED:
+        return None
+    at = np.zeros(1)
+    state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
+    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance)
+
+
+def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
+    """A mesh with event nodes."""
+    if not nodes:
+        return uniform(Scheme(), PER_PERIOD), np.zeros(0)
+    rest = constant(uniform(Scheme(), 1), *system.rest(system.nominal), system.nominal)
+    events, phases = ordered(nodes, rest)
+    lengths = np.diff(np.append(phases, phases[0] + FORCED))
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST)
+    breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
+    return Mesh(Scheme(), breaks, events, FORCED), phases
+
+
+def _on(
+    system: Moving,
+    mesh: Mesh,
+    phases: Array,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    tolerance: float,
+) -> Orbit:
+    """The motion at the points of a mesh, which may begin anywhere in it."""
+    grid = mesh.grid(phases)
+    nodes = mesh.nodes(phases)
+    stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
+    for start in mesh.starts:
+        nodes[start] += ASIDE
+        stages[start - 1, -1] -= ASIDE
+    flat = np.mod(np.concatenate([nodes, stages.ravel()]), FORCED)
+    phase, place = np.unique(np.append(flat, [0.0, FORCED]), return_inverse=True)
+    path = system.motion(state, algebraic, parameter, phase, tolerance)
+    last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
+    x, z = path.state[last][place], path.algebraic[last][place]
+    first, count = len(nodes), mesh.ntst
+    shape = (count, mesh.scheme.ncol, -1)
+    states = x[:first]
+    if mesh.events:
+        states[-1] = states[0]
+    inner = x[first : first + stages.size].reshape(shape)
+    unknown = z[first : first + stages.size].reshape(*shape[:2], algebraic.size)
+    return Orbit(mesh, states, inner, unknown, phases, parameter, layout=layout_of(system))

@@ -1,0 +1,48 @@
+"""Excursions in the midst of which there is an impact: it reverses the switch, and they end in a corner."""
+
+from __future__ import annotations
+
+from periodic.events.impacts import tied
+from periodic.events.modes import modes_in
+from periodic.events.rates import before, rate_before
+from periodic.orbit.orbit import Orbit
+from periodic.system import System, guards_gradient
+
+
+def reversed_by_impact(system: System, orbit: Orbit, segment: int) -> bool:
+    """Whether an impact at an end of a segment reverses the switch at the other end: they do not swap."""
+    ends, impacts = (segment, (segment + 1) % len(orbit.phases)), tied(system, orbit)
+    for node, other in (ends, ends[::-1]):
+        if node in impacts:
+            switch, start = orbit.mesh.events[other].switch, orbit.mesh.starts[node]
+            interval, x, phase = before(orbit, node)
+            pieces = (
+                (x, rate_before(orbit, node), interval),
+                (orbit.nodes[start : start + 1], orbit.node_rates[start], int(start)),
+            )
+            slopes = []
+            for state, rate, place in pieces:
+                modes = modes_in(system, orbit, place)
+                by_state, by_phase, _ = guards_gradient(system, state, phase, orbit.parameter, modes)
+                slopes.append(float(by_phase[0, switch] + by_state[0, switch] @ rate))
+            if slopes[0] * slopes[1] <= 0:
+                return True
+    return False
+
+
+def corner(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | None:
+    """Return the ends of an excursion about an impact, at an end of a segment, if it is so.
+
+    The impact reverses the switch; the excursion ends in a corner, and all three events meet.
+    """
+    events, k = orbit.mesh.events, len(orbit.phases)
+    impacts = tied(system, orbit)
+    if not impacts or not reversed_by_impact(system, orbit, segment):
+        return None
+    for m in (segment, (segment + 1) % k):
+        earlier, later = (m - 1) % k, (m + 1) % k
+        turns = events[earlier].direction != events[later].direction
+        same = events[earlier].switch == events[later].switch != events[m].switch
+        if m in impacts and same and turns:
+            return earlier, later
+    return None

@@ -1,0 +1,233 @@
+"""Where something ends in the word of an orbit: the rows of the table read from right to left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.correction.condition import SideCondition
+from periodic.events.impacts import tied
+from periodic.events.modes import bends, group, mode_after, surface_of
+from periodic.events.rewrites.corners import corner
+from periodic.events.rewrites.reversals import reversals, short_of
+from periodic.events.rewrites.sites import Site
+from periodic.events.rewrites.strikes import last_impact
+from periodic.events.rewrites.swaps import swapped, swaps
+from periodic.events.rewrites.table import (
+    ADDING_ABOUT,
+    ADDING_SLIDING,
+    CORNER,
+    CROSSING_SLIDING,
+    GRAZING,
+    GRAZING_SLIDING,
+    IMPACT,
+    REVERSAL,
+    SWAP,
+    SWITCHING_SLIDING,
+    Row,
+)
+from periodic.events.rewrites.twins import without
+from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.violations import largest
+from periodic.orbit.mesh import INSIDE
+from periodic.orbit.orbit import Orbit
+from periodic.system import STUCK, Kind, SurfaceLike, System
+
+SHALLOW = 0.1
+"""Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
+
+
+@dataclass(frozen=True)
+class Excursion:
+    """What may end: its row, the event node at which it begins, and its size in the row's measure.
+
+    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges. segments: those whose lengths
+    together are its size, where it is not the one that begins there.
+    """
+
+    row: Row
+    index: int
+    unit: float = 1.0
+
+    segments: tuple[int, ...] = ()
+
+    def size(self, system: System, orbit: Orbit) -> float:
+        """How long it lasts, or with which speed it arrives."""
+        if self.row is IMPACT:
+            return speed(system, orbit, self.index)
+        lengths = orbit.mesh.segment_lengths(orbit.phases)
+        return float(lengths[list(self.segments or (self.index,))].sum())
+
+    def held(self, size: float) -> SideCondition:
+        """What keeps it as small as that, in its own unit."""
+        if self.row is IMPACT:
+            return Speed(self.index, size)
+        return Lengths(self.segments, size) if self.segments else Length(self.index, size)
+
+
+def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
+    """Yield all that may end on an orbit."""
+    events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
+    about = {i for turn in reversals(system, orbit) for i in (turn.begin, turn.inside[-1])}
+    for turn in reversals(system, orbit):
+        yield Excursion(REVERSAL, turn.begin)
+    for i in tied(system, orbit):
+        dense = SwitchPolynomials(system, orbit)
+        yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
+    for i, first in enumerate(events):
+        second = events[(i + 1) % k]
+        if first.switch == second.switch in own and i not in about:
+            yield Excursion(GRAZING, i)
+        row = _held(system, orbit, i)
+        if row is not None:
+            yield Excursion(row, i)
+        inner = slip_about(system, orbit, i)
+        if inner:
+            yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
+        if corner(system, orbit, i) is not None and i not in about:
+            yield Excursion(CORNER, i)
+        if swaps(system, orbit, i) and i not in about:
+            yield Excursion(SWAP, i)
+
+
+def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
+    """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
+    if excursion.row is IMPACT:
+        return last_impact(system, orbit, excursion.index)
+    if excursion.row is SWAP:
+        return [swapped(system, orbit, excursion.index)]
+    return [_end(system, orbit, excursion.row, excursion.index)]
+
+
+def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
+    if row is GRAZING:
+        return _pair(orbit, row, (i, (i + 1) % len(orbit.phases)), i)
+    if row is CORNER:
+        around = corner(system, orbit, i)
+        assert around is not None
+        return _pair(orbit, row, around, i)
+    if row is REVERSAL:
+        return _reversal(system, orbit, i)
+    if row is ADDING_ABOUT:
+        return _about(system, orbit, i)
+    return _stretch(system, orbit, row, i)
+
+
+def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
+    """An excursion between two event nodes, touching midway of a segment."""
+    last = orbit.mesh.events[removed[1]]
+    held = Clearance(last.switch, last.direction, _middle(orbit, segment))
+    return Site(row, last.switch, segment, held, 0.0, removed=removed)
+
+
+def _middle(orbit: Orbit, segment: int) -> float:
+    length = float(orbit.mesh.segment_lengths(orbit.phases)[segment])
+    return float(orbit.phases[segment]) + length / 2
+
+
+def _reversal(system: System, orbit: Orbit, begin: int) -> Site:
+    """An excursion about a reversal of friction."""
+    turn = next(turn for turn in reversals(system, orbit) if turn.begin == begin)
+    first, at = orbit.mesh.events[begin], turn.inside[0]
+    left = short_of(system, orbit, first.switch, float(orbit.phases[at]))
+    held = Limit(at, first.switch, -first.direction, left)
+    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(turn.begin, turn.end))
+
+
+def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
+    """Return the event nodes of other surfaces in a slip that begins at one; () if there are none or many."""
+    events, k = orbit.mesh.events, len(orbit.phases)
+    surface = surface_of(system, events[begin].switch)
+    if surface.releases is None or events[begin].switch == surface.switch:
+        return ()
+    inner = list[int]()
+    for m in range(1, min(k, INSIDE + 2)):
+        j = (begin + m) % k
+        mode = mode_after(surface, events[j])
+        if mode is not None:
+            ends = mode == STUCK and events[j].switch == surface.switch
+            return tuple(inner) if ends and inner and _shallow(system, orbit, begin, j) else ()
+        inner.append(j)
+    return ()
+
+
+def _shallow(system: System, orbit: Orbit, begin: int, end: int) -> bool:
+    """Whether what is released at an event node is hardly pulled more than it holds, until another one."""
+    event, mesh = orbit.mesh.events[begin], orbit.mesh
+    dense = SwitchPolynomials(system, orbit)
+    first, last = int(mesh.starts[begin]), int(mesh.starts[end])
+    inside = np.arange(first, last if last > first else last + mesh.ntst) % mesh.ntst
+    excess = float((event.direction * dense.knots[inside][:, :, event.switch]).max())
+    return excess < SHALLOW * largest(dense, event.switch)
+
+
+def _about(system: System, orbit: Orbit, begin: int) -> Site:
+    """A slip about events at other surfaces, where the joint is pulled most."""
+    inner, first = slip_about(system, orbit, begin), orbit.mesh.events[begin]
+    gone = begin, (inner[-1] + 1) % len(orbit.phases)
+    held = Limit(inner[0], first.switch, -first.direction)
+    return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, removed=gone)
+
+
+def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
+    """The surface both of whose neighbouring transitions a segment lies between, if any."""
+    i, j = segment, (segment + 1) % len(orbit.phases)
+    if i == j:
+        return None
+    surface = surface_of(system, orbit.mesh.events[i].switch)
+    ends = mode_after(surface, orbit.mesh.events[j]) is not None
+    return surface if surface.releases is not None and ends else None
+
+
+def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
+    """The row of the stretch between an event node and the next one; None where it cannot vanish."""
+    surface = _surface(system, orbit, segment)
+    if surface is None:
+        return None
+    first, second = orbit.mesh.events[segment], orbit.mesh.events[(segment + 1) % len(orbit.phases)]
+    stuck, then = (mode_after(surface, event) == STUCK for event in (first, second))
+    if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
+        return GRAZING_SLIDING
+    if surface.kind == Kind.SLIDER:
+        return ADDING_SLIDING if then and not stuck else None
+    if stuck:
+        return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
+    if then:
+        return ADDING_SLIDING if first.switch != surface.switch else SWITCHING_SLIDING
+    return None
+
+
+def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
+    """A stretch of sticking or slipping."""
+    surface = _surface(system, orbit, i)
+    assert surface is not None and surface.releases is not None
+    j, guard = (i + 1) % len(orbit.phases), surface.switch
+    first, second = orbit.mesh.events[i], orbit.mesh.events[j]
+    up, down = surface.releases
+    onward = up if first.direction > 0 else down
+    others = tuple(pair for pair in first.modes if pair[0] != guard)
+    if row is CROSSING_SLIDING:
+        passes = replace(first, modes=others)
+        return Site(row, onward, i, Limit(i, onward, first.direction), 0.0, (), (j,), ((i, passes),))
+    if row is SWITCHING_SLIDING:
+        stops = replace(first, modes=((guard, STUCK), *others))
+        return Site(row, onward, i, Limit(i, onward, -first.direction), 0.0, (), (j,), ((i, stops),))
+    if row is GRAZING_SLIDING:
+        held = Clearance(guard, second.direction, _middle(orbit, i))
+        return Site(row, guard, i, held, 0.0, removed=(i, j))
+    held = Clearance(first.switch, -first.direction, _middle(orbit, i))
+    others_stay = without(system, second, guard)
+    if others_stay is not None:
+        return Site(row, first.switch, i, held, 0.0, (), (i,), ((j, others_stay),))
+    return Site(row, first.switch, i, held, 0.0, removed=(i, j))
+
+
+def longest_slip(system: System, orbit: Orbit, switch: int) -> float:
+    """Return the length of the longest stretch without sticking at a guard."""
+    own, surface = group(system, orbit.mesh, switch), surface_of(system, switch)
+    pairs = zip(own, [*own[1:], *own[:1]], strict=True)
+    slips = [(i, j) for i, j in pairs if mode_after(surface, orbit.mesh.events[i]) != STUCK]
+    return max((float((orbit.phases[j] - orbit.phases[i]) % orbit.mesh.period) for i, j in slips), default=0)

@@ -1,0 +1,169 @@
+"""The first rewrite on the way from one orbit to another on the same mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.correction.change import Change
+from periodic.events.modes import of_held, sliding, surface_of
+from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
+from periodic.events.rewrites.onsets import begins
+from periodic.events.rewrites.rewrite import Begins, Ends
+from periodic.events.rewrites.sites import Site
+from periodic.events.rewrites.table import (
+    ADDING_ABOUT,
+    ADDING_SLIDING,
+    CORNER,
+    GRAZING,
+    IMPACT,
+    REVERSAL,
+    ROOT,
+    SHORT,
+    SWAP,
+)
+from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
+from periodic.orbit.orbit import Orbit
+from periodic.system import System
+
+VANISHING = 0.5
+"""What a step would leave this part of, by its tangent, may end within the step."""
+
+ENDS_BELOW = SHORT[-1]
+"""Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
+
+LAST = 1e-2
+"""Length (rad) of the last slips of a motion that will not slip any more."""
+
+
+def first_change(
+    system: System, before: Orbit, after: Orbit, shortest: float, ends_below: float = ENDS_BELOW
+) -> Change | None:
+    """Return the first rewrite between two orbits on one mesh, where there is one.
+
+    `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
+    it is none of the system, on this mesh. A grazing that may be the end of an excursion is told as either.
+    """
+    if not system.switches:
+        return None
+    ending = _alone(_endings(system, before, after, shortest))
+    found = [*ending, *_onsets(system, before, after, ending, shortest)]
+    first = min(found, key=lambda change: (not change.strict, change.part), default=None)
+    if isinstance(first, Begins) and first.site.row is GRAZING:
+        return _or_end(first, before, after, ending, ends_below)
+    return first
+
+
+def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], ends_below: float) -> Begins:
+    """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
+
+    In a guess depth goes before length.
+    """
+    each = [end for end in ending if end.site.row is GRAZING]
+    end = min(each, key=lambda end: end.part, default=None)
+    if end is None or end.site.switch != begins.site.switch:
+        return begins
+    i, at = end.excursion.index, begins.site.at
+    assert isinstance(at, Extremum)
+    now, then = (o.mesh.segment_lengths(o.phases)[i] for o in (before, after))
+    inside = np.mod(at.phase - after.phases[i], after.mesh.period) <= then
+    return replace(begins, otherwise=end) if inside and now < ends_below else begins
+
+
+def _alone(ending: list[Ends]) -> list[Ends]:
+    """What ends, without swaps within slips that end as a whole."""
+    whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
+    return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
+
+
+def _onsets(
+    system: System, before: Orbit, after: Orbit, ending: list[Ends], shortest: float
+) -> list[Begins | WholeOrbit]:
+    """What begins between two orbits."""
+    if not bool((after.mesh.segment_lengths(after.phases) > 0).all()):
+        return []
+    held = of_held(system)
+    slips = any(end.site.row is not SWAP and sliding(system, end.site.switch) is not None for end in ending)
+    resting = {jump for jump in held if not SwitchPolynomials(system, before).knots[:, :, jump].any()}
+    found = list[Begins | WholeOrbit]()
+    for violation in between_nodes(system, after, before):
+        jump = sliding(system, violation.switch)
+        if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
+            continue
+        part = _share(system, before, violation)
+        whole = whole_orbit(system, before, violation, part)
+        site = begins(system, after, violation)
+        if whole is not None:
+            found.append(whole)
+        elif site is not None:
+            found.append(Begins(system, site, part, shortest))
+    return found
+
+
+def _share(system: System, before: Orbit, violation: Violation) -> float:
+    """At which part of the way to an orbit that is past a change the change lies, about."""
+    dense, at = SwitchPolynomials(system, before), violation.at
+    if isinstance(at, Extremum):
+        if not dense.minima(at.switch, violation.side):
+            return 0.0
+        most = largest(dense, at.switch) if sliding(system, at.switch) is not None else 1.0
+        clear = abs(dense.nearest(at.switch, violation.side, at.phase).value) / most
+    else:
+        surface = surface_of(system, violation.switch)
+        clear = next(abs(each.depth) for each in limits(system, before, surface) if each.at == at)
+    return float(clear / (clear + abs(violation.depth)))
+
+
+def _endings(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Ends]:
+    """What becomes so small between two orbits that it may end."""
+    if not before.mesh.events:
+        return []
+    each = (_ending(system, before, after, shortest, excursion) for excursion in excursions(system, before))
+    return [end for end in each if end is not None]
+
+
+def _ending(
+    system: System, before: Orbit, after: Orbit, shortest: float, excursion: Excursion
+) -> Ends | None:
+    """The end of one excursion, if it is near."""
+    row, unit = excursion.row, excursion.unit
+    now, then = (excursion.size(system, orbit) / unit for orbit in (before, after))
+    if then >= now or (row is CORNER and now <= row.least):
+        return None
+    half = now if row.gradual else VANISHING * now
+    size, last = row.size_below(half), False
+    if row is IMPACT and size >= half:
+        return None
+    site = ends(system, before, excursion)[0]
+    if row is ADDING_SLIDING:
+        jump = sliding(system, site.switch)
+        assert jump is not None
+        last = longest_slip(system, before, jump) <= 2 * now
+        size = min(LAST, half) if last else size
+    if then > (max(half, size) if row.power == ROOT and not (last or row.gradual) else size):
+        return None
+    final = last or size <= row.least
+    part = row.part(now, then, size)
+    name = _name(system, site, last)
+    return Ends(system, excursion, site, size * unit, final, last, part, shortest, name)
+
+
+def _name(system: System, site: Site, last: bool) -> str:
+    """What ends, in words."""
+    if site.row is SWAP:
+        names = [system.switches[each.event.switch].name for each in reversed(site.added)]
+        return f"the events {' and '.join(dict.fromkeys(names))} meet"
+    name, jump = system.switches[site.switch].name, sliding(system, site.switch)
+    if jump is not None:
+        name = system.switches[jump].name
+        return (
+            f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
+        )
+    if site.row is IMPACT:
+        return f"the impact at {name} has no speed left"
+    if site.row is REVERSAL:
+        return "an excursion ends where friction turns the motion"
+    return f"the events {name} meet"

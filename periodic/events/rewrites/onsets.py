@@ -1,0 +1,189 @@
+"""Where something begins in the word of an orbit: the rows of the table read from left to right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.events.modes import group, mode_after, surface_of
+from periodic.events.rewrites.reversals import held, short_of
+from periodic.events.rewrites.sites import Added, Site, apart
+from periodic.events.rewrites.strikes import first_impact
+from periodic.events.rewrites.table import (
+    ADDING_SLIDING,
+    CROSSING_SLIDING,
+    GRAZING,
+    GRAZING_SLIDING,
+    IMPACT,
+    SWITCHING_SLIDING,
+)
+from periodic.events.rewrites.twins import with_twins
+from periodic.events.sideconditions import Clearance, Limit
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.violations import Breach, Violation, largest, limits
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
+
+AT_ONCE = 1e-7
+"""Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
+
+SHORT_OF = 1e-9
+"""How far from where something begins orbits without it are held, in the same part: rounding decides."""
+
+BESIDE = 1e-2
+"""Extrema that lie so near to each other (rad) are one: a switch may stay at its level for a while."""
+
+
+def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
+    """Return the site where an orbit violates its word; None where no row of the table is for it."""
+    surface = surface_of(system, violation.switch)
+    if violation.breach not in (Breach.EXCURSION, Breach.MODE):
+        return None
+    if isinstance(violation.at, Extremum):
+        return _touch(system, orbit, surface, violation.at, violation.side, -violation.depth)
+    return _limit(system, orbit, surface, violation)
+
+
+def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
+    """Return a site as it is on the orbit where it begins, and those of its row that begin there too.
+
+    Nothing where it is none on that orbit.
+    """
+    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= AT_ONCE]
+    if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
+        assert isinstance(own.held, Clearance)
+        at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
+        first: Site | None = _touch(
+            system, orbit, surface_of(system, own.switch), at, own.held.side, own.value
+        )
+    else:
+        first = min(near, key=lambda site: _distance(own, site, orbit), default=None)
+    if first is None:
+        return []
+    found = [first]
+    for site in near:
+        if site is not first and not any(_same(system, orbit, site, other) for other in found):
+            found.append(site)
+    return found
+
+
+def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
+    """All sites of a row on an orbit, with what is left to them."""
+    dense = SwitchPolynomials(system, orbit)
+    for surface in surfaces_of(system):
+        for switch in (surface.switch, *(surface.releases or ())):
+            if row_of(surface, switch) == row:
+                yield from _extrema(dense, surface, switch)
+        if surface.releases is not None:
+            each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
+            yield from (site for site in each if site.row.name == row)
+
+
+def row_of(surface: SurfaceLike, switch: int) -> str:
+    """Return the name of the row for an extremum of a switch."""
+    if surface.kind in (Kind.KINK, Kind.JUMP):
+        return GRAZING.name
+    if surface.kind == Kind.IMPACT:
+        return IMPACT.name
+    if surface.releases is not None:
+        return (GRAZING_SLIDING if switch == surface.switch else ADDING_SLIDING).name
+    return ""
+
+
+def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
+    """The extrema of a switch on the sides that it is on."""
+    sides = dense.expected(switch, dense.side(switch))
+    most = largest(dense, switch)
+    nodes = group(dense.system, dense.orbit.mesh, switch) if surface.releases is not None else []
+    own = dense.orbit.phases[nodes]
+    for side in (int(side) for side in np.unique(sides) if side):
+        for e in dense.minima(switch, side):
+            if sides[e.interval] == side and not any(
+                apart(e.phase, tau, dense.orbit) < BESIDE for tau in own
+            ):
+                yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
+
+
+def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float) -> Site:
+    """The site of an extremum on a given side of its level."""
+    k = at.switch
+    if surface.kind == Kind.IMPACT:
+        return first_impact(system, orbit, at, side, value)
+    if surface.releases is None:
+        return _grazing(system, orbit, at, side, value)
+    if k == surface.switch:
+        release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
+        early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
+        new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
+        row, left = GRAZING_SLIDING, 0.0
+    else:
+        early, late = (-1.0, 0.0) if surface.kind == Kind.SLIDER else (-1 / 3, 2 / 3)
+        guard = surface.switch
+        stop = EventNode(guard, side, modes=((guard, STUCK),))
+        new = (EventNode(k, -side), early), (stop, late)
+        row, left = ADDING_SLIDING, SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
+    added = tuple(Added(event, at.phase, part) for event, part in new)
+    held_at = Clearance(k, side, at.phase, left)
+    if surface.kind == Kind.SLIDER:
+        return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
+    return Site(row, k, at, held_at, value, added)
+
+
+def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:
+    """A short excursion about an extremum.
+
+    Where friction holds the switch at its level the event nodes lie before and after that, the latter as the
+    third root of their depth: from there it sets out without acceleration.
+    """
+    k, (begin, end) = at.switch, held(system, orbit, at.switch, at.phase)
+    out, back = EventNode(k, -side), EventNode(k, side)
+    added = (Added(out, begin, -0.5), Added(back, end, 0.5))
+    if begin != end:
+        added = (Added(out, begin, -1.0), Added(back, end, 1.0, 2 / 3))
+    left = short_of(system, orbit, k, at.phase)
+    return Site(GRAZING, k, at, Clearance(k, side, at.phase, left), value, added)
+
+
+def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site:
+    """The site at an event node where a passage may begin to be held, or a stop may break."""
+    assert isinstance(limit.at, int)
+    node, event, guard = limit.at, orbit.mesh.events[limit.at], surface.switch
+    phase, most = float(orbit.phases[node]), _largest_release(system, orbit, surface)
+    others = tuple(pair for pair in event.modes if pair[0] != guard)
+    if mode_after(surface, event) == STUCK:
+        passes = replace(event, modes=others)
+        stop = EventNode(guard, -event.direction, modes=((guard, STUCK),))
+        row, changed, new = SWITCHING_SLIDING, passes, stop
+    else:
+        stops = replace(event, modes=((guard, STUCK), *others))
+        row, changed, new = CROSSING_SLIDING, stops, EventNode(limit.switch, event.direction)
+    held_at = Limit(node, limit.switch, limit.side, SHORT_OF * most)
+    value = -limit.depth
+    return Site(row, limit.switch, node, held_at, value, (Added(new, phase, 1.0),), (), ((node, changed),))
+
+
+def _largest_release(system: System, orbit: Orbit, surface: SurfaceLike) -> float:
+    return largest(SwitchPolynomials(system, orbit), *(surface.releases or ()))
+
+
+def _distance(own: Site, site: Site, orbit: Orbit) -> float:
+    """How far another site is from one, infinite where it is of another kind."""
+    if isinstance(own.at, Extremum) and isinstance(site.at, Extremum) and own.switch == site.switch:
+        return apart(own.at.phase, site.at.phase, orbit)
+    return 0.0 if own.at == site.at and own.switch == site.switch else np.inf
+
+
+def _same(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
+    """Whether two sites are one."""
+    if one.switch != other.switch or isinstance(one.at, Extremum) != isinstance(other.at, Extremum):
+        return False
+    if not (isinstance(one.at, Extremum) and isinstance(other.at, Extremum)):
+        return one.at == other.at
+    if one.row is not GRAZING:
+        return apart(one.at.phase, other.at.phase, orbit) < BESIDE
+    begin, end = held(system, orbit, one.switch, one.at.phase)
+    later = np.mod(other.at.phase - begin + BESIDE, orbit.mesh.period)
+    return bool(later <= end - begin + 2 * BESIDE)

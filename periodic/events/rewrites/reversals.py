@@ -1,0 +1,101 @@
+"""Excursions about an event node of the speed: a mass that meets a stop turns back where its speed is 0.
+
+There friction turns or holds it, or a law changes that is another in loading than in unloading. Between the
+event nodes of such an excursion lie that of the zero of the speed and, where the mass sticks there, that of
+its release; all of them meet where the excursion ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.events.modes import bends, group, of_held, sliding, sticks
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.orbit.orbit import Orbit
+from periodic.system import System
+
+TURNING = 1e-6
+"""Rate of a switch at a node where it turns, as a part of its largest rate, at the most."""
+
+SAME = 1e-6
+"""Phases closer than this are the same."""
+
+SHORT_OF = 1e-9
+"""How far short of its level a switch is held that touches it at an event node, in parts of its largest.
+
+A collocation point lies there, and rounding would decide of what side it takes the equations.
+"""
+
+
+@dataclass(frozen=True)
+class Reversal:
+    """The event nodes at which an excursion begins and ends, and those of the speed between them."""
+
+    begin: int
+    inside: tuple[int, ...]
+    end: int
+
+
+def reversals(system: System, orbit: Orbit) -> list[Reversal]:
+    """Return the excursions of an orbit that turn back at an event node of another switch."""
+    events, own, found = orbit.mesh.events, bends(system), list[Reversal]()
+    if len(events) < 3:
+        return []
+    for i, first in enumerate(events):
+        ahead = [(i + m) % len(events) for m in range(1, 4)]
+        inner = events[ahead[0]].switch
+        if first.switch not in own or not (inner in own or sliding(system, inner) is not None):
+            continue
+        inside = ahead[:1] if stuck_until(system, orbit, ahead[0]) is None else ahead[:2]
+        last = ahead[len(inside)]
+        closes = events[last].switch == first.switch and events[last].direction == -first.direction
+        if closes and _turns(system, orbit, inside[0], first.switch):
+            found.append(Reversal(i, tuple(inside), last))
+    return found
+
+
+def stuck_until(system: System, orbit: Orbit, node: int) -> int | None:
+    """Return the event node of the release where sticking begins at one."""
+    switch = orbit.mesh.events[node].switch
+    return sticks(system, orbit.mesh, switch, node) if switch in of_held(system) else None
+
+
+def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
+    """Whether a switch turns at an event node."""
+    flat, at = (-1, orbit.stages.shape[2]), orbit.mesh.starts[node]
+    states = np.concatenate([orbit.nodes[at : at + 1], orbit.stages.reshape(flat)])
+    rates = np.concatenate([orbit.node_rates[at : at + 1], orbit.knot_rates[:, 1:].reshape(flat)])
+    tau = np.append(orbit.phases[node], orbit.stage_phases.ravel())
+    by_state, by_phase, _ = system.switch_gradient(states, tau, orbit.parameter)
+    slope = np.abs(by_phase[:, switch] + np.einsum("pn,pn->p", by_state[:, switch], rates))
+    return bool(slope[0] <= TURNING * slope.max())
+
+
+def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
+    """Return where sticking that holds a switch about a phase begins and ends; the phase twice if none."""
+    for jump in of_held(system):
+        for j in group(system, orbit.mesh, jump):
+            release = stuck_until(system, orbit, j)
+            if release is None:
+                continue
+            length = float((orbit.phases[release] - orbit.phases[j]) % orbit.mesh.period)
+            since = float((phase - orbit.phases[j] + SAME) % orbit.mesh.period) - SAME
+            if since <= length + SAME and _turns(system, orbit, j, switch):
+                return phase - since, phase - since + length
+    return phase, phase
+
+
+def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
+    """Return how far short of its level a touch is held: 0 but where friction turns the motion."""
+    begin, end = held(system, orbit, switch, phase)
+    events = zip(orbit.mesh.events, orbit.phases, strict=True)
+    apart = [abs(_wrapped(begin - tau, orbit)) for e, tau in events if sliding(system, e.switch) is not None]
+    if begin == end and min(apart, default=np.inf) > SAME:
+        return 0.0
+    return SHORT_OF * float(np.abs(SwitchPolynomials(system, orbit).knots[:, :, switch]).max())
+
+
+def _wrapped(phase: float, orbit: Orbit) -> float:
+    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)

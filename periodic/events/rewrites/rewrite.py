@@ -1,0 +1,183 @@
+"""Rewrites: changes of the word of an orbit, at one site or at several at once.
+
+What begins with depth d past a level is of size c d^power, and where the power is less than 1 it has no
+derivative in the parameter there. Without it the orbit is a smooth function of the parameter, with it of the
+size; so a branch is followed without it up to where it begins, and with it from a small size on. The other
+way round it is the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.correction.change import Beyond, Change
+from periodic.correction.condition import SideCondition
+from periodic.events.heldalong import all_along
+from periodic.events.modes import inconsistency, releases, sliding
+from periodic.events.rewrites.ends import Excursion, ends, excursions
+from periodic.events.rewrites.onsets import SHORT_OF, at_once
+from periodic.events.rewrites.sites import Site, index_of, rewritten
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.sideconditions import Length, Limit, Speed
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.violations import largest
+from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
+from periodic.system import System
+
+ALIKE = 1e-3
+"""Excursions whose sizes differ by this part end at once."""
+
+BRIEF = 2.0
+"""Excursions at most so many times as long as one that ends end with it, or are about to."""
+
+
+@dataclass(frozen=True)
+class Begins:
+    """Something begins: beyond, orbits without it are none of the system.
+
+    otherwise: what it is where no orbit is found at which it begins.
+    """
+
+    system: System
+    site: Site
+    part: float
+    shortest: float
+    otherwise: Change | None = None
+
+    strict = True
+    final = True
+
+    @property
+    def touches(self) -> bool:
+        """Whether a switch just touches its level."""
+        return self.site.row.touches
+
+    @property
+    def condition(self) -> SideCondition:
+        """What is 0 there."""
+        return self.site.held
+
+    @property
+    def name(self) -> str:
+        """What begins, in words."""
+        surface = self.system.switches[self.site.switch].name
+        jump = sliding(self.system, self.site.switch)
+        if jump is None or self.site.row is GRAZING_SLIDING:
+            return f"{surface} is touched"
+        name = self.system.switches[jump].name
+        if isinstance(self.site.at, int):
+            return f"a stop at {name} begins or is broken"
+        return f"a slip begins while {name} holds"
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield orbits with what begins, small, and with what begins at once elsewhere by symmetry."""
+        sites = at_once(system, orbit, self.site)
+        row = self.site.row
+        for size in (*row.sizes, *row.spare) if sites else ():
+            for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
+                events, phases = rewritten(orbit, chosen, size)
+                if inconsistency(system, events):
+                    continue
+                mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+                begin = index_of(events, phases, chosen[0].begin(orbit, size), orbit)
+                held = self._held(system, orbit, begin, size)
+                yield Beyond(mesh, phases, held, touches=False, spare=size in row.spare)
+
+    def _held(self, system: System, orbit: Orbit, begin: int, size: float) -> SideCondition:
+        """What keeps it as small as that."""
+        if self.site.row is IMPACT:
+            dense = SwitchPolynomials(system, orbit)
+            return Speed(begin, size * float(np.abs(dense.knots[:, :, self.site.switch]).max()))
+        return Length(begin, size)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Something becomes as small as `size`: beyond, it is gone.
+
+    final: whether it is never looked at when smaller. strict: whether the motion is not followed beyond.
+    """
+
+    system: System
+    excursion: Excursion
+    site: Site
+    size: float
+    final: bool
+    strict: bool
+    part: float
+    shortest: float
+    name: str
+
+    touches = False
+    otherwise = None
+
+    @property
+    def condition(self) -> SideCondition:
+        """How small it becomes."""
+        return self.excursion.held(self.size)
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
+        for own in ends(system, orbit, self.excursion):
+            sites = self._alike(system, orbit, own)
+            for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:
+                events, phases = rewritten(orbit, chosen, self.size)
+                if inconsistency(system, events):
+                    continue
+                mesh = self._mesh(orbit, events, phases)
+                held = self._held(system, orbit, own, events, phases)
+                modes, parameter = all_along(system, orbit, events)
+                mesh = replace(mesh, modes=modes)
+                yield Beyond(mesh, phases, held, own.row.touches, parameter=parameter)
+
+    def _alike(self, system: System, orbit: Orbit, own: Site) -> list[Site]:
+        """What ends of the same row, as small as this."""
+        found = [own]
+        for other in excursions(system, orbit):
+            if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < ALIKE:
+                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _touched(each)}
+                found += [site] if not gone & set(_touched(site)) else []
+        return found
+
+    def _mesh(self, orbit: Orbit, events: tuple[EventNode, ...], phases: Array) -> Mesh:
+        """The mesh without it; of excursions that are no more derivatives are rounding."""
+        if self.site.row not in (GRAZING, CORNER):
+            return redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        gone = MIN_INTERVALS * (len(orbit.mesh.events) - len(events)) // 2
+        wanted = np.where(self._brief(orbit), 0.0, density(orbit))
+        wanted *= (orbit.mesh.ntst - gone) / float(wanted @ orbit.grid.width)
+        return spread(orbit, wanted, events, phases, self.shortest)
+
+    def _brief(self, orbit: Orbit) -> NDArray[np.bool_]:
+        """Which intervals are those of excursions about as short as this one."""
+        brief = orbit.mesh.segment_lengths(orbit.phases) < BRIEF * self.size
+        return np.repeat(brief, [len(breaks) - 1 for breaks in orbit.mesh.breaks])
+
+    def _held(
+        self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
+    ) -> SideCondition:
+        """What is 0 where it ends, but for what rounding decides."""
+        if own.row is SWAP:
+            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
+        held, left = own.held, 0.0
+        jump = sliding(system, own.switch)
+        if jump is not None and not own.row.touches:
+            left = SHORT_OF * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
+            held = replace(held, level=left)  # type: ignore[type-var]
+        if isinstance(held, Limit):
+            changed = dict(own.replaced)
+            event = changed.get(held.node, orbit.mesh.events[held.node])
+            pair = event, float(orbit.phases[held.node])
+            held = replace(held, node=index_of(events, phases, pair, orbit))
+        return held
+
+
+def _touched(site: Site) -> Sequence[int]:
+    return (*site.removed, *(j for j, _ in site.replaced))

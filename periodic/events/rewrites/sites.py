@@ -1,0 +1,106 @@
+"""Sites: places on one orbit at which a row of the table may be applied, and what that does to its word."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.correction.condition import SideCondition
+from periodic.events.rewrites.table import Row
+from periodic.events.switchpolynomials import Extremum
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+
+Node = tuple[EventNode, float]
+"""An event node and its phase."""
+
+
+@dataclass(frozen=True)
+class Added:
+    """A new event node: it lies part * size^power from a phase."""
+
+    event: EventNode
+    phase: float
+    part: float
+    power: float = 1.0
+
+    def at(self, size: float) -> Node:
+        """Return it, with its phase, for a size."""
+        return self.event, self.phase + self.part * size**self.power
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where something may begin, or end.
+
+    Parameters
+    ----------
+    row : Row
+        What.
+    switch : int
+        The switch that decides.
+    at : Extremum or int
+        The extremum of it, or the event node.
+    held : SideCondition
+        What is 0 there on the orbit without it.
+    value : float
+        How far that is from 0, as a part of the largest value: positive as long as it is not there.
+    added : tuple of Added
+        The event nodes that come, where it begins; the first one begins it.
+    removed : tuple of int
+        Those that go.
+    replaced : tuple of (int, EventNode)
+        Those that stay where they are as others.
+    """
+
+    row: Row
+    switch: int
+    at: Extremum | int
+    held: SideCondition
+    value: float
+    added: tuple[Added, ...] = ()
+    removed: tuple[int, ...] = ()
+    replaced: tuple[tuple[int, EventNode], ...] = ()
+
+    def begin(self, orbit: Orbit, size: float) -> Node:
+        """The event node with which what begins begins."""
+        if self.replaced:
+            node, event = self.replaced[0]
+            return event, float(orbit.phases[node])
+        return self.added[0].at(size)
+
+
+def rewritten(orbit: Orbit, sites: Iterable[Site], size: float) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and phases of an orbit after the edits at some sites, in order."""
+    nodes = dict(enumerate(zip(orbit.mesh.events, map(float, orbit.phases), strict=True)))
+    added = list[Node]()
+    for site in sites:
+        for index, event in site.replaced:
+            nodes[index] = event, nodes[index][1]
+        for index in site.removed:
+            nodes.pop(index, None)
+        added += [each.at(size) for each in site.added]
+    return ordered([*nodes.values(), *added], orbit)
+
+
+def ordered(both: Iterable[Node], orbit: Orbit) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and their phases in order, the first phase in [0, period)."""
+    period = orbit.mesh.period
+    wrapped = ((float(np.mod(phase, period)), event) for event, phase in both)
+    placed = sorted(wrapped, key=lambda pair: pair[0])
+    return tuple(event for _, event in placed), np.array([phase for phase, _ in placed])
+
+
+def index_of(events: tuple[EventNode, ...], phases: Array, node: Node, orbit: Orbit) -> int:
+    """Return the index of an event node."""
+    place = np.mod(node[1], orbit.mesh.period)
+    return next(i for i, event in enumerate(events) if event == node[0] and phases[i] == place)
+
+
+def apart(one: float, other: float, orbit: Orbit) -> float:
+    """Return how far two phases are from each other."""
+    period = orbit.mesh.period
+    return abs(float(np.mod(one - other + period / 2, period) - period / 2))

@@ -1,0 +1,68 @@
+"""Elastic sliders side by side: those that slip stop together where their strain turns, at one event node."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from periodic.events.modes import mode_after, surface_of, twins
+from periodic.events.rewrites.sites import Added, Site, apart
+from periodic.events.rewrites.table import GRAZING_SLIDING
+from periodic.events.switchpolynomials import Extremum
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import STUCK, System
+
+SAME = 1e-3
+"""Phases closer than this (rad) are those of one turn of the strain."""
+
+
+def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
+    """Return where a slider begins to slip, or to be held, with what its twins do at the same event nodes.
+
+    One that begins to slip where the strain turns stops where the others do; where the strain turns back for
+    a while all that slip are held together, and let go together.
+    """
+    assert isinstance(site.at, Extremum)
+    guard = surface_of(system, site.switch).switch
+    both = [k for k in twins(system, guard) if k != guard]
+    if not both:
+        return site
+    if site.row is GRAZING_SLIDING:
+        return _grazing(system, orbit, site, guard, both)
+    release, stop = site.added
+    for j, event in enumerate(orbit.mesh.events):
+        if event.switch in both and apart(float(orbit.phases[j]), site.at.phase, orbit) < SAME:
+            joined = replace(event, modes=(*event.modes, (guard, STUCK)))
+            return replace(site, added=(release,), replaced=((j, joined),))
+    return site
+
+
+def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: list[int]) -> Site:
+    """All that slip about the turn are held for a while."""
+    assert isinstance(site.at, Extremum)
+    stop, release = site.added
+    slipping = [k for k in both if _mode(system, orbit, k, site.at.interval) == release.event.direction]
+    stuck = tuple((k, STUCK) for k in slipping)
+    onward = tuple((k, release.event.direction) for k in slipping)
+    first = Added(replace(stop.event, modes=(*stop.event.modes, *stuck)), stop.phase, stop.part)
+    last = Added(replace(release.event, modes=onward), release.phase, release.part)
+    return replace(site, added=(first, last))
+
+
+def _mode(system: System, orbit: Orbit, switch: int, interval: int) -> int:
+    """The mode of a surface in an interval; 0 where no event node says it."""
+    surface, mesh = surface_of(system, switch), orbit.mesh
+    each = zip(mesh.starts, mesh.events, strict=True)
+    changes = [(int(j), mode_after(surface, event)) for j, event in each]
+    known = [(j, mode) for j, mode in changes if mode is not None]
+    before = [mode for j, mode in known if j <= interval] or [mode for _, mode in known]
+    return before[-1] if before else 0
+
+
+def without(system: System, event: EventNode, guard: int) -> EventNode | None:
+    """Return the event node of twins without one of them; None where it is its alone."""
+    others = tuple(pair for pair in event.modes if pair[0] != guard)
+    if not others:
+        return None
+    switch = event.switch if event.switch != guard else others[0][0]
+    return EventNode(switch, event.direction, event.level, others)

@@ -1,0 +1,57 @@
+"""A whole orbit that touches a level at once, as a circle in a ring: no row, as it has no extremum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.correction.change import Beyond
+from periodic.events.modes import surface_of
+from periodic.events.rewrites.table import SHORT
+from periodic.events.sideconditions import Clearance
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.violations import Breach, Violation
+from periodic.orbit.orbit import Orbit
+from periodic.system import Kind, System
+
+RIPPLES = 2.0
+"""How far short of its level a switch is held that is the same all along the orbit, in its ripples."""
+
+FLAT = 1e-5
+"""A switch is the same all along an orbit where it changes by no more, as a part of its size."""
+
+
+@dataclass(frozen=True)
+class WholeOrbit:
+    """All of an orbit touches: it goes beyond at once, on the same mesh."""
+
+    name: str
+    condition: Clearance
+    part: float
+
+    touches = True
+    strict = True
+    final = True
+    otherwise = None
+
+    def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
+        """Yield the orbit a little beyond."""
+        dense, held = SwitchPolynomials(system, orbit), self.condition
+        at = dense.nearest(held.switch, held.side, held.phase)
+        for depth in SHORT:
+            beyond = Clearance(held.switch, -held.side, at.phase, depth * dense.size(held.switch))
+            yield Beyond(orbit.mesh, orbit.phases, beyond, touches=False)
+
+
+def whole_orbit(system: System, before: Orbit, violation: Violation, part: float) -> WholeOrbit | None:
+    """Return the touch of a whole orbit, if a violation is that; it is held where it still has a tangent."""
+    k, dense = violation.switch, SwitchPolynomials(system, before)
+    if violation.breach is not Breach.EXCURSION or not isinstance(violation.at, Extremum):
+        return None
+    if surface_of(system, k).kind == Kind.IMPACT or not dense.flat(k, FLAT):
+        return None
+    ripple = RIPPLES * float(np.ptp(dense.knots[:, :, k]))
+    held = Clearance(k, violation.side, violation.at.phase, ripple)
+    return WholeOrbit(f"{system.switches[k].name} is touched", held, part) if ripple else None

@@ -1,0 +1,142 @@
+"""Side conditions at a change of events: how far a switch is from its level, how long a stretch is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from periodic.events.impacts import slope_before
+from periodic.events.modes import modes_in
+from periodic.events.rates import before, rate_before
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.orbit.gradients import Points, Slopes, gathered
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
+from periodic.system import System, guards, guards_gradient
+
+STEP = 1e-4
+"""Step (rad) along the motion of differences of a switch's gradient."""
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Side condition: the extremum of a switch nearest a phase lies at `level`, min of side * s."""
+
+    switch: int
+    side: int
+    phase: float
+    level: float = 0.0
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
+        at = SwitchPolynomials(system, orbit).nearest(self.switch, self.side, self.phase)
+        row = clearance(system, orbit, at, self.side, free)
+        return Row(row.value - self.level, row.nodes, row.outer, row.stages)
+
+
+def clearance(system: System, orbit: Orbit, at: Extremum, side: int, free: tuple[int, ...]) -> Row:
+    """Return side * s at a point of an orbit as a row."""
+    phase = np.array([at.phase])
+    basis = orbit.mesh.scheme.basis(np.array([at.theta]))
+    state = basis @ orbit.knots[at.interval]
+    points = Points(
+        np.array([at.interval]),
+        np.array([at.theta]),
+        phase,
+        basis @ orbit.knot_rates[at.interval],
+        state,
+        np.zeros((1, orbit.algebraic.shape[2])),
+    )
+    modes = modes_in(system, orbit, at.interval)
+    d_state, d_phase, d_parameter = (
+        side * g[:, at.switch] for g in guards_gradient(system, state, phase, orbit.parameter, modes)
+    )
+    slopes = Slopes(np.zeros_like(state), d_state, np.zeros((1, 0)), d_phase, d_parameter[0, list(free)])
+    row = gathered(system, orbit, points, slopes, free)
+    value = side * float(guards(system, state, phase, orbit.parameter, modes)[0, at.switch])
+    return Row(value, row.nodes, row.outer, row.stages)
+
+
+@dataclass(frozen=True)
+class Length:
+    """Side condition: the segment that begins at an event node has a given length (rad)."""
+
+    segment: int
+    length: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return its length less the given one."""
+        k = len(orbit.phases)
+        outer = np.zeros(k + len(free))
+        outer[self.segment] -= 1.0
+        outer[(self.segment + 1) % k] += 1.0
+        value = float(orbit.mesh.segment_lengths(orbit.phases)[self.segment]) - self.length
+        return Row(value, np.zeros_like(orbit.nodes), outer)
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Side condition: some segments, by the event nodes at which they begin, are so long together (rad)."""
+
+    segments: tuple[int, ...]
+    length: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return their lengths less the given one."""
+        each = [Length(segment, 0.0).linearise(system, orbit, free) for segment in self.segments]
+        row = sum(each[1:], each[0])
+        return Row(row.value - self.length, row.nodes, row.outer)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Side condition: side * (a switch) is `level` at an event node, which need not be its own."""
+
+    node: int
+    switch: int
+    side: int
+    level: float = 0.0
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return its value and gradient."""
+        start, k = orbit.mesh.starts[self.node], len(orbit.phases)
+        where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
+        modes = modes_in(system, orbit, start - 1)
+        d_state, d_phase, d_parameter = guards_gradient(system, *where, modes)
+        nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
+        nodes[start] = d_state[0, self.switch]
+        outer[self.node] = d_phase[0, self.switch]
+        outer[k:] = d_parameter[0, self.switch, list(free)]
+        value = float(guards(system, *where, modes)[0, self.switch])
+        row = Row(value, nodes, outer).scaled(self.side)
+        return Row(row.value - self.level, row.nodes, row.outer)
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Side condition: the switch of an impact arrives at its level with a given |ds/dtau|."""
+
+    index: int
+    speed: float
+
+    def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
+        """Return the speed less the given one."""
+        interval, x, phase = before(orbit, self.index)
+        event, rate = orbit.mesh.events[self.index], rate_before(orbit, self.index)[None]
+        points = Points(np.array([interval]), np.ones(1), phase, rate, x, np.zeros((1, 0)))
+        ends = [
+            system.switch_gradient(x + step * rate, phase + step, orbit.parameter) for step in (STEP, -STEP)
+        ]
+        by_state, by_phase, by_parameter = (
+            (ahead - back)[:, event.switch] / (2 * STEP) for ahead, back in zip(*ends, strict=True)
+        )
+        slope = system.switch_gradient(x, phase, orbit.parameter)[0][:, event.switch]
+        slopes = Slopes(slope, by_state, np.zeros((1, 0)), by_phase, by_parameter[0, list(free)])
+        row = gathered(system, orbit, points, slopes, free).scaled(event.direction)
+        return Row(speed(system, orbit, self.index) - self.speed, row.nodes, row.outer, row.stages)
+
+
+def speed(system: System, orbit: Orbit, index: int) -> float:
+    """Return |ds/dtau| with which a switch arrives at its impact."""
+    return slope_before(system, orbit, index) * orbit.mesh.events[index].direction

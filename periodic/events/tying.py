@@ -1,0 +1,354 @@
+"""Which kinks of an orbit the mesh should be tied to.
+
+A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest
+that is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and
+returns) shorter than a threshold are left to the ordinary mesh, where they are too weak to matter: an
+event node tied to a passage that is about to vanish would turn the continuation back on itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from periodic.checks import at_least_0, number
+from periodic.events import impacts, sticking
+from periodic.events.impactmodes import brought_about
+from periodic.events.modes import bends
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import Kind, System, surfaces_of
+
+SAME = 1e-9
+"""Phases closer than this are the same."""
+
+DEEPEST = 0.1
+"""Shallowest switch level worth an event node, in tolerances or errors of the states."""
+
+
+MILD = 0.1
+"""Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
+
+LEAST = 1e-13
+"""Least change of a switch for which sticking is looked for on an orbit that lacks it."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A passage of a switch through a level along an orbit.
+
+    slope: the smaller of |ds/dtau| at the collocation points before and after it.
+    """
+
+    event: EventNode
+    phase: float
+    slope: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class KinkSettings:
+    """When the mesh is tied to a passage of a switch by an event node.
+
+    Parameters
+    ----------
+    appear, vanish : float
+        Shortest excursion (rad) that gets new event nodes, and below which present ones go.
+    deepest : float, optional
+        Levels of a switch between 0 and this are not used; below the accuracy of the states themselves a
+        level has no meaning. Default a tenth of the tolerance.
+    exchange : float
+        How many times deeper another level must be to replace the one in use.
+    steep : float
+        Least slope of a passage, as a part of the slope at the shallowest level.
+
+    Raises
+    ------
+    ValueError
+        For numbers that are not allowed, in one sentence.
+    """
+
+    appear: float = 0.10
+    vanish: float = 0.05
+    deepest: float | None = None
+    exchange: float = 5.0
+    steep: float = 0.25
+
+    def __post_init__(self) -> None:
+        if not 0 < number("vanish", self.vanish) <= number("appear", self.appear):
+            raise ValueError(
+                f"vanish is {self.vanish}; it must be positive and at most appear = {self.appear}"
+            )
+        if self.deepest is not None:
+            at_least_0("deepest", self.deepest)
+        if not 1 <= number("exchange", self.exchange) < np.inf:
+            raise ValueError(f"exchange is {self.exchange}; it must be a number of at least 1")
+        if not 0 <= number("steep", self.steep) <= 1:
+            raise ValueError(f"steep is {self.steep}; it must lie between 0 and 1")
+
+    def beside(self, level: float) -> KinkSettings:
+        """Return the settings for a level.
+
+        Parameters
+        ----------
+        level : float
+            Below 0 of a switch where only a derivative of the equations has a kink: it is mild, and its node
+            may come and go with an excursion a tenth as long.
+
+        Returns
+        -------
+        KinkSettings
+            With `appear` and `vanish` for it.
+        """
+        return replace(self, appear=MILD * self.appear, vanish=MILD * self.vanish) if level < 0 else self
+
+    def at(self, tolerance: float) -> KinkSettings:
+        """Return the settings for a tolerance of the orbits.
+
+        Parameters
+        ----------
+        tolerance : float
+            Bound of their error estimates.
+
+        Returns
+        -------
+        KinkSettings
+            With `deepest` chosen, where it was left open.
+        """
+        return replace(self, deepest=DEEPEST * tolerance) if self.deepest is None else self
+
+
+def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
+    """Return all passages, on the whole orbit, of the switches at whose level the equations change.
+
+    Of switches that are equal, those of the first.
+    """
+    dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
+    for k in bends(system):
+        new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
+        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME for f in found)]
+    return found
+
+
+def crossings(system: System, orbit: Orbit) -> list[Crossing]:
+    """Return all passages of all switches through their levels, in order of phase for each level.
+
+    Signs are read at the collocation points alone: only there do the states fulfil the equations exactly,
+    and a switch with several levels may stay far closer to one than the interpolation error between them.
+    Phases are interpolated linearly.
+    """
+    tau, flat = orbit.stage_phases.ravel(), (-1, orbit.stages.shape[2])
+    state = orbit.stages.reshape(flat)
+    values = system.switch(state, tau, orbit.parameter)
+    d_state, d_phase, _ = system.switch_gradient(state, tau, orbit.parameter)
+    slopes = np.abs(d_phase + np.einsum("tkn,tn->tk", d_state, orbit.knot_rates[:, 1:].reshape(flat)))
+    _tied(orbit, values)
+    tau = np.append(tau, tau[0] + orbit.mesh.period)
+    values, slopes = (np.concatenate([a, a[:1]]) for a in (values, slopes))
+    found = []
+    elsewhere = _elsewhere(system)
+    for k, switch in enumerate(system.switches):
+        if k in elsewhere:
+            continue
+        above = values[:, k, None] > np.array(switch.levels)
+        for i, j in np.argwhere(above[1:] != above[:-1]):
+            level = switch.levels[j]
+            begin, end = values[i, k] - level, values[i + 1, k] - level
+            phase = tau[i] + (tau[i + 1] - tau[i]) * begin / (begin - end)
+            event = EventNode(k, 1 if end > begin else -1, level)
+            found.append(Crossing(event, float(phase), float(slopes[i : i + 2, k].min())))
+    return found
+
+
+def _tied(orbit: Orbit, values: Array) -> None:
+    """Set switches (N ncol, s) to their levels at event nodes: no rounding says on which side they are."""
+    mesh = orbit.mesh
+    if mesh.events and mesh.scheme.points[-1] == 1.0:
+        last = mesh.starts * mesh.scheme.ncol - 1  # the first one's is the period's last
+        values[last, [event.switch for event in mesh.events]] = [event.level for event in mesh.events]
+
+
+def _elsewhere(system: System) -> set[int]:
+    """The switches whose event nodes are those of impacts and of what is held."""
+    special = [s for s in surfaces_of(system) if s.kind == Kind.IMPACT or s.releases is not None]
+    return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
+
+
+def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Return the crossings to which the orbit's mesh should be tied, in order of phase."""
+    if not system.switches:
+        return []
+    sharp, chosen = bends(system), list[Crossing]()
+    blunt = [(k, switch) for k, switch in enumerate(system.switches) if k not in sharp]
+    found = crossings(system, orbit) if blunt else []
+    for k, switch in blunt:
+        levels = [v for v in switch.levels if not 0 < v < (settings.deepest or 0.0)]
+        kept = [
+            _merged(
+                [c for c in found if c.event.switch == k and c.event.level == level],
+                orbit,
+                settings.beside(level),
+            )
+            for level in levels
+        ]
+        directions = (switch.direction,) if switch.direction else (-1, 1)
+        for excursion in _excursions(kept[0]) if kept else []:
+            chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
+    chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
+    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
+    begin = orbit.grid.left[0]
+    tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
+    return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
+
+
+def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """Event, phase and |ds/dtau| of an orbit's impacts, with the modes that they bring about."""
+    found = []
+    for i in impacts.tied(system, orbit):
+        event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
+        found.append((event, float(orbit.phases[i]), abs(impacts.slope_before(system, orbit, i))))
+    return found
+
+
+def _phase(crossing: Crossing) -> float:
+    return crossing.phase
+
+
+def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Leave out crossings that lie closer than the threshold to the one before: two nodes cannot meet."""
+    kept: list[Crossing] = []
+    for crossing in chosen:
+        ends = [kept[-1].phase, kept[0].phase + orbit.mesh.period] if kept else []
+        own = settings.beside(crossing.event.level)
+        limit = own.vanish if _is_tied(crossing, orbit) else own.appear
+        if all(abs(crossing.phase - end) >= limit for end in ends):
+            kept.append(crossing)
+    return kept
+
+
+def _kink(
+    kept: list[list[Crossing]],
+    excursion: tuple[Crossing, Crossing],
+    direction: int,
+    orbit: Orbit,
+    settings: KinkSettings,
+) -> Crossing:
+    """The passage within an excursion that marks the kink at its begin (-1) or end (+1)."""
+    edge = excursion[0] if direction < 0 else excursion[1]
+    candidates = []
+    for level in kept:
+        inside = [
+            c for c in level if c.event.direction == direction and _inside(c, excursion, orbit.mesh.period)
+        ]
+        candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
+    steep = [c for c in candidates if c.slope >= settings.steep * edge.slope]
+    deepest = min(steep, key=lambda c: c.event.level)
+    reach = settings.exchange * deepest.event.level
+    used = [c for c in steep if _is_tied(c, orbit) and c.event.level <= reach]
+    return used[0] if used else deepest
+
+
+def _wrapped(phase: float, orbit: Orbit) -> float:
+    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)
+
+
+def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
+    """Pair the crossings of one level: each falling one with the rising one that follows."""
+    falling = [i for i, c in enumerate(kept) if c.event.direction < 0]
+    return [(kept[i], kept[(i + 1) % len(kept)]) for i in falling]
+
+
+def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
+    begin, end = excursion[0].phase, excursion[1].phase
+    return bool(np.mod(crossing.phase - begin + SAME, period) <= np.mod(end - begin, period) + 2 * SAME)
+
+
+def _merged(found: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
+    """Leave out pairs of neighbouring crossings that lie closer than the threshold."""
+    kept = list(found)
+    while len(kept) >= 2:
+        phases = np.array([c.phase for c in kept])
+        gaps = np.diff(np.append(phases, phases[0] + orbit.mesh.period))
+        limits = np.array(
+            [_limit(kept[i], kept[(i + 1) % len(kept)], orbit, settings) for i in range(len(kept))]
+        )
+        short = int(np.argmin(gaps / limits))
+        if gaps[short] >= limits[short]:
+            break
+        drop = {short, (short + 1) % len(kept)}
+        kept = [c for i, c in enumerate(kept) if i not in drop]
+    return kept
+
+
+def _limit(a: Crossing, b: Crossing, orbit: Orbit, settings: KinkSettings) -> float:
+    return settings.vanish if _is_tied(a, orbit) or _is_tied(b, orbit) else settings.appear
+
+
+def _is_tied(crossing: Crossing, orbit: Orbit) -> bool:
+    return match(crossing, orbit) is not None
+
+
+def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | None:
+    """Return the index of the orbit's event node that is this crossing, if one is."""
+    both = zip(orbit.mesh.events, orbit.phases, strict=True)
+    apart = [
+        abs(_wrapped(crossing.phase - phase, orbit)) if event == crossing.event else np.inf
+        for event, phase in both
+    ]
+    nearest = int(np.argmin(apart)) if apart else 0
+    return nearest if apart and apart[nearest] < tolerance else None
+
+
+def fits(chosen: list[Crossing], orbit: Orbit) -> bool:
+    """Whether the orbit's mesh is tied to exactly these crossings."""
+    matched = [match(c, orbit) for c in chosen]
+    return None not in matched and len(chosen) == len(orbit.phases)
+
+
+def genuine(system: System, orbit: Orbit) -> bool:
+    """Whether every event node is a crossing in its own direction, not past where a pair vanished."""
+    if not orbit.mesh.events:
+        return True
+    at = orbit.nodes[orbit.mesh.starts]
+    d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
+    rates = orbit.node_rates[orbit.mesh.starts]
+    special = _elsewhere(system)
+    for i, event in enumerate(orbit.mesh.events):
+        slope = d_phase[i, event.switch] + d_state[i, event.switch] @ rates[i]
+        if event.switch in special:
+            slope = impacts.slope_before(system, orbit, i)
+        if slope * event.direction <= 0:
+            return False
+    return True
+
+
+def placed(system: System, orbit: Orbit, chosen: list[Crossing]) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and exact phases of crossings for a new mesh, the first phase in [0, period)."""
+    phases = np.array([_exact(system, orbit, c) for c in chosen])
+    period = orbit.mesh.period
+    return tuple(c.event for c in chosen), phases - period * np.floor(phases[:1] / period)
+
+
+def _exact(system: System, orbit: Orbit, crossing: Crossing) -> float:
+    """The phase of a crossing: the event node's own where the mesh is tied to it, else on the polynomial."""
+    index = match(crossing, orbit)
+    if index is not None:
+        turns = np.round((crossing.phase - orbit.phases[index]) / orbit.mesh.period)
+        return float(orbit.phases[index] + turns * orbit.mesh.period)
+
+    if crossing.event.switch in _elsewhere(system):
+        return crossing.phase
+
+    def value(tau: float) -> float:
+        at = np.array([tau])
+        switch = system.switch(orbit.state(at), at, orbit.parameter)[0, crossing.event.switch]
+        return float(switch) - crossing.event.level
+
+    reach = orbit.grid.width[orbit.locate(np.array([crossing.phase]))[0][0]]
+    begin, end = crossing.phase - reach, crossing.phase + reach
+    if value(begin) * value(end) >= 0:
+        return crossing.phase
+    return float(scipy.optimize.brentq(value, begin, end, xtol=1e-13))

@@ -1,0 +1,207 @@
+"""Where an orbit violates its word: the one test of what its event nodes say of the modes in between.
+
+In each mode of a surface some functions keep their sign (`periodic.system.SurfaceLike`): its guard beside it,
+the releases while it is held. That is asked of the polynomials of the whole orbit, which their Bernstein
+coefficients enclose, not of samples; and of each event node, that it passes its level as it says.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+
+from periodic.events.impacts import slope_before
+from periodic.events.modes import mode_after, modes_in, surface_of
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
+
+AT_LEVEL = 1e-8
+"""How near to 0 what happens at another's event node is, as a part of its largest value."""
+
+NOISE = 1e-10
+"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
+
+
+class Breach(Enum):
+    """How an orbit violates its word.
+
+    REVERSED: an event node passes its level the other way. GRAZED: an impact has no speed. HELD: both sides
+    of a jump lead back to it. THROUGH: the orbit goes where an impact would be. EXCURSION: a switch passes
+    its level without an event node. MODE: the motion is held where it should not be, or the reverse.
+    """
+
+    REVERSED = auto()
+    GRAZED = auto()
+    HELD = auto()
+    THROUGH = auto()
+    EXCURSION = auto()
+    MODE = auto()
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One of them: the switch, where (an extremum, or an event node), the side of its level that it should be
+    on, and how far it is past it, as a part of its largest value."""
+
+    breach: Breach
+    switch: int
+    at: Extremum | int
+    side: int
+    depth: float
+
+
+def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
+    """Return where an orbit violates its word; nothing where it is one of the system.
+
+    Surfaces without event nodes are on the side of `otherwise`, by default of the orbit's own farthest point.
+    """
+    return at_nodes(system, orbit) + between_nodes(system, orbit, otherwise)
+
+
+def at_nodes(system: System, orbit: Orbit) -> list[Violation]:
+    """Return the event nodes that do not pass their levels as they say."""
+    return [violation for i in range(len(orbit.phases)) for violation in _at_node(system, orbit, i)]
+
+
+def refusals(system: System, orbit: Orbit) -> list[Violation]:
+    """Return the violations for which an orbit is refused at once: at event nodes, and through impacts."""
+    impacts = [surface.switch for surface in surfaces_of(system) if surface.kind == Kind.IMPACT]
+    if not impacts:
+        return at_nodes(system, orbit)
+    dense = SwitchPolynomials(system, orbit)
+    return at_nodes(system, orbit) + [v for switch in impacts for v in _through(dense, switch)]
+
+
+def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
+    """Return the violations of the modes between event nodes; `otherwise` as in `violations`."""
+    if not system.switches:
+        return []
+    own = SwitchPolynomials(system, orbit)
+    base = own if otherwise is None else SwitchPolynomials(system, otherwise)
+    found = list[Violation]()
+    for surface in surfaces_of(system):
+        if surface.kind == Kind.IMPACT:
+            found += _excursions(own, surface.switch, -system.switches[surface.switch].direction, 1.0)
+            found += _through(own, surface.switch)
+        elif surface.kind in (Kind.KINK, Kind.JUMP):
+            found += _excursions(own, surface.switch, base.side(surface.switch), 1.0)
+        elif surface.releases is not None:
+            found += _held(own, base, surface)
+    return found
+
+
+def _excursions(
+    dense: SwitchPolynomials, switch: int, otherwise: int, most: float, breach: Breach = Breach.EXCURSION
+) -> list[Violation]:
+    """The excursions of a switch past its level that no event node tells of."""
+    sides, found = dense.expected(switch, otherwise), list[Violation]()
+    for e in dense.unseen(switch, otherwise):
+        side = int(sides[e.interval])
+        found.append(Violation(breach, switch, e, side, -side * e.value / most))
+    return found
+
+
+def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
+    """How far the orbit goes to the side of an impact's surface on which there is no motion, if it does."""
+    side = -dense.system.switches[switch].direction
+    along = dense.along(switch)
+    lowest = int((side * along.value).argmin())
+    depth = -side * float(along.value[lowest])
+    return (
+        [Violation(Breach.THROUGH, switch, along.extremum(switch, lowest), side, depth)] if depth > 0 else []
+    )
+
+
+def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
+    """Where the motion slips that should be held at a surface, or the reverse."""
+    assert surface.releases is not None
+    past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > NOISE]
+    if past:  # past a limit the motion turns back at once
+        return past
+    return [
+        violation
+        for k in (surface.switch, *surface.releases)
+        for violation in _excursions(own, k, base.side(k), largest(own, k), Breach.MODE)
+    ]
+
+
+def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
+    """Return what keeps passages of a guard from being held, and stops from slipping on, at its event nodes.
+
+    Their depths are negative as long as it does.
+    """
+    assert surface.releases is not None
+    (up, down), guard, found = surface.releases, surface.switch, list[Violation]()
+    nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
+    if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
+        return []
+    most = largest(SwitchPolynomials(system, orbit), up, down)
+    for j in nodes:
+        event, start = orbit.mesh.events[j], orbit.mesh.starts[j]
+        at = orbit.nodes[start : start + 1], orbit.phases[j : j + 1], orbit.parameter
+        d, held = event.direction, mode_after(surface, event) == STUCK
+        onward, side = up if d > 0 else down, -d if held else d
+        value = float(guards(system, *at, modes_in(system, orbit, int(start) - 1))[0, onward])
+        found.append(Violation(Breach.MODE, onward, j, side, -side * value / most))
+    return found
+
+
+def largest(dense: SwitchPolynomials, *switches: int) -> float:
+    """Return the largest value of switches along an orbit."""
+    return float(np.abs(dense.knots[:, :, list(switches)]).max()) or 1.0
+
+
+def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> list[Violation]:
+    """What an event node says to happen at once to other surfaces, and does not.
+
+    A joint that another's event tears off is released by the modes after it, and was held by those before.
+    """
+    event, start, found = orbit.mesh.events[index], int(orbit.mesh.starts[index]), list[Violation]()
+    at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
+    for k, mode in event.modes:
+        surface = surface_of(system, k)
+        if k == own.switch or surface.releases is None or surface.column is None:
+            continue
+        before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
+        release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
+        torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
+        most = largest(SwitchPolynomials(system, orbit), release)
+        if not torn and abs(before[release]) > AT_LEVEL * most:
+            found.append(Violation(Breach.MODE, k, index, mode, 1.0))
+    return found
+
+
+def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
+    """What is wrong at an event node."""
+    event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
+    surface = surface_of(system, event.switch)
+
+    def told(breach: Breach, slope: float) -> list[Violation]:
+        ahead = slope * event.direction
+        return [] if ahead > 0 else [Violation(breach, event.switch, index, event.direction, -ahead)]
+
+    if surface.kind == Kind.IMPACT:
+        return told(Breach.GRAZED, slope_before(system, orbit, index))
+    if surface.releases is not None:
+        reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
+        return reversed_there + _unforced(system, orbit, index, surface)
+    at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
+    d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
+    slope = float(d_phase + d_state @ orbit.node_rates[start])
+    return told(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+
+
+def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
+    """Return the event nodes of an orbit at which its modes change, sorted; None where it violates its word.
+
+    Where they lie is left open: on another mesh it is the same word.
+    """
+    if any(v.breach in (Breach.EXCURSION, Breach.MODE) for v in between_nodes(system, orbit)):
+        return None
+    marked = {surface.switch for surface in surfaces_of(system) if surface.kind == Kind.MARKER}
+    own = [event for event in orbit.mesh.events if event.switch not in marked]
+    return tuple(sorted(own, key=lambda event: (event.switch, event.direction, event.modes)))

@@ -1,0 +1,284 @@
+"""The Floquet multipliers of an orbit, from its fundamental matrices, computed once."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from periodic.linear.unknowns import Increment
+from periodic.orbit.scheme import Array
+
+Complex = NDArray[np.complex128]
+
+CONSERVED = 100.0
+"""A multiplier cannot be told from 1 if it is nearer to it than so many times the multipliers' error,"""
+
+ROUNDING = 1e-10
+"""... or nearer than this distance."""
+
+LOST = 0.1
+"""Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+
+
+DEPENDENT = 1e8
+"""Left eigenvectors as long as this, of right ones of unit length, are those of dependent ones."""
+
+
+STRAIGHT = 1e-8
+"""A chord whose ends lie opposite by as little as this passes through 0."""
+
+
+class Stability(Enum):
+    """What decides it: multipliers of an orbit on the unit circle, eigenvalues on the imaginary axis."""
+
+    MULTIPLIERS = "Floquet multipliers"
+    EIGENVALUES = "eigenvalues of the Jacobian"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A complex pair of multipliers: argument, modulus, distance from +1, and how far its solution w turns.
+
+    turned: the mean of the turns of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
+    that of a single component, which may pass through 0, it changes smoothly with the orbit.
+    left: left eigenvector (n,), of such a length that 2 |left x| is the most that the pair's part of a
+    disturbance, x at the beginning of the period, becomes within it; none where eigenvectors coincide.
+    place: its index among the multipliers.
+    """
+
+    argument: float
+    modulus: float
+    distance: float
+    turned: float
+    left: Complex | None = None
+    place: int = 0
+
+    def turn(self, other: Pair) -> float:
+        """Return by how much the multiplier turns to that of another orbit, whole turns included."""
+        least = other.argument - self.argument
+        return least + math.tau * round((other.turned - self.turned - least) / math.tau)
+
+    def _apart(self, other: Pair, sign: int) -> float:
+        """How far another orbit's multiplier, its conjugate for -1, and its solution turn from here."""
+        least, along = sign * other.argument - self.argument, sign * other.turned - self.turned
+        return abs(least + math.tau * round((along - least) / math.tau)) + abs(along)
+
+    def nearest(self, others: Sequence[Pair]) -> Pair:
+        """Return the member of another orbit's pairs to which this one leads."""
+        both = ((other, sign) for sign in (1, -1) for other in others)
+        found, sign = min(both, key=lambda choice: self._apart(*choice))
+        return found if sign > 0 else found.conjugate()
+
+    def conjugate(self) -> Pair:
+        """Return the pair's other member."""
+        left = None if self.left is None else self.left.conj()
+        return replace(self, argument=-self.argument, turned=-self.turned, left=left)
+
+
+FEW = 3
+"""Up to so many pairs each finds its nearest by itself sooner than all of them in arrays."""
+
+
+def nearest(pairs: Sequence[Pair], others: Sequence[Pair]) -> list[Pair]:
+    """Return the members of another orbit's pairs to which each of these leads, see `Pair.nearest`."""
+    if len(pairs) <= FEW:
+        return [pair.nearest(others) for pair in pairs]
+    own, other = (np.array([(pair.argument, pair.turned) for pair in some]) for some in (pairs, others))
+    least, along = np.moveaxis(np.concatenate([other, -other]) - own[:, None], 2, 0)
+    apart = np.abs(least + math.tau * np.round((along - least) / math.tau)) + np.abs(along)
+    chosen = map(int, apart.argmin(axis=1))
+    return [others[k] if k < len(others) else others[k - len(others)].conjugate() for k in chosen]
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Multipliers and their solutions.
+
+    Parameters
+    ----------
+    fundamental : ndarray, shape (N+1, n, n)
+        Fundamental matrices at the mesh points, the last of which is the monodromy matrix; of an equilibrium
+        the Jacobian in 1/s, shape (1, n, n).
+    trivial : int
+        How many multipliers are 1 whatever the parameters.
+    """
+
+    fundamental: Array
+    trivial: int = 0
+
+    @property
+    def monodromy(self) -> Array:
+        """The monodromy matrix, shape (n, n)."""
+        return self.fundamental[-1]
+
+    @property
+    def frame(self) -> Array | None:
+        """Orthonormal basis (coordinates, n) that the matrix is written in; None where it is the states'."""
+        return None
+
+    @cached_property
+    def _eigen(self) -> tuple[Complex, Complex]:
+        values, vectors = np.linalg.eig(self.monodromy)
+        return values.astype(np.complex128), vectors.astype(np.complex128)
+
+    @property
+    def multipliers(self) -> Complex:
+        """Eigenvalues of the monodromy matrix, shape (n,), in no order."""
+        return self._eigen[0]
+
+    @property
+    def vectors(self) -> Complex:
+        """Their eigenvectors, shape (n, n), one a column."""
+        return self._eigen[1]
+
+    @cached_property
+    def nontrivial(self) -> Complex:
+        """The multipliers without those that are 1 whatever the parameters."""
+        return without_trivial(self.multipliers, self.trivial)
+
+    @cached_property
+    def pairs(self) -> list[Pair]:
+        """A member of each complex pair of multipliers that is not 1 whatever the parameters."""
+        multipliers = self.multipliers
+        upper = multipliers.imag > 0
+        upper[np.abs(multipliers - 1).argsort()[: self.trivial]] = False
+        chosen = np.flatnonzero(upper)
+        solutions = self.fundamental @ self.vectors[:, chosen]
+        turns = _turns(solutions[:-1], solutions[1:]).sum(axis=0)
+        both = zip(map(int, chosen), turns, self._sizes(solutions, chosen), strict=True)
+        return [self._pair(k, float(turn), size) for k, turn, size in both]
+
+    def _pair(self, k: int, turned: float, size: float) -> Pair:
+        mu, left = complex(self.multipliers[k]), self._left(k)
+        left = None if left is None else left * size
+        return Pair(cmath.phase(mu), abs(mu), abs(1 - mu), turned, left, k)
+
+    def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
+        """The most that solutions (N+1, n, k), begun with the chosen eigenvectors, are within the period."""
+        return np.asarray(np.abs(solutions).max(axis=(0, 1), initial=0.0))
+
+    @cached_property
+    def _inverse(self) -> Complex | None:
+        """Left eigenvectors, one a row, with products of 1 with the right ones; None where some coincide."""
+        try:
+            found = np.linalg.inv(self.vectors).astype(np.complex128)
+        except np.linalg.LinAlgError:
+            return None
+        return found if np.abs(found).max() < DEPENDENT else None
+
+    @cached_property
+    def _triangle(self) -> tuple[Complex, Complex]:
+        """M = Q T Q* with T upper triangular."""
+        found = scipy.linalg.schur(self.monodromy, output="complex")
+        return found[0].astype(np.complex128), found[1].astype(np.complex128)
+
+    def _left(self, k: int) -> Complex | None:
+        """The left eigenvector whose product with the right one is 1; None where these coincide with others.
+
+        By itself where the others are of no use: multipliers that all but vanish have no eigenvectors of
+        their own. In T it follows from its own entry on.
+        """
+        if self._inverse is not None:
+            return np.asarray(self._inverse[k])
+        triangle, turned = self._triangle
+        values = np.diag(triangle)
+        at = int(np.abs(values - self.multipliers[k]).argmin())
+        rest = triangle[at + 1 :, at + 1 :] - values[at] * np.eye(len(values) - at - 1)
+        found = np.zeros(len(values), dtype=complex)
+        found[at] = 1.0
+        try:
+            found[at + 1 :] = scipy.linalg.solve_triangular(rest, -triangle[at, at + 1 :], trans="T")
+        except np.linalg.LinAlgError:
+            return None
+        found = found @ turned.conj().T
+        product = found @ self.vectors[:, k]
+        return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
+
+    def apart(self, monodromy: Array, operator: object = None) -> float:
+        """Return the distance from another spectrum, over the largest multiplier.
+
+        Parameters
+        ----------
+        monodromy : ndarray, shape (n, n)
+            The monodromy matrix of the other.
+        operator : Operator, optional
+            The equations that it belongs to, where these say more than their monodromy matrix.
+
+        Returns
+        -------
+        float
+            The larger one of the differences of the sums of first and second powers.
+        """
+        return apart(self.monodromy / self.radius, monodromy / self.radius)
+
+    def start(self, change: Increment) -> Array:
+        """Return the states' part of a change of the orbit at the beginning of the period.
+
+        Parameters
+        ----------
+        change : Increment
+            The change.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Scaled states.
+        """
+        return change.profile[0]
+
+    @property
+    def radius(self) -> float:
+        """The largest modulus, at least 1: what errors of multipliers are compared with."""
+        return max(1.0, float(np.abs(self.multipliers).max()))
+
+    @property
+    def known(self) -> bool:
+        """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
+        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST)
+
+
+def apart(one: Array, two: Array) -> float:
+    """Distance of two monodromy matrices in the sums of first and second powers of their multipliers.
+
+    Unlike the multipliers themselves these stay smooth where two of them meet.
+    """
+    first = abs(two.trace() - one.trace())
+    second = abs(np.vdot(two, two.T) - np.vdot(one, one.T)) / 2
+    return float(max(first, second))
+
+
+SMALLEST = float(np.finfo(float).tiny)
+"""Length below which nothing is left of a motion."""
+
+
+def _turns(begin: Complex, end: Complex) -> Array:
+    """The integral of Im(w* dw)/|w|^2 along the chords between vectors, shapes (K, n, k) and (K, k).
+
+    Where a contact reverses a velocity within an interval the chord passes between the two, not by +-pi.
+    """
+    product = (_directions(begin).conj() * _directions(end)).sum(axis=1)
+    angle = np.arccos(np.clip(product.real, -1, 1))
+    found: Array = product.imag / np.sinc(angle / np.pi).clip(STRAIGHT)
+    return found
+
+
+def _directions(vectors: Complex) -> Complex:
+    """Vectors (K, n, k) of length 1; those that have died out, and turn no more, as they are."""
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    found: Complex = vectors / np.where(size > SMALLEST, size, 1.0)
+    return found
+
+
+def without_trivial(multipliers: Complex, count: int) -> Complex:
+    """Return the multipliers without the `count` that are nearest 1."""
+    if count == 0:
+        return multipliers
+    return np.delete(multipliers, np.abs(multipliers - 1).argsort(kind="stable")[:count])

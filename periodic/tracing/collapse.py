@@ -1,0 +1,14 @@
+"""Autonomous orbits that shrink to an equilibrium: there are some of all sizes, or none."""
+
+from __future__ import annotations
+
+from periodic.correction.solution import Solution
+from periodic.orbit.orbit import Orbit
+
+COLLAPSED = 0.1
+"""An orbit that is so much smaller than its guess is not what was guessed."""
+
+
+def collapsed(guess: Orbit, found: Solution) -> bool:
+    """Whether an autonomous orbit shrank to an equilibrium: there are orbits of all sizes, or none."""
+    return found.problem.autonomous and found.orbit.span() < COLLAPSED * guess.span()

@@ -1,0 +1,185 @@
+"""Steps that end at a change of the pattern of an orbit's events, and how the branch goes on beyond it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.correction.change import Beyond, Change, Held
+from periodic.correction.condition import SideCondition
+from periodic.correction.identity import distance
+from periodic.correction.predictor import tangent
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.linear.unknowns import size_of
+from periodic.orbit.orbit import Orbit
+
+LONGER = 1.2
+"""A change of pattern that lies within so many steps is where the step ends."""
+
+LAST_INCREMENT = 1e-8
+"""Newton's last increment there, before one more step."""
+
+CHANGE_ITERATIONS = 8
+"""Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
+
+FARTHEST_BEYOND = 0.02
+"""Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
+
+STANDING = 1e-8
+"""A change that is no farther than this part of a step is at its base."""
+
+MESHES_BEYOND = 4
+"""How often the mesh of the orbit beyond a change is made anew."""
+
+CHANGES_IN_A_STEP = 8
+"""Most changes of the pattern that are tried as the first one in a step."""
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The end of a step at a change of pattern, and how far that is along the base's tangent."""
+
+    end: Solution
+    ds: float
+    change: Change
+
+
+def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
+    """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
+    guess = tangent(solver.problem, base, ds)
+    change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
+    if change is None or not change.strict or change.part > STANDING:
+        return None
+    return Reached(base, 0.0, change)
+
+
+def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, change: Change) -> Reached | None:
+    """Return the orbit at a change of pattern within a step, if one is found; `near` is a guess of it."""
+    method, system = solver.discretisation, solver.problem.system
+    for _ in range(CHANGES_IN_A_STEP):
+        guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
+        found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), CHANGE_ITERATIONS)
+        if not found.ok and change.otherwise is not None:
+            change, near = change.otherwise, None
+            continue
+        if not found.ok:
+            return None
+        along = progress(solver, base, found.orbit)
+        if not 0 < along <= LONGER * ds:
+            return None
+        if _comes_back(found, change, along <= STANDING * ds):
+            return None
+        earlier = method.change(system, base.orbit, found.orbit)
+        if earlier is None or (not change.strict and not earlier.strict):
+            return Reached(found, along, change)
+        change, near = earlier, found.orbit
+    return None
+
+
+def _comes_back(found: Solution, change: Change, at_base: bool) -> bool:
+    """Whether the branch comes back there from where its orbits are none of the system: it began before.
+
+    at_base: whether that is where the step begins. Extrema do not come and go within a step, but one that
+    touches at its begin may leave its level there.
+    """
+    row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
+    if not change.strict or (row.stages is not None and not at_base):
+        return False
+    way = found.tangent
+    ahead = np.vdot(row.nodes, way.nodes) + row.outer @ np.append(way.phases, way.parameters)
+    if row.stages is not None:
+        ahead += np.vdot(row.stages, way.stages)
+    return bool(ahead > 0)
+
+
+def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> Solution:
+    """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
+    newton = solver.tolerance.newton
+    most = min(most or newton.max_iterations, newton.max_iterations)
+    close = replace(newton, tolerance=min(LAST_INCREMENT, newton.tolerance), close=0.0, max_iterations=most)
+    return solver.on(guess, held, close)
+
+
+def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:
+    """How far an orbit on the base's mesh lies along its tangent."""
+    problem, constraint = solver.problem, solver.constraint(base.orbit, base.tangent, 0.0)
+    row = constraint.linearise(problem.system, orbit, problem.free)
+    return row.value / constraint.rate(base.tangent)
+
+
+@dataclass(frozen=True)
+class Crossed:
+    """The orbit beyond a change of pattern, its distance from the one before, and whether it touches."""
+
+    solution: Solution
+    distance: float
+    touches: bool
+
+
+def crossed(solver: Solver, at: Reached) -> Crossed | None:
+    """Return an orbit beyond a change of pattern, the first whose branch goes on the same way.
+
+    Where all of them turn back in the parameter there is a fold in between, and where one lies behind the
+    change there are two: then none is returned as long as the branch can be followed nearer to the change,
+    and in the end the nearest.
+    """
+    nearest: Crossed | None = None
+    for way in at.change.beyond(solver.problem.system, at.end.orbit):
+        if way.spare and nearest is not None and not _folded_twice(at.end, nearest.solution):
+            break
+        found = _along(solver, at, way)
+        if found is None:
+            continue
+        if _onward(at.end, found.solution):
+            return found
+        if nearest is None or found.distance < nearest.distance:
+            nearest = found
+    return nearest if at.change.final else None
+
+
+def _folded_twice(before: Solution, after: Solution) -> bool:
+    """Whether the branch turns back and on again between two orbits."""
+    return bool(before.tangent.parameter * after.tangent.parameter > 0)
+
+
+def _onward(before: Solution, after: Solution) -> bool:
+    """Whether the parameter goes on from one orbit to another as it does at both, but for their errors."""
+    way, blur = before.tangent.parameter, max(s.error.motion * abs(s.value) for s in (before, after))
+    ahead = (after.value - before.value) * np.sign(way)
+    return bool(after.tangent.parameter * way > 0 and ahead >= -blur)
+
+
+def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
+    """The orbit beyond a change on one way, if there is one near."""
+    problem, old = solver.problem, at.end.orbit
+    moved = old if way.parameter is None else replace(old, parameter=way.parameter)
+    for guess in solver.transfers(moved, way.mesh, way.phases):
+        new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
+        if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+            continue
+        apart = distance(problem, old, new.orbit) / size_of(old)
+        if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
+            return Crossed(new, apart, way.touches)
+    return None
+
+
+def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solution:
+    """Return the solution on meshes made for it, as long as it misses the tolerance.
+
+    Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
+    """
+    for _ in range(MESHES_BEYOND):
+        if not found.ok or found.error.curable <= solver.tolerance.orbit:
+            break
+        mesh = found.refinement.refined()
+        if mesh.matches(found.orbit.mesh):
+            break
+        guesses = solver.transfers(found.orbit, mesh, found.orbit.phases)
+        finer = (_held(solver, guess, Held(guess, condition)) for guess in guesses)
+        better = next((solution for solution in finer if solution.ok), None)
+        if better is None:
+            break
+        found = better
+    return found

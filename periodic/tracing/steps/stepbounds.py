@@ -1,0 +1,83 @@
+"""What bounds a step: how far the branch may turn and bend within it, and multipliers wind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from periodic.bifurcations.twoparameter import codim2
+from periodic.correction.error import LEAST_SPAN
+from periodic.correction.predictor import difference
+from periodic.correction.solution import Solution
+from periodic.linear.unknowns import Increment, size_of
+from periodic.stability.multipliers import Stability
+from periodic.stability.winding import Motion, turned
+from periodic.system import jumps_of, resets_of
+from periodic.tracing.steps.stepsize import ArclengthControl
+
+
+@dataclass(frozen=True)
+class BoundRatio:
+    """Turning, bending or winding of a step as a part of its bound; about linear in the length of the step.
+
+    size: of the step. ahead: expected of the next one, if it is as long. why: what is wrong with a step whose
+    ratio exceeds 1.
+    """
+
+    size: float
+    ahead: float
+    why: str
+
+
+def bound_ratios(
+    base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
+) -> Iterator[BoundRatio]:
+    """Yield what a step between two solutions on one mesh makes of each of its bounds, the cheapest first."""
+    metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
+    onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
+    angle = _angle(base.tangent.dot(onward, *metric), control.turn)
+    yield BoundRatio(angle, angle, "the branch turns too sharply for the step")
+    noise = control.noise * tolerance * base.orbit.span() / size_of(base.orbit)
+    bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
+    yield BoundRatio(bend, bend, "the step does not follow its tangents")
+    if new.discretisation.stability is Stability.MULTIPLIERS:
+        turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
+        yield BoundRatio(turn.ratio, turn.ahead, "a resonance may pass unseen in the step")
+    angle = _angle(codim2.alignment(base, new), control.turn)
+    yield BoundRatio(angle, angle, "the critical motion turns too far for the step")
+
+
+def _motion(solution: Solution, ds: float) -> Motion:
+    change = solution.spectrum.start(solution.tangent)
+    return Motion(solution.spectrum, ds * change / max(solution.orbit.span(), LEAST_SPAN))
+
+
+def _angle(cosine: float, least: float) -> float:
+    return math.acos(min(max(cosine, -1.0), 1.0)) / math.acos(least)
+
+
+def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
+    """How far the step's end lies from where the mean of the tangents at its ends leads."""
+    problem = base.problem
+    mean = (base.tangent + onward).scaled(-ds / 2)
+    way = difference(problem, base.orbit, new.orbit)
+    bend = Increment.of(
+        base.orbit,
+        way.nodes + mean.nodes,
+        way.stages,
+        way.algebraic,
+        way.phases + mean.phases,
+        way.parameters + mean.parameters,
+    )
+    metric = base.orbit, problem.units(base.orbit), size_of(base.orbit)
+    moving = bend.dot(bend, *metric)
+    jumping = resets_of(problem.system) or jumps_of(problem.system)  # a node passes what jumps at fixed tau
+    if not len(base.orbit.mesh.exact_ends) or jumping:
+        return float(np.sqrt(moving))
+    # an excursion's end moves as a root does, the motion at fixed tau smoothly; or, if hard, with its end
+    at = base.orbit.mesh.nodes(base.orbit.phases)
+    bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
+    return float(np.sqrt(min(moving, bend.dot(bend, *metric))))

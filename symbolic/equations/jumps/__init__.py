@@ -1,0 +1,1 @@
+"""Equations that jump, on given sides of their jumps, and motions that slide along these."""

@@ -1,0 +1,272 @@
+"""The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
+
+A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held.
+Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
+sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
+solved by Murty's rule of the least index, which ends where A is a P-matrix.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from symbolic.arrays import Array
+from symbolic.equations.expressions import Expressions
+from symbolic.equations.surfaces import MINUS, PLUS, STUCK, Kind, Surface
+from symbolic.integration.cvodes import IntegrationError
+
+Modes = tuple[int, ...]
+"""Of every surface of a system, in their order; 0 of those that have none."""
+
+HELD = (Kind.SLIDING, Kind.SLIDER)
+"""Kinds of surfaces that may be STUCK."""
+
+PIVOTS = 1000
+"""Most changes of a mode until all are consistent."""
+
+
+class Switched(Protocol):
+    """What is asked of a system that is followed from event to event."""
+
+    @property
+    def expressions(self) -> Expressions: ...
+    @property
+    def surfaces(self) -> Sequence[Surface]: ...
+    def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array: ...
+    def switch_gradient(
+        self, state: Array, phase: Array, parameter: Array, side: Array | None = None
+    ) -> tuple[Array, Array, Array]: ...
+    def reset(self, switch: int, state: Array, phase: Array, parameter: Array) -> Array: ...
+
+
+@dataclass(frozen=True)
+class Event:
+    """A change of mode along a motion.
+
+    Parameters
+    ----------
+    surface : int
+        Index of the surface among those of the system.
+    before, after : int
+        Its modes; the same at an impact.
+    phase : float
+        tau.
+    modes : tuple of int
+        Those of all surfaces afterwards.
+    """
+
+    surface: int
+    before: int
+    after: int
+    phase: float
+    modes: Modes
+
+
+@dataclass(frozen=True)
+class Guard:
+    """What is positive as long as a surface keeps its mode: a switch, times a sign."""
+
+    surface: int
+    switch: int
+    sign: int
+
+
+@dataclass(frozen=True, eq=False)
+class Switching:
+    """The modes along motions of a system at some parameters.
+
+    Parameters
+    ----------
+    system : Switched
+        The system.
+    parameter : ndarray, shape (p,)
+        SI.
+    tolerance : float
+        What is smaller than this is at rest.
+    """
+
+    system: Switched
+    parameter: Array
+    tolerance: float
+
+    @property
+    def surfaces(self) -> Sequence[Surface]:
+        """Those of the system."""
+        return self.system.surfaces
+
+    def side(self, modes: Modes) -> Array:
+        """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
+        found = np.zeros(self.system.expressions.sided.side.numel())
+        for surface, mode in zip(self.surfaces, modes, strict=True):
+            if surface.kind in HELD and surface.column is not None:
+                found[surface.column] = mode
+        return found
+
+    def guards(self, modes: Modes) -> list[Guard]:
+        """Return what is positive in some modes."""
+        found = []
+        for i, (surface, mode) in enumerate(zip(self.surfaces, modes, strict=True)):
+            if mode == STUCK and surface.releases is not None:
+                up, down = surface.releases
+                found += [Guard(i, up, -1), Guard(i, down, 1)]
+            elif mode:
+                found.append(Guard(i, surface.switch, mode))
+        return found
+
+    def values(self, guards: Sequence[Guard], modes: Modes, phase: Array, state: Array) -> Array:
+        """Return guards along a motion, (N, guards)."""
+        signs = np.array([guard.sign for guard in guards])
+        return self._switches(modes, phase, state)[:, [guard.switch for guard in guards]] * signs
+
+    def begin(self, tau: float, state: Array) -> tuple[Array, Modes]:
+        """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
+        values = self._at((0,) * len(self.surfaces), tau, state)
+        modes = tuple(self._first(surface, values) for surface in self.surfaces)
+        return self.consistent(modes, tau, state)
+
+    def _first(self, surface: Surface, values: Array) -> int:
+        """The mode of a surface as its guard has it."""
+        if surface.kind in (Kind.JUMP, Kind.RELAY, Kind.MARKER):
+            return 0
+        if surface.kind == Kind.IMPACT:
+            return PLUS
+        rate = values[surface.switch]
+        way = PLUS if rate >= 0 else MINUS
+        if surface.kind == Kind.SLIDER and surface.releases is not None:
+            up, down = (values[k] for k in surface.releases)
+            slips = up >= -self.tolerance and rate > 0 or down <= self.tolerance and rate < 0
+            return way if slips else STUCK
+        return STUCK if surface.kind == Kind.SLIDING and abs(rate) <= self.tolerance else way
+
+    def passed(self, fallen: Sequence[Guard], modes: Modes, tau: float, state: Array) -> tuple[Array, Modes]:
+        """Return state and modes after an event at which some guards have fallen to 0."""
+        new, tossed = list(modes), set()
+        for guard in fallen:
+            surface, mode = self.surfaces[guard.surface], modes[guard.surface]
+            if surface.kind == Kind.IMPACT:
+                state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
+                new = self._turned(new, tau, state)
+            elif surface.kind == Kind.KINK:
+                new[guard.surface] = -mode
+            else:
+                new[guard.surface] = -guard.sign if mode == STUCK else STUCK
+                tossed |= {guard.surface} if mode == STUCK else set()
+        return self.consistent(tuple(new), tau, state, tossed)
+
+    def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
+        """The modes after an impact, which may turn what slips and tear off what is held."""
+        values, found = self._at(tuple(modes), tau, state), list(modes)
+        for i, surface in enumerate(self.surfaces):
+            rate = values[surface.switch]
+            if surface.kind == Kind.SLIDING:
+                slips = abs(rate) > self.tolerance
+                found[i] = (PLUS if rate > 0 else MINUS) if slips else STUCK
+            elif surface.kind == Kind.SLIDER and modes[i] != STUCK and modes[i] * rate < 0:
+                found[i] = STUCK
+        return found
+
+    def consistent(
+        self, modes: Modes, tau: float, state: Array, tossed: Collection[int] = ()
+    ) -> tuple[Array, Modes]:
+        """Return modes in which what is at rest sticks or begins to slip, and the state at rest or limits.
+
+        Parameters
+        ----------
+        modes : tuple of int
+            To begin with.
+        tau : float
+            Phase.
+        state : ndarray, shape (n,)
+            State.
+        tossed : collection of int
+            Surfaces that have just begun to slip.
+
+        Raises
+        ------
+        IntegrationError
+            Where no modes are consistent.
+        """
+        for _ in range(PIVOTS):
+            values, changed = self._at(modes, tau, state), None
+            for i, surface in enumerate(self.surfaces):
+                if surface.kind != Kind.SLIDING or i in tossed or changed is not None:
+                    continue
+                if modes[i] == STUCK or abs(values[surface.switch]) <= self.tolerance:
+                    wanted = _mode(surface, values, modes[i])
+                    changed = (i, wanted) if wanted != modes[i] else None
+            if changed is None:
+                return self._placed(modes, tau, state), modes
+            modes = (*modes[: changed[0]], changed[1], *modes[changed[0] + 1 :])
+        raise IntegrationError(f"no joints were found that stick after tau = {tau:.6g}", tau)
+
+    def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
+        """The nearest state at which what sticks is at rest, and what is carried at its limit."""
+        rows = []
+        for surface, mode in zip(self.surfaces, modes, strict=True):
+            if surface.kind == Kind.SLIDING and mode == STUCK:
+                rows.append(surface.switch)
+            elif surface.kind == Kind.SLIDER and mode != STUCK and surface.releases is not None:
+                rows.append(surface.releases[0 if mode == PLUS else 1])
+        if not rows:
+            return state
+        side, at = self.side(modes)[None], np.array([tau])
+        value = self._at(modes, tau, state)[rows]
+        gradient = self.system.switch_gradient(state[None], at, self.parameter, side)[0][0, rows]
+        for row, k in enumerate(rows):  # a limit is met by its slider alone
+            for held in self.system.expressions.sliders.values():
+                if k in held.releases:
+                    own = gradient[row, held.place]
+                    gradient[row], gradient[row, held.place] = 0.0, own
+        return np.asarray(state - np.linalg.pinv(gradient) @ value)
+
+    def _at(self, modes: Modes, tau: float, state: Array) -> Array:
+        return self._switches(modes, np.array([tau]), state[None])[0]
+
+    def _switches(self, modes: Modes, phase: Array, state: Array) -> Array:
+        side = np.repeat(self.side(modes)[None], len(phase), axis=0)
+        return self.system.switch(state, phase, self.parameter, side)
+
+    def along(
+        self, tau: float, state: Array, crossings: Sequence[tuple[int, float, float]]
+    ) -> tuple[Event, ...]:
+        """Return the events of a motion through kinks and impacts alone.
+
+        Parameters
+        ----------
+        tau : float
+            Phase where it begins.
+        state : ndarray, shape (n,)
+            State there.
+        crossings : sequence of tuple
+            Switch, phase, and the rate with which it passes.
+        """
+        modes, found = self.begin(tau, state)[1], []
+        places = {surface.switch: i for i, surface in enumerate(self.surfaces)}
+        for switch, phase, rate in crossings:
+            i = places[switch]
+            impact = self.surfaces[i].kind == Kind.IMPACT
+            after = PLUS if impact or rate > 0 else MINUS
+            modes = (*modes[:i], after, *modes[i + 1 :])
+            found.append(Event(i, after if impact else -after, after, phase, modes))
+        return tuple(found)
+
+    def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
+        """Return what has happened to the surfaces: changes of mode, and impacts."""
+        struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
+        each = enumerate(zip(before, after, strict=True))
+        return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
+
+
+def _mode(surface: Surface, values: Array, mode: int) -> int:
+    """The mode of what is at rest, by its releases; as it is where it is consistent."""
+    assert surface.releases is not None
+    up, down = (values[k] for k in surface.releases)
+    if up < 0 < down:
+        return STUCK
+    if mode == PLUS and up >= 0 or mode == MINUS and down <= 0:
+        return mode
+    return PLUS if up >= 0 else MINUS

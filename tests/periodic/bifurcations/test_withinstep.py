@@ -1,0 +1,71 @@
+"""A second change of sign within a step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from periodic.bifurcations import locate, testfunction
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.withinstep import RejectedError, WithinStep, _through, second_change
+
+
+class Line:
+    """Stands for a step whose solutions are their distances."""
+
+    root = WithinStep.root
+
+    def __init__(self, *given: object) -> None:
+        self.given = given
+
+    def at(self, distance: float) -> Any:
+        """A solution that tells its distance."""
+        return SimpleNamespace(place=distance, once=lambda function: function(self.at(distance)))
+
+
+def named(value: Callable[[Any], float]) -> testfunction.TestFunction:
+    """A test function of that value."""
+    return testfunction.TestFunction(label=Label.USER, value=value, precision=1e-12)
+
+
+@pytest.mark.parametrize("zero", [-0.01, 0.03, 0.3])
+def test_special_point_is_found_again(zero: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the zero of a test function within half a step of where it was on a coarser mesh."""
+    monkeypatch.setattr(locate, "WithinStep", Line)
+    test = named(lambda at: at.place - zero)
+    assert locate._again(Line(), Line().at(0.0), 1.0, test).place == pytest.approx(zero, abs=1e-11)  # type: ignore[arg-type, attr-defined]
+
+
+def test_special_point_that_is_lost_is_not_looked_for_afar(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the step is rejected where the test function has no zero within half a step."""
+    monkeypatch.setattr(locate, "WithinStep", Line)
+    test = named(lambda at: at.place - 0.8)
+    with pytest.raises(RejectedError, match="not found again"):
+        locate._again(Line(), Line().at(0.0), 1.0, test)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("end", [0.0, 1.0])
+def test_what_is_expected_at_an_end_is_known(end: float) -> None:
+    """Assert that a pair of multipliers that passes just at an end of a step is not looked for there."""
+    assert second_change(lambda place: 1.0 + place, {0.0: 1.0, 1.0: 2.0}, end) is None
+
+
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.9])
+def test_dip_below_zero_is_found(place: float) -> None:
+    """Assert that a parabola's dip is found from wherever it is expected."""
+
+    def value(at: float) -> float:
+        return (at - 0.4) ** 2 - 0.01
+
+    found = second_change(value, {0.0: value(0.0), 1.0: value(1.0)}, place)
+    assert found is not None and value(found) < 0
+
+
+def test_parabola_through_three_points() -> None:
+    """Assert the values at points that are not evenly spaced, to rounding."""
+    at, values = [0.5, 1.0, 2.5], [3.0, -1.0, 0.25]
+    assert _through(at, values)(np.array(at)) == pytest.approx(values, rel=1e-14)
