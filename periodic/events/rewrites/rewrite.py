@@ -22,7 +22,7 @@ from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
 from periodic.events.rewrites.sites import Site, index_of, rewritten
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
-from periodic.events.sideconditions import Length, Limit, Speed
+from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
 from periodic.orbit.mesh import EventNode, Mesh
@@ -170,7 +170,8 @@ class Ends:
         jump = sliding(system, own.switch)
         if jump is not None and not own.row.touches:
             left = SHORT_OF * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
-            held = replace(held, level=left)  # type: ignore[type-var]
+            assert isinstance(held, Clearance | Limit)
+            held = replace(held, level=left)
         if isinstance(held, Limit):
             changed = dict(own.replaced)
             event = changed.get(held.node, orbit.mesh.events[held.node])
