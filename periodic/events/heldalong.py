@@ -11,6 +11,18 @@ from periodic.orbit.scheme import Array
 from periodic.system import HELD, STUCK, System, surfaces_of
 
 
+def still(
+    system: System, modes: tuple[tuple[int, int], ...], events: tuple[EventNode, ...]
+) -> tuple[tuple[int, int], ...]:
+    """Return the modes all along of surfaces that none of some event nodes changes."""
+    changed = {
+        surface.switch
+        for surface in surfaces_of(system)
+        if any(mode_after(surface, event) is not None for event in events)
+    }
+    return tuple(pair for pair in modes if pair[0] not in changed)
+
+
 def all_along(
     system: System, orbit: Orbit, events: tuple[EventNode, ...]
 ) -> tuple[tuple[tuple[int, int], ...], Array | None]:
@@ -19,7 +31,7 @@ def all_along(
     What slips no more is held where it is: that is its place from there on. The parameters are None where
     none has changed.
     """
-    modes, parameter = dict(orbit.mesh.modes), orbit.parameter.copy()
+    modes, parameter = dict(still(system, orbit.mesh.modes, events)), orbit.parameter.copy()
     for surface in surfaces_of(system):
         had = any(mode_after(surface, event) is not None for event in orbit.mesh.events)
         has = any(mode_after(surface, event) is not None for event in events)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from periodic.correction.change import Beyond, Change
 from periodic.correction.condition import SideCondition
-from periodic.events.heldalong import all_along
+from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
@@ -86,6 +86,7 @@ class Begins:
                 if inconsistency(system, events):
                     continue
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+                mesh = replace(mesh, modes=still(system, orbit.mesh.modes, events))
                 begin = index_of(events, phases, chosen[0].begin(orbit, size), orbit)
                 held = self._held(system, orbit, begin, size)
                 yield Beyond(mesh, phases, held, touches=False, spare=size in row.spare)
