@@ -26,9 +26,9 @@ MOST_STATES = 60
 
 _SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
 
-_SIZES = ("count", "ncol", "n", "m", "k", "parameters", "switches", "exact", "free", "most")
-_MARKS = ("segment", "starts", "switch_of", "ends")
-_MESH = ("left", "width", "left_gradient", "width_gradient", "levels")
+_SIZES = ("count", "ncol", "n", "m", "k", "e", "parameters", "switches", "exact", "free", "most")
+_MARKS = ("segment", "starts", "switch_of", "ends", "ties")
+_MESH = ("left", "width", "left_gradient", "width_gradient", "tied_left", "tied_width", "levels")
 _SCHEME = ("points", "differentiation", "end", "weights")
 _SYSTEM = ("rows", "move", "switch_values", "switch_slopes")
 _CONSTRAINT = ("weighted", "origin_nodes")
@@ -139,13 +139,14 @@ def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
     """A call with what belongs to a mesh and its scheme, and the arrays that it has addresses of."""
     if mesh not in _meshes:
         segment, left, width = mesh.segments
-        marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends)
-        numbers = (left, width, *mesh.gradients, np.array([event.level for event in mesh.events]))
+        marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends, mesh.ties)
+        numbers = (left, width, *mesh.gradients, *mesh.tie_gradients, np.array([event.level for event in mesh.events]))
         scheme = mesh.scheme
         of_scheme = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
         kept: list[Any] = [np.array(mark, dtype=np.intp) for mark in marks]
         kept += map(plain, (*numbers, *of_scheme))
         call = Call(count=mesh.ntst, ncol=scheme.ncol, k=len(mesh.events), exact=len(mesh.exact_ends))
+        call.e = mesh.ties.shape[1]
         for name, array in zip((*_MARKS, *_MESH, *_SCHEME), kept, strict=True):
             setattr(call, name, address(array))
         call.period, call.growth, call.growing = mesh.period, GROWTH, GROWING

@@ -25,10 +25,10 @@ struct change {
 
 /* As `periodic.collocation.native.call.Call` is filled. */
 struct call {
-    whole count, ncol, n, m, k, parameters, switches, exact;        /* sizes; exact: intervals before kinks */
+    whole count, ncol, n, m, k, e, parameters, switches, exact;     /* sizes; exact: intervals before kinks */
     whole free, most;                                               /* the free parameter, iterations allowed */
-    const whole *segment, *starts, *switch_of, *ends;               /* of the mesh */
-    const double *left, *width, *left_gradient, *width_gradient, *levels;
+    const whole *segment, *starts, *switch_of, *ends, *ties;        /* of the mesh */
+    const double *left, *width, *left_gradient, *width_gradient, *tied_left, *tied_width, *levels;
     const double *points, *differentiation, *end, *weights;         /* of the scheme */
     rows_at *rows;                                                  /* of the system */
     move_to *move;
@@ -66,12 +66,12 @@ static double *taken(double **from, whole size)
 static double *lay_out(const struct call *c, struct room *r)
 {
     const whole n = c->n, m = c->m, k = c->k, rows = n + m, points = c->count * c->ncol;
-    const whole w = 2 + n + k, w1 = w + n, ends = (c->count + 1) * n, last = n + k + 1;
+    const whole wide = 2 + n + k, w = 2 + n + c->e, w1 = w + n, ends = (c->count + 1) * n, last = n + k + 1;
     const whole zeroed = points * rows * (2 * n + m + 3) + c->switches * (2 + n + c->parameters);
     const whole room = (c->ncol * n + m) * w1 + m * (m + w1) + c->ncol * n * (c->ncol * n + w + 1)
                        + 3 * c->ncol * c->ncol;
     const whole other = 2 * c->count + 2 * c->count * (c->ncol + 1) * n + points * (1 + 2 * n + 2 * m) + 2 * ends
-                        + c->count * n * w + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + w + 2 * (ends + points * rows + k + 1) + 4 * n;
+                        + c->count * n * wide + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + 2 * wide + 2 * (ends + points * rows + k + 1) + 4 * n;
     double *all = malloc((zeroed + other) * sizeof(double)), *next = all;
     if (!all)
         return NULL;
@@ -97,12 +97,12 @@ static double *lay_out(const struct call *c, struct room *r)
     r->shift = taken(&next, points * m);
     r->origin = taken(&next, ends);
     r->origin_rate = taken(&next, ends);
-    r->step = taken(&next, c->count * n * w);
+    r->step = taken(&next, c->count * n * wide);
     r->stage_map = taken(&next, points * n * w);
     r->algebraic_map = taken(&next, points * m * w1);
     r->bordered = taken(&next, last * (last + 2));
     r->work = taken(&next, room);
-    r->few = taken(&next, n + c->ncol + 1 + w);
+    r->few = taken(&next, n + c->ncol + 1 + 2 * wide);
     r->kept = taken(&next, 2 * (ends + points * rows + k + 1));
     r->marks = (whole *)taken(&next, 4 * n);
     return all;
@@ -291,9 +291,9 @@ static void spread(const struct call *c, struct room *r, double constant, const 
         to->nodes[i] = sum;
     }
     memcpy(to->outer, given + 1 + n, (k + 1) * sizeof(double));
-    recover(c->count, c->ncol, n, c->m, k + 1, constant, r->stage_map, r->algebraic_map,
+    recover(c->count, c->ncol, n, c->m, k, c->e, 1, constant, c->ties, r->stage_map, r->algebraic_map,
             c->differentiation + c->ncol + 1, r->width, to->nodes, to->outer, to->stages, to->algebraic,
-            given + w);
+            given + w, given + w + n);
 }
 
 static double largest(whole count, const double *values, double so_far)
@@ -356,9 +356,9 @@ static int linearised(struct call *c, struct room *r)
     if (code != DONE)
         return code;
     evaluate(c, r);
-    code = eliminate_stages(c->count, c->ncol, n, c->m, k, 1, r->residual, r->d_rate, r->d_state,
-                            r->d_algebraic, r->d_phase, r->d_parameter, r->width, c->left_gradient,
-                            c->width_gradient, c->points, c->differentiation + c->ncol + 1, c->end, r->knots,
+    code = eliminate_stages(c->count, c->ncol, n, c->m, k, c->e, 1, c->ties, r->residual, r->d_rate, r->d_state,
+                            r->d_algebraic, r->d_phase, r->d_parameter, r->width, c->tied_left, c->tied_width,
+                            c->points, c->differentiation + c->ncol + 1, c->end, r->knots,
                             r->rates, c->nodes, r->step, r->stage_map, r->algebraic_map, &c->residual, r->work,
                             r->marks);
     if (code != DONE)
