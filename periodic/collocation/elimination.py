@@ -11,13 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.native.elimination import Routines, routines
 from periodic.collocation.residual import eliminate, evaluated, rows_of
-from periodic.events.impacts import applied
+from periodic.events.impacts import applied, perturbed
 from periodic.events.impacts import jumps as jumps_of
 from periodic.linear.bordering import Chain
 from periodic.linear.kinematic import kinematic, solve
@@ -30,12 +31,12 @@ from periodic.system import LinearisationLike, System
 
 @dataclass(frozen=True)
 class EliminatedStages:
-    """Maps from (1, dx_j, dy), width w = 1+n+q, q = k+p: step (N, n, w), from k phases and p parameters.
+    """Maps from (1, dx_j, dy), width w = 1+n+k+p: step (N, n, w), of k phases and p parameters.
 
-    Those of what is inside take the phases of `Mesh.ties` alone, e in place of k: stages (N, ncol, n, 1+n+e+p)
-    maps (1, dx_j, dy), algebraic (N, ncol, m, 1+2n+e+p) maps (1, d rate, d state, dy) to -dz. residual is the
-    largest one; perturbed (N, n, n+q) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
-    `periodic.linear.bordering.Eliminated`.
+    What is inside follows from the phases of `Mesh.ties` alone, e in place of k: stages
+    (N, ncol, n, 1+n+e+p), and algebraic (N, ncol, m, 1+2n+e+p), which maps (1, d rate, d state, dy) to -dz.
+    residual is the largest one. jumps are where the state or its rates jump, arriving (jumps, n, w) the steps
+    up to there. Fulfils `periodic.linear.bordering.Eliminated`.
     """
 
     orbit: Orbit
@@ -44,7 +45,16 @@ class EliminatedStages:
     algebraic: Array
     residual: float
     compiled: Routines | None = None
-    perturbed: Array | None = None
+    jumps: Sequence[Jump] = ()
+    arriving: Array | None = None
+
+    @cached_property
+    def perturbed(self) -> Array | None:
+        """Steps (N, n, n+p) of perturbations at fixed tau; None where `step` has them.
+
+        Raises numpy.linalg.LinAlgError where a jump has no rates.
+        """
+        return None if self.arriving is None else perturbed(self.orbit, self.step, self.arriving, self.jumps)
 
     @property
     def origin(self) -> NDArray[np.int_]:
@@ -93,8 +103,10 @@ def eliminate_stages(
     matrix is singular.
     """
     smooth = _eliminate(system, orbit, line)
-    step, perturbed = applied(orbit, smooth.step, jumps)
-    return replace(smooth, step=step, perturbed=perturbed)
+    if not jumps:
+        return smooth
+    arriving = smooth.step[[jump.interval for jump in jumps]]
+    return replace(smooth, step=applied(orbit, smooth.step, jumps), jumps=jumps, arriving=arriving)
 
 
 def _eliminate(system: System, orbit: Orbit, line: LinearisationLike) -> EliminatedStages:

@@ -140,7 +140,8 @@ def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
     if mesh not in _meshes:
         segment, left, width = mesh.segments
         marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends, mesh.ties)
-        numbers = (left, width, *mesh.gradients, *mesh.tie_gradients, np.array([event.level for event in mesh.events]))
+        levels = np.array([event.level for event in mesh.events])
+        numbers = (left, width, *mesh.gradients, *mesh.tie_gradients, levels)
         scheme = mesh.scheme
         of_scheme = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
         kept: list[Any] = [np.array(mark, dtype=np.intp) for mark in marks]
