@@ -127,7 +127,7 @@ class Chain:
             found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
             if self.growth <= LARGEST_FUNDAMENTAL:
                 return found
-        return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
+        return np.array(list(accumulate(self.steps, after_bounded, initial=np.eye(self.steps.shape[1]))))
 
     @cached_property
     def growth(self) -> float:
@@ -256,8 +256,8 @@ def between_any(steps: Array) -> float:
     return largest
 
 
-def _after_bounded(before: Array, step: Array) -> Array:
-    """A product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
+def after_bounded(before: Array, step: Array) -> Array:
+    """Return the product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
     product = step @ before
     size = float(np.abs(product).max())
     return product if size <= LARGEST_FUNDAMENTAL else product * (LARGEST_FUNDAMENTAL / size)
