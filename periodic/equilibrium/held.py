@@ -23,9 +23,10 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import difference_step
 
-DIFFERENCE_STEP = 1e-5
-"""Step of central differences in scaled states, and in parameters as a part of their size."""
+STEP = difference_step(order=2)
+"""Of central differences in scaled states, and in parameters as a part of their size."""
 
 NEUTRAL = 1e-6
 """Sum of two real eigenvalues, in parts of their sizes, that is 0."""
@@ -98,8 +99,8 @@ def _gathered(
     rows = rows_at(system, orbit, free)
     steps = np.concatenate(
         [
-            np.full(n + m, DIFFERENCE_STEP),
-            DIFFERENCE_STEP * np.maximum(np.abs(orbit.parameter[list(free)]), DIFFERENCE_STEP),
+            np.full(n + m, STEP),
+            STEP * np.maximum(np.abs(orbit.parameter[list(free)]), STEP),
         ]
     )
 

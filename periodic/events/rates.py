@@ -8,12 +8,7 @@ from periodic.events.modes import linearise
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
-
-ITERATIONS = 4
-"""Newton steps; one is enough where the equations are linear in rates and unknowns."""
-
-CLOSE = 1e-14
-"""Relative change that is none."""
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 
 def rate_at(
@@ -24,12 +19,12 @@ def rate_at(
     Raises numpy.linalg.LinAlgError where the equations do not determine it.
     """
     n, found = x.shape[1], np.append(rate, algebraic)[None]
-    for _ in range(ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         line = linearise(system, found[:, :n], x, found[:, n:], phase, orbit.parameter, side[None])
         matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
         change = np.linalg.solve(matrix, line.residual[0])
         found = found - change
-        if np.abs(change).max() <= CLOSE * (1 + np.abs(found).max()):
+        if np.abs(change).max() <= CONVERGED * (1 + np.abs(found).max()):
             break
     return found[0, :n]
 

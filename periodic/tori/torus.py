@@ -13,9 +13,9 @@ from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.results.point import Point
 from periodic.system import Flowing, System, check_system, index_of
+from periodic.system.precision import MOST_ITERATIONS
 from periodic.tori.invariant import Invariance, Torus, moved, phase_row, tail_of, unknowns
 
-NEWTON = 8
 FIRST = 0.02
 """Amplitude of the first torus, in those of the scaled states."""
 
@@ -174,7 +174,7 @@ class Family:
         values = unknowns(guess, self._free)
         along = phase_row(guess)
         origin = unknowns(phase, self._free)
-        for _ in range(NEWTON):
+        for _ in range(MOST_ITERATIONS):
             torus = moved(guess, self._free, values)
             try:
                 residual, jacobian = self._equations.linearise(torus)

@@ -12,15 +12,13 @@ from periodic.orbit.construction import constant
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
+from periodic.system.precision import MOST_ITERATIONS
 
 PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
 """At which what excites is averaged."""
 
 BALANCED = 1e-9
 """Scaled residual, over the largest of states and unknowns, below which a system is at rest."""
-
-LOAD_ITERATIONS = 12
-"""Newton iterations for a load."""
 
 LEAST_LOAD_STEP = 1e-4
 """Smallest part of the load that is added at once."""
@@ -104,7 +102,7 @@ def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
 def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
     """Return where the rows have a value, by Newton's method; None where it does not converge."""
     before = np.inf
-    for _ in range(LOAD_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         residual, jacobian = balance.rows(point)
         residual = residual - load
         size = np.abs(residual).max(initial=0.0)
