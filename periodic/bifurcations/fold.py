@@ -10,11 +10,11 @@ from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import size_of
 
-VERTICAL = 1e-10
+LEAST_SLOPE = 1e-10
 """Slopes smaller than this, in ranges of the parameter, are rounding."""
 
 
-STEEP = 1e-5
+VERTICAL = 1e-5
 """Slopes smaller than this, in ranges of the parameter, are those of a turn or of a vertical stretch."""
 
 REACH = 0.005
@@ -24,7 +24,7 @@ REACH = 0.005
 def slope(solution: Solution) -> float:
     """d parameter / d arclength; 0 where the branch is vertical."""
     found = solution.tangent.parameter
-    return found if abs(found) > VERTICAL * solution.problem.scale else 0.0
+    return found if abs(found) > LEAST_SLOPE * solution.problem.scale else 0.0
 
 
 def turns_twice(base: Solution, new: Solution) -> bool:
@@ -60,8 +60,8 @@ def turns(base: Solution, new: Solution, ds: float) -> bool:
 
 def _blur(base: Solution, new: Solution) -> float:
     scale = base.problem.scale
-    if max(abs(end.tangent.parameter) for end in (base, new)) > STEEP * scale:
-        return VERTICAL * scale
+    if max(abs(end.tangent.parameter) for end in (base, new)) > VERTICAL * scale:
+        return LEAST_SLOPE * scale
     return max(end.error.blur(end.value, scale) for end in (base, new))
 
 

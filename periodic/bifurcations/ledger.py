@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from periodic.bifurcations.doubling import known as known_spectrum
-from periodic.bifurcations.fold import STEEP
+from periodic.bifurcations.fold import VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
@@ -111,7 +111,7 @@ class Entry:
             return {n + side * crossing for n in before for side in (-1, 1)}
         few = self.beside
         more = {count + crossing for count in few}
-        stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
+        stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= VERTICAL)  # mu touches 1
         up, down = {n + crossing for n in before & few}, {n - crossing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
@@ -204,7 +204,7 @@ def _turned(last: Entry, entry: Entry) -> bool:
     """Whether the parameter does not go from one point to the next as it does at both."""
     moved = entry.value - last.value
     way = [moved] if abs(moved) > max(last.blur, entry.blur) else []
-    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > STEEP]
+    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > VERTICAL]
     return len({bool(direction > 0) for direction in way}) > 1
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations.branchcrossing import crossing
-from periodic.bifurcations.fold import FOLD, moves, turns
+from periodic.bifurcations.fold import FOLD, VERTICAL, moves, turns
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
@@ -23,9 +23,6 @@ from periodic.bifurcations.withinstep import TRIALS, RejectedError, WithinStep, 
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import refined
-
-STANDING = 1e-5
-"""A branch that begins with so small a part of its later slope begins at a turn."""
 
 SHORTER = 0.9
 """A step that would end at a special point is taken so much shorter: then it lies within the next."""
@@ -60,7 +57,7 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). Raises RejectedError.
     """
     within = WithinStep(solver, base, {0.0: base, ds: new}, ds)
-    from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
+    from_turn = abs(base.tangent.parameter) < VERTICAL * abs(new.tangent.parameter)
     folds = [] if from_turn else _folds(within, new, ds, sought)
     begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
     pieces = [begin, *folds, Found(Label.NONE, ds, new)]

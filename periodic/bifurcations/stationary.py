@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.bifurcations.fold import VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
@@ -22,9 +23,6 @@ CONSERVED = 1e-12
 
 LIGHT = 0.1
 """Damping ratio below which a pair may cross the imaginary axis and come back within a step."""
-
-VERTICAL = 1e-5
-"""A branch of smaller slope, in ranges of the parameter, turns."""
 
 
 def hopf(solution: Solution) -> float:

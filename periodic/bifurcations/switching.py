@@ -20,15 +20,12 @@ from periodic.equilibrium.linearise import linearise
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.mesh import Mesh
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
 FIRST_DISTANCE = 0.02
 """Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
-
-NO_SIZE = 1e-6
-"""Orbits that are smaller than this (scaled) stay at rest; states of order one then tell how far that is."""
 
 
 class SwitchError(ArithmeticError):
@@ -186,7 +183,7 @@ def switched(
     """
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     size = origin.span()
-    length = FIRST_DISTANCE * (size if size > NO_SIZE else 1.0) if distance is None else distance
+    length = FIRST_DISTANCE * (size if size > LEAST_SPAN else 1.0) if distance is None else distance
     parameters = np.append(direction.parameter, np.zeros(len(determined)))
     unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
     direction = replace(direction, parameters=parameters).scaled(unit)

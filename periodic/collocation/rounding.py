@@ -14,8 +14,8 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
+from periodic.system.precision import EPSILON
 
-EPSILON = float(np.finfo(float).eps)
 TERMS = 4
 """Largest error of a switch at its level, in roundings of the terms that cancel in it."""
 

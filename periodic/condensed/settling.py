@@ -28,7 +28,7 @@ FINE = 4096
 BRIEF = 0.01
 """Length (rad) of slips between two stretches of sticking that may be none."""
 
-PERIODS = 60
+PERIODS = 100
 """Most periods that a motion is given to settle."""
 
 STILL = 1e-3

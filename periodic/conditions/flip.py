@@ -11,16 +11,13 @@ from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain
 from periodic.linear.unknowns import mean_weights
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS, difference_step
 
 MONODROMY_STEP = difference_step(order=4, derivative=2)
 """Length of the differences, which are of fourth order, as a part of the motion q."""
-
-NO_SIZE = 1e-6
-"""Orbits that are smaller than this (scaled) are at rest; states of order one are the unit then."""
 
 
 def flip_coefficient(system: System, orbit: Orbit) -> float:
@@ -64,7 +61,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     fundamental = chain(eliminated(system, orbit, ()))[:, :, 1:]
     A = fundamental[-1]
     q, p = _critical(A), _critical(A.T)
-    size = orbit.span() if orbit.span() > NO_SIZE else 1.0
+    size = orbit.span() if orbit.span() > LEAST_SPAN else 1.0
     motion = np.einsum("j,jn->", mean_weights(orbit), (fundamental @ q) ** 2)
     q = q * size / np.sqrt(motion)
     if abs(p @ q) < CONVERGED * np.linalg.norm(p) * np.linalg.norm(q):

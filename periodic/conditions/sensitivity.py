@@ -12,10 +12,9 @@ from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import smooth
 from periodic.conditions.variations import equations
 from periodic.correction.condition import Condition, side_conditions
-from periodic.correction.error import LEAST_SPAN
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 

@@ -8,20 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from periodic.correction.error import LEAST_SPAN
+from periodic.correction.error import AT_WORST
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import metric_weights
-from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import resets_of
 
 SHIFTS = 64
 """How many phases are tried for the least distance of two autonomous orbits."""
-
-KEPT = 30.0
-"""How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
 
 DISTINCT = 0.05
 """Orbits as far apart, in peaks to peak, are two."""
@@ -32,7 +29,7 @@ ALONG = 0.05
 
 def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
-    part = min(KEPT * max(a.error.worst, solver.tolerance.orbit), DISTINCT)
+    part = min(AT_WORST * max(a.error.worst, solver.tolerance.orbit), DISTINCT)
     allowed = part * max(a.orbit.span(), LEAST_SPAN)
     return distance(solver.problem, a.orbit, b.orbit, FORCED * later) <= allowed
 

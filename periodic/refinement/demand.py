@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.correction.error import ROUNDED, SAFETY, ErrorEstimate
+from periodic.correction.error import SAFETY, ErrorEstimate
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import SPLIT, density
+from periodic.system.precision import EPSILON
 
 AIM = 0.1
-"""The part of the tolerance that a new mesh aims at."""
+"""The part of the tolerance that a new mesh aims at, for the orbit and for the multipliers."""
 
 CLOSER = 0.03
 """The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
 
-SHARED = 0.1
-"""The same for the multipliers, to whose error each interval adds its share."""
-
-ROUNDING = 1e4 * float(np.finfo(float).eps)
+ROUNDING = 1e4 * EPSILON
 """What all shares may add up to by rounding, over the largest multiplier: as small ones ask for nothing,"""
 
 FAINT = 1e-3
@@ -41,8 +39,8 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     """
     if error.shares is None or not np.isfinite(error.worst):
         return None
-    largest = error.multiplier - error.by_orbit if error.multiplier > ROUNDED * error.rounding else 0.0
-    goal, total = SHARED * tolerance / SAFETY, float(error.shares.sum())
+    largest = error.multiplier - error.by_orbit if error.multiplier > SAFETY * error.rounding else 0.0
+    goal, total = AIM * tolerance / SAFETY, float(error.shares.sum())
     part = error.shares / total * max(largest, 0.0) / goal * len(error.shares) if total > 0 else error.shares
     ncol = orbit.mesh.scheme.ncol
     pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))

@@ -12,18 +12,16 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName
-from periodic.correction.error import ErrorEstimate
+from periodic.correction.error import AT_WORST, ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import CONSERVED, LOST, ROUNDING, without_trivial
+from periodic.system.precision import EPSILON
 
 SHOWN = 8
 """Multipliers that a notebook shows."""
-
-NOISE = 30.0
-"""How much larger than its estimate the error of a small multiplier may be."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -121,10 +119,10 @@ class Point:
     def floor(self) -> float:
         """The noise floor: multipliers of this size or less are only known to be so small.
 
-        NOISE times their error, rounding included, relative to the largest where that exceeds 1.
+        AT_WORST times their error, rounding included, relative to the largest where that exceeds 1.
         """
         largest = float(np.abs(self.multipliers).max(initial=1.0))
-        return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
+        return AT_WORST * (self.error.multiplier + EPSILON) * largest
 
     def entry(self, scale: float) -> Entry:
         """Return the point as the ledger of its branch has it.

@@ -20,10 +20,8 @@ import numpy as np
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import LOST, Complex, Spectrum
-from periodic.stability.product import ROUNDING, multipliers
-
-FLOW = 1e3
-"""Growth of motions above which the flow is taken out: one of 1e6 leaves six digits less of the others."""
+from periodic.stability.product import MULTIPLIED_UP, multipliers
+from periodic.system.precision import EPSILON
 
 
 @runtime_checkable
@@ -51,7 +49,7 @@ class GradedSpectrum(Spectrum):
     """
 
     stepping: Stepping = field(kw_only=True)
-    known_to: float = ROUNDING
+    known_to: float = EPSILON
 
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:
@@ -87,14 +85,14 @@ class GradedSpectrum(Spectrum):
         return found[np.argsort(-np.abs(found), kind="stable")]
 
 
-def spectrum_of(fundamental: Array, operator: object, trivial: int, known_to: float = ROUNDING) -> Spectrum:
+def spectrum_of(fundamental: Array, operator: object, trivial: int, known_to: float = EPSILON) -> Spectrum:
     """Return the spectrum of an orbit, from the steps of its operator where motions grow by many decades.
 
     Also where these are more than the intervals that the fundamental matrices are of.
     """
     if not isinstance(operator, Stepping):
         return Spectrum(fundamental, trivial)
-    if operator.growth <= (FLOW if trivial else GROWTH) and len(operator.steps) < len(fundamental):
+    if operator.growth <= (MULTIPLIED_UP if trivial else GROWTH) and len(operator.steps) < len(fundamental):
         return Spectrum(fundamental, trivial)
     return GradedSpectrum(fundamental, trivial, known_to, stepping=operator)
 

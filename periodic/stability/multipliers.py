@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
+from periodic.system.precision import CONVERGED
 
 Complex = NDArray[np.complex128]
 
@@ -26,14 +27,6 @@ ROUNDING = 1e-10
 
 LOST = 0.1
 """Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
-
-
-DEPENDENT = 1e8
-"""Left eigenvectors as long as this, of right ones of unit length, are those of dependent ones."""
-
-
-STRAIGHT = 1e-8
-"""A chord whose ends lie opposite by as little as this passes through 0."""
 
 
 class Stability(Enum):
@@ -172,7 +165,7 @@ class Spectrum:
             found = np.linalg.inv(self.vectors).astype(np.complex128)
         except np.linalg.LinAlgError:
             return None
-        return found if np.abs(found).max() < DEPENDENT else None
+        return found if np.abs(found).max() < 1 / CONVERGED else None
 
     @cached_property
     def _triangle(self) -> tuple[Complex, Complex]:
@@ -200,7 +193,7 @@ class Spectrum:
             return None
         found = found @ turned.conj().T
         product = found @ self.vectors[:, k]
-        return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
+        return None if abs(product) < np.linalg.norm(found) * CONVERGED else np.asarray(found / product)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
         """Return the distance from another spectrum, over the largest multiplier.
@@ -266,7 +259,7 @@ def _turns(begin: Complex, end: Complex) -> Array:
     """
     product = (_directions(begin).conj() * _directions(end)).sum(axis=1)
     angle = np.arccos(np.clip(product.real, -1, 1))
-    found: Array = product.imag / np.sinc(angle / np.pi).clip(STRAIGHT)
+    found: Array = product.imag / np.sinc(angle / np.pi).clip(CONVERGED)
     return found
 
 

@@ -11,6 +11,7 @@ from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
+from periodic.correction.tolerance import COARSEST, Accuracy
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
@@ -27,12 +28,6 @@ ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 
 ASIDE = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
-
-LOOSE = 1e-2
-"""Tolerance of the way to a first orbit that is beyond the method's reach."""
-
-ROUGH = 1e-6
-"""Tolerance of the way to a first orbit."""
 
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
@@ -180,7 +175,7 @@ class Start:
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
         """Find the first orbit by that of another discretisation; None where there is none."""
         solver, system = self.solver, self.solver.problem.system
-        loose = self._loosely(solver, LOOSE)
+        loose = self._loosely(solver, COARSEST)
         for method in solver.discretisation.alternatives:
             other = replace(loose, discretisation=method.at(loose.tolerance.orbit))
             near = other.discretisation.guess(system, guess.parameter, guess)
@@ -222,12 +217,12 @@ class Start:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
         own = replace(self.solver, problem=nearer)
-        solver = self._loosely(own, ROUGH) if own.tolerance.orbit < ROUGH else own
+        solver = self._loosely(own, Accuracy.STANDARD) if own.tolerance.orbit < Accuracy.STANDARD else own
         begin = first.orbit if solver is own else self._adopted(solver, first.orbit)
         orbit, stop = self.follow(solver, begin, sign, None)
         if stop.reason is Reason.INACCURATE and orbit is not None:
             self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
-            orbit, _ = self.follow(self._loosely(solver, LOOSE), orbit, sign, None)
+            orbit, _ = self.follow(self._loosely(solver, COARSEST), orbit, sign, None)
         if orbit is None or problem.value(orbit) != wanted:
             return None
         return orbit if solver is own else self._adopted(own, orbit)

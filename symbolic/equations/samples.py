@@ -6,10 +6,8 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
+from symbolic.equations.excitation import ROUNDED
 from symbolic.equations.packed import Packed
-
-SAME = 1e-12
-"""Ratios of two functions that differ by less are equal."""
 
 ALIKE = 3
 """Sets of parameters on which two functions are compared, the nominal one first."""
@@ -69,7 +67,7 @@ def constant(values: list[Array]) -> bool:
     """Whether a function does not vary with state and phase, for any parameters."""
     finite = [v[np.isfinite(v)] for v in values]
     with np.errstate(over="ignore"):
-        return all(v.size and np.ptp(v) <= SAME * np.abs(v).max() for v in finite)
+        return all(v.size and np.ptp(v) <= ROUNDED * np.abs(v).max() for v in finite)
 
 
 def multiples(values: list[Array], others: list[Array]) -> bool:
@@ -80,6 +78,6 @@ def multiples(values: list[Array], others: list[Array]) -> bool:
         if not a.size or not a.any() or not b.any():
             return False
         a, b = a / np.abs(a).max(), b / np.abs(b).max()
-        if np.abs(a - (a @ b) / (b @ b) * b).max() > SAME:
+        if np.abs(a - (a @ b) / (b @ b) * b).max() > ROUNDED:
             return False
     return True

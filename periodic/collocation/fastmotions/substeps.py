@@ -24,15 +24,13 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.system import System, jumps_of, resets_of
+from periodic.system.precision import EPSILON
 
 GROWING = 1.0
 """Motions whose rate times interval z has a real part beyond this are followed in substeps."""
 
 EACH, FASTEST = 0.7, 2.0
 """Largest Re z of a growing motion in a substep, and largest |z| of any other motion there."""
-
-ROUNDING = float(np.finfo(float).eps)
-"""Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""
 
 MOST_SUBSTEPS = 64
 """Most substeps of an interval."""
@@ -77,7 +75,7 @@ def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int
         return one
     exponents = np.linalg.eigvals(jacobian)
     growth = exponents.real.max(axis=1)
-    growth[growth <= ROUNDING * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
+    growth[growth <= EPSILON * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
     if growth.max() <= GROWING:
         return one
     needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)

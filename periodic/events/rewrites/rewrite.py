@@ -25,10 +25,10 @@ from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMP
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
-from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
+from periodic.refinement.equidistribution import density, redistribute, spread
 from periodic.system import System
 
 ALIKE = 1e-3

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.bifurcations.fold import VERTICAL
+from periodic.bifurcations.fold import LEAST_SLOPE
 from periodic.correction.problem import Problem
 from periodic.results.point import Point
 from periodic.results.stop import Stop
+from periodic.system.precision import EPSILON
 from periodic.tracing.ends import homoclinic
 
 ROUNDED = 1e2
@@ -34,10 +35,10 @@ def vanished(problem: Problem, points: Sequence[Point]) -> bool:
     """
     last = points[-1]
     span = last.orbit.span()
-    if last.orbit.equilibrium or span > ROUNDED * np.finfo(float).eps * np.abs(last.orbit.nodes).max():
+    if last.orbit.equilibrium or span > ROUNDED * EPSILON * np.abs(last.orbit.nodes).max():
         return False
     for point in reversed(points):
-        if abs(point.parameter - last.parameter) > VERTICAL * problem.scale:
+        if abs(point.parameter - last.parameter) > LEAST_SLOPE * problem.scale:
             return False
         if point.orbit.span() > SMALLER * span:
             return True

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.bifurcations.fold import VERTICAL
+from periodic.bifurcations.fold import LEAST_SLOPE
 from periodic.bifurcations.twoparameter import codim2
 from periodic.conditions.phase import PhaseCondition
 from periodic.correction.problem import Problem
@@ -47,7 +47,7 @@ def period(problem: Problem, points: Sequence[Point]) -> float | None:
     longest = _period(last, omega)
     for point in reversed(points):
         blur = max(p.error.blur(p.parameter, problem.scale) for p in (point, last))
-        if abs(point.parameter - last.parameter) > max(blur, VERTICAL * problem.scale):
+        if abs(point.parameter - last.parameter) > max(blur, LEAST_SLOPE * problem.scale):
             return None
         if longest > LONGER * _period(point, omega):
             return longest

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.bifurcations.twoparameter import codim2
-from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
+from periodic.orbit.orbit import LEAST_SPAN
 from periodic.stability.multipliers import Stability
 from periodic.stability.winding import Motion, turned
 from periodic.system import jumps_of, resets_of

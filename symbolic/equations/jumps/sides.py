@@ -16,7 +16,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.jumps.operations import Operations
-from symbolic.equations.jumps.sliding import Slide, sliding
+from symbolic.equations.jumps.sliding import EQUAL, Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
 
@@ -25,9 +25,6 @@ ZERO_ITERATIONS = 20
 
 ZERO_VALUE = 1e-10
 """Value of a switch that is as good as 0."""
-
-EQUAL = 1e-8
-"""Difference of residuals, relative to them, that is none."""
 
 
 @dataclass(frozen=True)
