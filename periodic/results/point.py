@@ -1,4 +1,4 @@
-"""A point of a branch: an orbit with everything that is said of it."""
+"""A point of a branch: an orbit and what is known of it."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ SHOWN = 8
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point:
-    """An orbit of a branch and what is said of it.
+    """An orbit of a branch and what is known of it.
 
-    A point is stable when all nontrivial multipliers lie inside the unit circle, of a conservative orbit on
-    it, within their error; a special point where one is on it is not, nor a `marginal` one. An equilibrium
-    is stable when all real parts are negative.
+    A point is stable when all nontrivial multipliers lie inside the unit circle; of a conservative orbit they
+    may lie on it, to within their error. A special point with a multiplier on the circle is not stable, nor
+    is a `marginal` point. An equilibrium is stable when all real parts are negative.
 
     Parameters
     ----------
@@ -173,9 +173,9 @@ class Point:
 
 
 def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
-    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None of none.
+    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None for none.
 
-    Unlike those themselves, which all but coincide, they are as accurate as the other multipliers.
+    Both are as accurate as the other multipliers; those two, nearly equal, are not.
     """
     nearest = multipliers[np.abs(multipliers - 1).argsort()[:count]]
     return float(max(abs(nearest.mean() - 1), abs(nearest.prod() - 1))) if count else None
@@ -208,7 +208,7 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
 
 
 def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
-    """The errors with that of the outputs' extremes."""
+    """The error estimate, completed by the error of the outputs' extremes."""
     problem, other, better = solution.problem, solution.estimated, solution.error.better
     if better is None:
         return solution.error
@@ -220,7 +220,7 @@ def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
 def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:
     """Return the multipliers of points, one row a point, rows with fewer than others filled up with NaN.
 
-    There are as many as states, but of a system with a linear part, of which the leading ones are known.
+    There are as many as states; of a system with a condensed linear part only the leading ones are known.
     """
     width = max((len(p.multipliers) for p in points), default=states)
     found = np.full((len(points), width), complex(np.nan, np.nan))
@@ -230,5 +230,5 @@ def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex12
 
 
 def known_of(multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Return the multipliers of a row without what it is filled up with."""
+    """Return the multipliers of a row without the NaN that fill it up."""
     return multipliers[~np.isnan(multipliers.real)]

@@ -34,7 +34,7 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import Flowing, System, check_continuous
 
 TIGHTER = 0.1
-"""Tolerance of the integration that an orbit is held against, as a part of its own."""
+"""Tolerance of the second integration, by which errors are estimated, as a part of the first one's."""
 
 MARGIN = 1e-3
 """How far the integrator's tolerance must lie below that of the orbits: its errors add up over the period."""
@@ -84,7 +84,7 @@ class Shooting(Discretisation):
         check_intervals(self.ntst, self.ntst_min, self.ntst_max)
 
     def at(self, tolerance: float) -> Shooting:
-        """Return it with the scheme for a tolerance. Raises ValueError if it is too loose itself."""
+        """Return the method with a scheme for a tolerance. Raises ValueError if its own is too loose."""
         if self.tolerance > MARGIN * tolerance:
             raise ValueError(
                 f"tolerance of Shooting is {self.tolerance:g}; for orbits to {tolerance:g} "
@@ -151,7 +151,7 @@ class ShootingRefinement(Refinement):
 
     def refined(self) -> Mesh:
         """Return the mesh that interpolates the orbit."""
-        method, error = self.method, replace(self.error, multiplier=0.0)  # no mesh betters multipliers
+        method, error = self.method, replace(self.error, multiplier=0.0)  # no mesh improves the multipliers
         limits = (method.ntst_min, method.ntst_max)
         ntst = wanted_ntst(self.orbit, error, method.orbits, *limits, self.orbit.mesh.ntst)
         return redistribute(self.orbit, ntst, (), NO_EVENTS, 0.005 * method.orbits)

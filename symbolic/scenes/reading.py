@@ -23,7 +23,7 @@ Override = tuple[str, Value]
 
 
 LARGEST = 32768
-"""Most bytes of a scene file: Python's reader of TOML may take for ever with larger ones."""
+"""Most bytes of a scene file: Python's reader of TOML may take very long with larger ones."""
 
 
 def ends(scene: Scene) -> list[str]:
@@ -52,7 +52,7 @@ def keys_of_scene(source: str) -> list[str]:
 
 
 def _address(schema: type[Scene], key: str, tables: dict[str, Any], folder: Path) -> Steps:
-    """Where a key stands; a parameter of a model by its name goes to its [values]."""
+    """The place of a key; the name of a parameter of a model stands for its entry in [values]."""
     if not issubclass(schema, ModelScene):
         return address({k: list(k.split(".")) for k in keys_of(schema)}, key, tables)
     keys = model_keys(tables)

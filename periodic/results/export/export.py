@@ -24,7 +24,7 @@ FORMATS: dict[str, Callable[[Path, Content], list[Path]]] = {
 """What writes a format, by the ending of its files."""
 
 FEWEST = 4
-"""Samples of a period."""
+"""Fewest samples of a period."""
 
 
 def export(branch: Branch, path: str | Path, *, samples: int = 256) -> list[Path]:

@@ -14,7 +14,7 @@ from symbolic.equations.tex.names import dotted, tex
 from symbolic.equations.tex.products import Product, Sum, atom, one, scaled, written
 
 LONGEST_ROW = 4000
-"""Letters of an equation that are written out."""
+"""Longest equation (letters) that is written out."""
 
 OMEGA = r"\omega"
 
@@ -49,7 +49,7 @@ class Rows:
     Parameters
     ----------
     assembly : Assembly
-        The workbench of a model.
+        The assembly of a model.
     """
 
     def __init__(self, assembly: Assembly) -> None:
