@@ -15,10 +15,10 @@ LEAST_SLOPE = 1e-10
 
 
 VERTICAL = 1e-5
-"""Slopes smaller than this, in ranges of the parameter, are those of a turn or of a vertical stretch."""
+"""Slopes smaller than this, in ranges of the parameter, are those of a fold or of a vertical branch."""
 
 REACH = 0.005
-"""A turn in a vertical stretch is one if the parameter changes by more than its error in a step as long."""
+"""On a vertical branch a fold is one if the parameter changes by more than its error over this arclength."""
 
 
 def slope(solution: Solution) -> float:
@@ -27,8 +27,8 @@ def slope(solution: Solution) -> float:
     return found if abs(found) > LEAST_SLOPE * solution.problem.scale else 0.0
 
 
-def turns_twice(base: Solution, new: Solution) -> bool:
-    """Whether the parameter may turn and turn back within a step.
+def has_two_folds(base: Solution, new: Solution) -> bool:
+    """Whether the parameter may reverse twice within a step.
 
     Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
     """
@@ -49,10 +49,10 @@ def moves(base: Solution, new: Solution) -> float:
     return max(abs(new.value - base.value) - _blur(base, new), 0.0)
 
 
-def turns(base: Solution, new: Solution, ds: float) -> bool:
-    """Whether a slope that changes sign within a step is more than an error of the parameter along it.
+def has_fold(base: Solution, new: Solution, ds: float) -> bool:
+    """Whether a change of sign of the slope within a step is a fold, or error of the parameter.
 
-    It is if the arc rises above its chord by more than that.
+    It is a fold if the arc rises above its chord by more than that error.
     """
     bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
     return bend * max(ds, REACH) ** 2 / 8 > _blur(base, new)
@@ -65,5 +65,5 @@ def _blur(base: Solution, new: Solution) -> float:
     return max(end.error.blur(end.value, scale) for end in (base, new))
 
 
-FOLD = TestFunction(label=Label.FOLD, value=slope, twice=turns_twice)
+FOLD = TestFunction(label=Label.FOLD, value=slope, twice=has_two_folds)
 """Its parameter is second order in its place; those of the others are first order."""

@@ -94,9 +94,9 @@ def _on_its_way(solution: Solution) -> bool:
     return abs(solution.tangent.parameter) > VERTICAL * solution.problem.scale
 
 
-def crosses(turn: Solution, base: Solution, new: Solution) -> bool:
+def crosses(fold: Solution, base: Solution, new: Solution) -> bool:
     """Whether two branches cross where one of them turns."""
-    return branching(base) * branching(new) < 0 and is_crossed(turn)
+    return branching(base) * branching(new) < 0 and is_crossed(fold)
 
 
 def is_crossed(solution: Solution) -> bool:

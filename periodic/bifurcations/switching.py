@@ -119,15 +119,15 @@ def branched(
     """
     orbit = as_read_by(system, orbit)
     if orbit.equilibrium:
-        across = _across(system, orbit, index_of(system, parameter), leaving)
-        return switched(system, orbit, across, parameter, determined or {}, distance)
+        other_tangent = _other_tangent(system, orbit, index_of(system, parameter), leaving)
+        return switched(system, orbit, other_tangent, parameter, determined or {}, distance)
     autonomous = any(c.trivial for c in (determined or {}).values())
     orbit = orbit.collocated()
     direction = away(system, orbit, 1, autonomous)
     return switched(system, orbit, direction, parameter, determined or {}, distance)
 
 
-def _across(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Increment:
+def _other_tangent(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Increment:
     """The tangent of the other branch of equilibria at a branch point."""
     found = tangents(system, orbit, index)
     if not found:
@@ -239,8 +239,8 @@ def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Inc
     if autonomous and multiplier == 1:  # across the flow
         flow = np.zeros_like(orbit.nodes)
         flow[0] = orbit.node_rates[0]
-        across = closed.functional(Row(0.0, flow, np.zeros(len(orbit.phases))))
-        matrix = np.concatenate([matrix, across[None] / np.linalg.norm(across)])
+        other_tangent = closed.functional(Row(0.0, flow, np.zeros(len(orbit.phases))))
+        matrix = np.concatenate([matrix, other_tangent[None] / np.linalg.norm(other_tangent)])
     found = closed.tangent(np.linalg.svd(matrix)[2][-1])
     still = np.zeros(len(orbit.phases))
     return Increment(found.nodes, found.stages, found.algebraic, still, np.zeros(1), found.nodes)

@@ -46,7 +46,7 @@ class TestFunction:
         The same function without the threshold below which `value` is set to 0: a certain change of sign is
         located by it.
     touches : callable
-        Whether a turn of the branch, between a base and a new solution, is of that kind.
+        Whether a fold of the branch, between a base and a new solution, is of that kind.
     singular : bool
         Whether branches cross where it vanishes, so that the equations are singular there.
     name : str
@@ -61,7 +61,7 @@ class TestFunction:
     dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
     local: Callable[[Solution], float] | None = None
     sharp: Callable[[Solution], float] | None = None
-    touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
+    touches: Callable[[Solution, Solution, Solution], bool] = lambda fold, base, new: False
     singular: bool = False
     name: str = ""
 

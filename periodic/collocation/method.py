@@ -158,8 +158,8 @@ class Collocation(MeshMethod):
             return error
         missing = self._misheld(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
-        unseen = lost(system, orbit) if found.unresolved else 0.0
-        multiplier = max(error.multiplier, unseen, missing, rounding)
+        unresolved = lost(system, orbit) if found.unresolved else 0.0
+        multiplier = max(error.multiplier, unresolved, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:

@@ -55,11 +55,11 @@ def estimate(
 ) -> ErrorEstimate:
     """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
     orbit = operator.orbit
-    across = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
+    arclength = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
     try:
         missing = _Missing(problem, operator)
         rows = [c.linearise(problem.system, orbit, problem.free) for c in problem.side_conditions(orbit)]
-        rows.append(across.linearise(problem.system, orbit, problem.free))
+        rows.append(arclength.linearise(problem.system, orbit, problem.free))
         states, answer = missing.states, operator.answered(rows, missing.on_own(missing.states))
         multiplier = spectrum.apart(missing.monodromy(operator.leading))
     except FAILURES:

@@ -93,7 +93,7 @@ class Peak(Condition):
 class _Peak:
     functional: Smooth
     given: Given
-    across: Array | None = field(default=None)
+    border: Array | None = field(default=None)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return df/du t and its gradient; t is the kernel of the branch's equations, c' t = 1."""
@@ -102,9 +102,9 @@ class _Peak:
         rows = [c.linearise(system, orbit, given) for c in self.given.conditions]
         top = closed.matrix
         matrix = np.concatenate([top, *(closed.functional(row)[None] for row in rows)])
-        if self.across is None:
-            self.across = np.linalg.svd(matrix)[2][-1]
-        bordered = np.concatenate([matrix, self.across[None]])
+        if self.border is None:
+            self.border = np.linalg.svd(matrix)[2][-1]
+        bordered = np.concatenate([matrix, self.border[None]])
         direction = np.linalg.solve(bordered, np.append(np.zeros(len(matrix)), 1.0))
         aim = self.functional.linearise(system, orbit, free)
         k = len(orbit.phases)

@@ -136,8 +136,8 @@ class HarmonicBalance(Discretisation):
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)
-        across = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], USUAL
+        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
         except FAILURES:

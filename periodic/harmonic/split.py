@@ -216,8 +216,8 @@ class SplitHarmonicBalance(HarmonicBalance):
         more = mesh_for(present + max(4, present // 2), orbit.mesh.period)
         fine = with_unknowns(system, series(orbit, more))
         direction = tangent.restricted(orbit, fine)
-        across = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], USUAL
+        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
             factor = newton.max_change / max(step.length, newton.max_change)

@@ -131,7 +131,7 @@ class Branch(Record):
         neighbouring points, and no labelled point explains it. On curves directions are not looked at.
         """
         picks = [d for d in self.made.get("determined", {}).values() if d.get("is") not in INTRINSIC]
-        return tuple(gaps(self._entries, turns=not picks))
+        return tuple(gaps(self._entries, folds=not picks))
 
     @property
     def shortfall(self) -> str:

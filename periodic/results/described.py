@@ -145,7 +145,7 @@ def differences(before: Any, now: Any, free: Sequence[str] = ()) -> list[str]:
     for name in dict.fromkeys((*before, *now)):
         apart = [d for d in _apart(before.get(name), now.get(name), name) if d[0] not in free]
         if apart:
-            old, new = (", ".join(_told(d[0], name, d[k]) for d in apart) for k in (1, 2))
+            old, new = (", ".join(_text_of(d[0], name, d[k]) for d in apart) for k in (1, 2))
             found.append(f"{name} {old}; now they are {new}")
     return found
 
@@ -163,7 +163,7 @@ def _apart(before: Any, now: Any, place: str) -> Iterator[tuple[str, Any, Any]]:
         yield place, before, now
 
 
-def _told(place: str, name: str, value: Any) -> str:
+def _text_of(place: str, name: str, value: Any) -> str:
     inner = place.removeprefix(name).removeprefix(".")
     return f"{inner} = {_shown(value)}" if inner else _shown(value)
 

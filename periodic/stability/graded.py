@@ -80,7 +80,7 @@ class GradedSpectrum(Spectrum):
         flow = stepping.flow
         if not self.trivial or flow is None:
             return multipliers(stepping.steps, self.known_to)
-        others = multipliers(_across(stepping.steps, flow), self.known_to)
+        others = multipliers(_transverse(stepping.steps, flow), self.known_to)
         found = np.append(others, 1.0)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
@@ -97,7 +97,7 @@ def spectrum_of(fundamental: Array, operator: object, trivial: int, known_to: fl
     return GradedSpectrum(fundamental, trivial, known_to, stepping=operator)
 
 
-def _across(steps: Array, flow: Array) -> Array:
+def _transverse(steps: Array, flow: Array) -> Array:
     """The steps on what is across the flow (N, n-1, n-1)."""
     bases = np.linalg.qr(flow[:, :, None], mode="complete")[0][:, :, 1:]
     bases[-1] = bases[0]

@@ -311,7 +311,7 @@ class Continuation:
 
     def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
         """What no labelled point accounts for between points in order along the branch."""
-        return gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""

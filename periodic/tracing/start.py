@@ -80,7 +80,7 @@ class Start:
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
-            return self._at_turn(guess, sign, first)
+            return self._at_fold(guess, sign, first)
         others = self._other_guesses(guess)
         if settles:
             motion = next(others, None)
@@ -191,15 +191,15 @@ class Start:
         tolerance = replace(solver.tolerance, orbit=max(least, solver.tolerance.orbit))
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 
-    def _at_turn(self, guess: Orbit, sign: float, first: Solution) -> Solution:
+    def _at_fold(self, guess: Orbit, sign: float, first: Solution) -> Solution:
         """Find an orbit at a turn of the branch, where the parameter cannot be held."""
         failed = first.failed(Outcome.COLLAPSED) if first.ok else first
         problem = self.solver.problem
         try:
-            across = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
+            kernel = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
         except FAILURES:
             return failed
-        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
+        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, kernel, 0.0)))
         aside = ASIDE * problem.scale
         within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed

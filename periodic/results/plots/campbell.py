@@ -81,10 +81,10 @@ def plot_campbell(
     top = float(np.nanmax(diagram.frequencies)) / up.size
     for order in orders:
         line = order * diagram.speeds / up.size
-        seen = line <= top
-        axes.plot(speeds[seen], line[seen], color="black", linewidth=0.8, linestyle="--", label="orders")
-        if seen.any():
-            axes.annotate(f"{order:g}x", (speeds[seen][-1], line[seen][-1]), ha="right", va="bottom")
+        inside = line <= top
+        axes.plot(speeds[inside], line[inside], color="black", linewidth=0.8, linestyle="--", label="orders")
+        if inside.any():
+            axes.annotate(f"{order:g}x", (speeds[inside][-1], line[inside][-1]), ha="right", va="bottom")
         critical = diagram.critical(order)
         axes.plot(
             critical / across.size, order * critical / up.size, "o", color="black", label="critical speeds"

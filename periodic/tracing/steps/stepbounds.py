@@ -14,7 +14,7 @@ from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.orbit import LEAST_SPAN
 from periodic.stability.multipliers import Stability
-from periodic.stability.winding import Motion, turned
+from periodic.stability.winding import Motion, rotated
 from periodic.system import jumps_of, resets_of
 from periodic.tracing.steps.stepsize import ArclengthControl
 
@@ -44,8 +44,8 @@ def bound_ratios(
     bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
     yield BoundRatio(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
-        turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
-        yield BoundRatio(turn.ratio, turn.ahead, "a resonance may pass unseen in the step")
+        rotation = rotated(_motion(base, ds), _motion(new, ds), control.winding)
+        yield BoundRatio(rotation.ratio, rotation.ahead, "a resonance may pass unseen in the step")
     angle = _angle(codim2.alignment(base, new), control.turn)
     yield BoundRatio(angle, angle, "the critical motion turns too far for the step")
 

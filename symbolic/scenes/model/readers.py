@@ -93,7 +93,7 @@ class CoordinateName:
 
 
 @dataclass(frozen=True)
-class Touching:
+class PairOfCoordinates:
     """A contact pair: its coordinates, or a table with `coordinates` and `name`; the same is one pair."""
 
     allowed: str = 'a list of coordinates, or a table as {coordinates = ["x"], name = "upper"}'
@@ -264,6 +264,6 @@ PLAIN: dict[Any, Reader] = {
     str: Plain((str,), "a text", "a"),
     Parameter: Number(),
     Coordinate: CoordinateName(),
-    ContactPair: Touching(),
+    ContactPair: PairOfCoordinates(),
     Fraction: Plain((int, float, str), 'a positive rational number, or text as "1/2"', 1),
 }
