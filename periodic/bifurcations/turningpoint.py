@@ -1,7 +1,7 @@
-"""Turning points of a branch by their kinds: folds, and other special points at which the parameter reverses.
+"""Turning points of a branch by their kinds: folds, and other special points where the parameter reverses.
 
-A branch of doubled orbits reverses where it meets the orbits that it came from, at their PD, and one of lopsided
-orbits where it leaves a symmetric branch: from there these are branch points (BP).
+A branch of doubled orbits reverses where it meets the orbits that it came from, at their PD, and one of
+lopsided orbits where it leaves a symmetric branch: from there these are branch points (BP).
 """
 
 from __future__ import annotations
