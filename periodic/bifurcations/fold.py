@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.testfunction import LEFT, TestFunction
+from periodic.bifurcations.testfunction import PARABOLA_LEFT, TestFunction
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import size_of
@@ -17,7 +17,7 @@ LEAST_SLOPE = 1e-10
 VERTICAL = 1e-5
 """Slopes smaller than this, in ranges of the parameter, are those of a fold or of a vertical branch."""
 
-REACH = 0.005
+FOLD_ARCLENGTH = 0.005
 """On a vertical branch a fold is one if the parameter changes by more than its error over this arclength."""
 
 
@@ -38,7 +38,7 @@ def has_two_folds(base: Solution, new: Solution) -> bool:
     )
     ends = np.array([base.tangent.parameter, new.tangent.parameter])
     sign = np.sign(ends[0])
-    return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())
+    return bool(sign * (1.5 * mean - ends.mean() / 2) < PARABOLA_LEFT * np.abs(ends).min())
 
 
 def moves(base: Solution, new: Solution) -> float:
@@ -55,7 +55,7 @@ def has_fold(base: Solution, new: Solution, ds: float) -> bool:
     It is a fold if the arc rises above its chord by more than that error.
     """
     bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
-    return bend * max(ds, REACH) ** 2 / 8 > _blur(base, new)
+    return bend * max(ds, FOLD_ARCLENGTH) ** 2 / 8 > _blur(base, new)
 
 
 def _blur(base: Solution, new: Solution) -> float:

@@ -19,7 +19,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
 
 CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
@@ -126,7 +126,7 @@ def growth(multipliers: Complex, equilibrium: bool) -> np.ndarray:
 
 def noise(error: ErrorEstimate, multipliers: Complex) -> float:
     """Return what log |mu| near 0 is known to."""
-    return CONSERVED * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDING
+    return ERRORS_FROM_ONE * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDED_ONE
 
 
 def entry(solution: Solution, label: Label) -> Entry:

@@ -15,11 +15,11 @@ from periodic.bifurcations.branchcrossing import crossing
 from periodic.bifurcations.fold import FOLD, VERTICAL, has_fold, moves
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import entry, gaps
-from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
+from periodic.bifurcations.testfunction import PARABOLA_LEFT, Course, TestFunction
 from periodic.bifurcations.torus import TORUS
 from periodic.bifurcations.turningpoint import Found, is_one, named, shrinks, unstable
 from periodic.bifurcations.twoparameter import codim2
-from periodic.bifurcations.withinstep import TRIALS, RejectedError, WithinStep, second_change
+from periodic.bifurcations.withinstep import MINIMUM_TRIALS, RejectedError, WithinStep, second_change
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import refined
@@ -99,7 +99,7 @@ def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> fl
     (low, high), count, sign = (0.0, ds), unstable(within.base), within.base.once(TORUS.value)
     if sign * new.once(TORUS.value) <= 0:
         return None
-    for _ in range(TRIALS):
+    for _ in range(MINIMUM_TRIALS):
         middle = (low + high) / 2
         solution = within.at(middle)
         if sign * solution.once(TORUS.value) < 0:
@@ -158,7 +158,7 @@ def _where(within: WithinStep, new: Solution, ds: float, test: TestFunction, cou
     ends = [base.once(value), new.once(value)]
     if ends[0] * ends[1] < 0:
         return _located(within, (0.0, ds), ds, test)
-    if ends[0] != 0 and ends[1] == 0 and 0 < value(within.at(SHORTER * ds)) / ends[0] < LEFT:
+    if ends[0] != 0 and ends[1] == 0 and 0 < value(within.at(SHORTER * ds)) / ends[0] < PARABOLA_LEFT:
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not (test.twice(base, new) or course.returns(test, base, new, ds)):
         return []

@@ -17,7 +17,7 @@ from periodic.correction.solution import Solution
 PRECISION = 1e-10
 """Error to which a place along the branch is located, in steps."""
 
-LEFT = 0.5
+PARABOLA_LEFT = 0.5
 """A function whose parabola keeps this part of the least value at the ends does not change sign in a step."""
 
 
@@ -125,4 +125,4 @@ class Course:
         bend = (rise - (begin - before) / self.gone) / (ds + self.gone)
         place = (ds - rise / bend) / 2 if bend > 0 else math.inf
         least = begin + place * (rise + bend * (place - ds)) if 0 < place < ds else math.inf
-        return least < LEFT * min(begin, end)
+        return least < PARABOLA_LEFT * min(begin, end)

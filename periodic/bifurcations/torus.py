@@ -11,14 +11,14 @@ from periodic.bifurcations.doubling import known
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
 from periodic.stability.winding import meetings
 from periodic.system.precision import LARGEST
 
 
 def noise(solution: Solution) -> float:
     """What multipliers cannot be told apart by."""
-    return CONSERVED * solution.error.multiplier + ROUNDING
+    return ERRORS_FROM_ONE * solution.error.multiplier + ROUNDED_ONE
 
 
 def torus(solution: Solution) -> float:

@@ -21,7 +21,7 @@ MERGED = 0.05
 """Largest distance of the orbit at a pitchfork from its shifted copies, as a part of that at the step's
 ends."""
 
-BESIDE = 1e-3
+BESIDE_FOLD = 1e-3
 """Distance from a fold, as a part of the step, at which the multipliers on either side are compared, and
 beyond which another special point is not the fold itself."""
 
@@ -69,7 +69,7 @@ def named(within: WithinStep, fold: Found, new: Solution, ds: float) -> Found:
 
 def _passes(within: WithinStep, fold: Found, ds: float) -> bool:
     """Whether a multiplier passes 1 at a fold, by the orbits just before and just after it."""
-    before, after = (branching(within.at(fold.distance + side * BESIDE * ds)) for side in (-1, 1))
+    before, after = (branching(within.at(fold.distance + side * BESIDE_FOLD * ds)) for side in (-1, 1))
     return before * after < 0
 
 
@@ -80,7 +80,7 @@ def shrinks(fold: Solution, *ends: Solution) -> bool:
 
 def is_one(point: Found, fold: Found, ds: float) -> bool:
     """Whether a special point is the fold of the branch, which has its label already."""
-    return point.label is fold.label and abs(point.distance - fold.distance) < BESIDE * ds
+    return point.label is fold.label and abs(point.distance - fold.distance) < BESIDE_FOLD * ds
 
 
 def at_once(before: Solution, after: Solution) -> list[Label]:

@@ -39,7 +39,7 @@ from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
 from periodic.system import Kind, System, surfaces_of
 
-ASIDE = (1.0, 0.0, 10.0)
+NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
 
 SHALLOWER = (10.0, 100.0)
@@ -140,7 +140,7 @@ class Collocation(MeshMethod):
         Past its kink a switch hardly changes, and the row of the event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
-        for before in ASIDE if deep.any() else (0.0,):
+        for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
             yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
 
     def error(

@@ -25,7 +25,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import System
 from periodic.system.precision import difference_step
 
-STEP = difference_step(order=2)
+DIFFERENCE_STEP = difference_step(order=2)
 """Of central differences in scaled states, and in parameters as a part of their size."""
 
 NEUTRAL = 1e-6
@@ -99,8 +99,8 @@ def _gathered(
     rows = rows_at(system, orbit, free)
     steps = np.concatenate(
         [
-            np.full(n + m, STEP),
-            STEP * np.maximum(np.abs(orbit.parameter[list(free)]), STEP),
+            np.full(n + m, DIFFERENCE_STEP),
+            DIFFERENCE_STEP * np.maximum(np.abs(orbit.parameter[list(free)]), DIFFERENCE_STEP),
         ]
     )
 

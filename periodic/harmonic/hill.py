@@ -37,7 +37,7 @@ SHIFT = 0.2137
 BLOCKS = (12, 18, 27, 40)
 """Sizes of the Krylov space in blocks, tried in turn."""
 
-BLOCK = 4
+STATES_PER_VECTOR = 4
 """A block has n / BLOCK vectors for n states, and at least two."""
 
 KRYLOV_RESIDUAL = 1e-11
@@ -150,7 +150,7 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
 
     They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
     """
-    size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // BLOCK)
+    size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // STATES_PER_VECTOR)
     factors = scipy.linalg.lu_factor(matrix - SHIFT * np.eye(size))
     space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, each)))[0]
     images = np.zeros((size, 0))

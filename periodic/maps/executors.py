@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from periodic.checks import whole
 
-AHEAD = 10_000
+CHUNKS_AHEAD = 10_000
 """Chunks given to somebody else's executor before the first is done: more than it has workers."""
 
 THREADS = dict.fromkeys(
@@ -93,7 +93,7 @@ class Processes:
 class Given:
     """Somebody else's executor, as of dask.distributed or mpi4py.futures; it is not ours to end."""
 
-    ahead, own = AHEAD, False
+    ahead, own = CHUNKS_AHEAD, False
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor

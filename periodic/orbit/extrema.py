@@ -26,7 +26,7 @@ ZOOMS = 2
 SAMPLES = 9
 PLACES = np.linspace(-1, 1, SAMPLES)
 
-SHORT = 1e-5
+SHORT_INTERVAL = 1e-5
 """Width (rad) of intervals whose points do not count, unless all are as short.
 
 Next to a kink the collocation polynomials overshoot, and a load that falls by twenty powers of ten there
@@ -235,7 +235,7 @@ def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_]
 
 def _short(orbit: Orbit) -> NDArray[np.bool_]:
     """Which intervals do not count, shape (N,)."""
-    short = orbit.grid.width < SHORT
+    short = orbit.grid.width < SHORT_INTERVAL
     return short & ~short.all()
 
 

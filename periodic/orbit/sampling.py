@@ -21,10 +21,10 @@ PER_PERIOD = 96
 GRADED = 384
 """Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
 
-APART = 1e-9
+LEAST_WIDTH = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
 
-SHOWN = 0.01
+FARTHEST_SAMPLE = 0.01
 """Largest distance of the samples from the orbit, in peaks to peak."""
 
 
@@ -104,7 +104,7 @@ def _through(phase: Array, periods: int, state: Array, algebraic: Array, paramet
     even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     orbit = _on(even, phase, state, algebraic, parameter)
     missed = np.abs(orbit.state(phase) - state).max(axis=0)
-    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), LEAST_SPAN)).all():
+    if (missed <= FARTHEST_SAMPLE * np.maximum(np.ptp(state, axis=0), LEAST_SPAN)).all():
         return orbit
     return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
 
@@ -117,7 +117,7 @@ def _graded(phase: Array, state: Array, ntst: int) -> Mesh:
     chosen = np.unique(np.searchsorted(length, np.linspace(0, length[-1], ntst + 1)))
     period = FORCED * round((phase[-1] - phase[0]) / FORCED)
     inside = np.sort(np.mod(phase[chosen[:-1]], period)) / period
-    breaks = np.concatenate([[0.0], inside[(inside > APART) & (inside < 1 - APART)], [1.0]])
+    breaks = np.concatenate([[0.0], inside[(inside > LEAST_WIDTH) & (inside < 1 - LEAST_WIDTH)], [1.0]])
     return Mesh(Scheme(), (breaks,), (), period)
 
 

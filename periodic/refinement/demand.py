@@ -13,7 +13,7 @@ from periodic.system.precision import EPSILON
 AIM = 0.1
 """The part of the tolerance that a new mesh aims at, for the orbit and for the multipliers."""
 
-CLOSER = 0.03
+AIM_WITH_KINKS = 0.03
 """The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
 
 ROUNDING = 1e4 * EPSILON
@@ -22,7 +22,7 @@ ROUNDING = 1e4 * EPSILON
 FAINT = 1e-3
 """... if they are also below this part of their goal."""
 
-FINEST = 3.0
+MOST_PIECES = 3.0
 """Into how many pieces an interval is divided at the most."""
 
 
@@ -45,7 +45,7 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     ncol = orbit.mesh.scheme.ncol
     pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))
     pieces[part < min(ROUNDING / goal, FAINT)] = 0.0
-    wanted: Array = np.minimum(pieces, FINEST) / orbit.grid.width
+    wanted: Array = np.minimum(pieces, MOST_PIECES) / orbit.grid.width
     intervals = float(wanted @ orbit.grid.width)
     return wanted * min(1.0, most / intervals) if intervals > 0 else None
 
@@ -60,7 +60,9 @@ def wanted_ntst(
     order = orbit.mesh.scheme.ncol + 1
     known = error.shares is not None
     curable = min(error.curable, error.spread) if known else error.curable
-    ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
+    ratio = (
+        curable / ((AIM_WITH_KINKS if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
+    )
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * begun), least, most))
 

@@ -21,7 +21,7 @@ from periodic.results.files import digest
 IS, CODE = "is", "code"
 """Under what a description has the name of a type or function, and the digest of its code."""
 
-LARGE = 32
+DIGESTED_FROM = 32
 """Arrays of more numbers than these are described by a digest."""
 
 PLAIN = (bool, int, float, str)
@@ -70,7 +70,7 @@ def _described(value: object, inside: tuple[int, ...]) -> Any:
 
 
 def _array(value: np.ndarray, inside: tuple[int, ...]) -> Any:
-    if value.dtype.hasobject or value.size <= LARGE:
+    if value.dtype.hasobject or value.size <= DIGESTED_FROM:
         return _described(value.tolist(), inside)
     return {IS: f"array {value.shape}", CODE: digest(np.ascontiguousarray(value).tobytes())}
 

@@ -17,7 +17,7 @@ from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
-from periodic.stability.multipliers import CONSERVED, LOST, ROUNDING, without_trivial
+from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_ONE, without_trivial
 from periodic.system.precision import EPSILON
 
 SHOWN = 8
@@ -102,7 +102,7 @@ class Point:
             return False
         if self.equilibrium:
             return bool((self.multipliers.real < 0).all())
-        slack = CONSERVED * self.error.multiplier + ROUNDING if self.conservative else 0.0
+        slack = ERRORS_FROM_ONE * self.error.multiplier + ROUNDED_ONE if self.conservative else 0.0
         return bool((np.abs(self.nontrivial) < 1 + slack).all())
 
     @property
@@ -137,7 +137,7 @@ class Point:
         Entry
             What the ledger needs.
         """
-        lost = self.marginal or (self.trivial is not None and self.trivial > LOST)
+        lost = self.marginal or (self.trivial is not None and self.trivial > LOST_FLOW)
         return Entry(
             label=self.label,
             value=self.parameter,

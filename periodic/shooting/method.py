@@ -39,7 +39,7 @@ TIGHTER = 0.1
 MARGIN = 1e-3
 """How far the integrator's tolerance must lie below that of the orbits: its errors add up over the period."""
 
-APART = 1e-12
+LEAST_WIDTH = 1e-12
 """Breaks closer than this, as a part of the period, are one."""
 
 NO_EVENTS = np.zeros(0)
@@ -103,8 +103,8 @@ class Shooting(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         period = near.mesh.period
         places = np.sort(np.mod(near.mesh.nodes(near.phases) / period, 1.0))
-        breaks = np.concatenate([[0.0], places[(places > APART) & (places < 1 - APART)], [1.0]])
-        breaks = breaks[np.append(True, np.diff(breaks) > APART)]
+        breaks = np.concatenate([[0.0], places[(places > LEAST_WIDTH) & (places < 1 - LEAST_WIDTH)], [1.0]])
+        breaks = breaks[np.append(True, np.diff(breaks) > LEAST_WIDTH)]
         mesh = Mesh(scheme, (breaks,), (), period)
         return replace(transfer(near, mesh, NO_EVENTS), parameter=parameter)
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
-from periodic.stability.multipliers import LOST, Complex, Spectrum
+from periodic.stability.multipliers import LOST_FLOW, Complex, Spectrum
 from periodic.stability.product import MULTIPLIED_UP, multipliers
 from periodic.system.precision import EPSILON
 
@@ -64,7 +64,7 @@ class GradedSpectrum(Spectrum):
         flow = self.stepping.flow
         if not self.trivial or flow is None:
             return super().known
-        return bool(_stray(self.stepping.steps, flow) <= LOST)
+        return bool(_stray(self.stepping.steps, flow) <= LOST_FLOW)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
         """Distance from the spectrum of other equations, likewise from their steps."""

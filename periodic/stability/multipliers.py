@@ -19,13 +19,13 @@ from periodic.system.precision import CONVERGED
 
 Complex = NDArray[np.complex128]
 
-CONSERVED = 100.0
+ERRORS_FROM_ONE = 100.0
 """A multiplier cannot be told from 1 if it is nearer to it than so many times the multipliers' error,"""
 
-ROUNDING = 1e-10
+ROUNDED_ONE = 1e-10
 """... or nearer than this distance."""
 
-LOST = 0.1
+LOST_FLOW = 0.1
 """Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
 
 
@@ -76,13 +76,13 @@ class Pair:
         return replace(self, argument=-self.argument, rotated=-self.rotated, left=left)
 
 
-FEW = 3
+FEW_PAIRS = 3
 """Up to so many pairs each finds its nearest by itself sooner than all of them in arrays."""
 
 
 def nearest(pairs: Sequence[Pair], others: Sequence[Pair]) -> list[Pair]:
     """Return the members of another orbit's pairs to which each of these leads, see `Pair.nearest`."""
-    if len(pairs) <= FEW:
+    if len(pairs) <= FEW_PAIRS:
         return [pair.nearest(others) for pair in pairs]
     own, other = (np.array([(pair.argument, pair.rotated) for pair in some]) for some in (pairs, others))
     least, along = np.moveaxis(np.concatenate([other, -other]) - own[:, None], 2, 0)
@@ -235,7 +235,7 @@ class Spectrum:
     @property
     def known(self) -> bool:
         """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
-        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST)
+        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST_FLOW)
 
 
 def apart(one: Array, two: Array) -> float:

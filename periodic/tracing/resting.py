@@ -17,7 +17,7 @@ from periodic.system.precision import MOST_ITERATIONS
 PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
 """Over which the excitation is averaged."""
 
-BALANCED = 1e-9
+BALANCED_RESIDUAL = 1e-9
 """Scaled residual, over the largest of states and unknowns, below which a system is in equilibrium."""
 
 LEAST_LOAD_STEP = 1e-4
@@ -116,4 +116,6 @@ def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
 
 
 def _balanced(residual: Array, point: Array) -> bool:
-    return bool(np.abs(residual).max(initial=0.0) < BALANCED * (1.0 + np.abs(point).max(initial=0.0)))
+    return bool(
+        np.abs(residual).max(initial=0.0) < BALANCED_RESIDUAL * (1.0 + np.abs(point).max(initial=0.0))
+    )

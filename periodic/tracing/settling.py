@@ -16,7 +16,7 @@ from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
 
-SAMPLES = 193
+PLACES_IN_PERIOD = 193
 """Places in a period at which it is looked at."""
 
 
@@ -30,7 +30,7 @@ def settled(system: System, start: Orbit) -> Orbit | None:
         return condensed.settled(system, start) if slides_of(system) else None
     if not hasattr(system, "motion"):
         return None
-    moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
+    moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]
     for _ in range(PERIODS):
         try:

@@ -26,7 +26,7 @@ from periodic.tracing.settling import held, settled
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
 """Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
 
-ASIDE = 1e-6
+BESIDE_BOUND = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
 
 GROWN = 300
@@ -200,7 +200,7 @@ class Start:
         except FAILURES:
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, kernel, 0.0)))
-        aside = ASIDE * problem.scale
+        aside = BESIDE_BOUND * problem.scale
         within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 

@@ -22,7 +22,7 @@ Override = tuple[str, Value]
 """A key (dotted, or its last component alone) and its value (perhaps as text); None removes the key."""
 
 
-LARGEST = 32768
+LARGEST_FILE = 32768
 """Most bytes of a scene file: Python's reader of TOML may take very long with larger ones."""
 
 
@@ -84,9 +84,9 @@ def _text(source: str) -> str:
         if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never come to an end
             raise InputError("scene", f'file "{source}" is no regular file', f"it must be {names}")
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
-        if len(content) > LARGEST:
-            found = f'file "{source}" is larger than {LARGEST} bytes'
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            found = f'file "{source}" is larger than {LARGEST_FILE} bytes'
             raise InputError("scene", found, "it must be a TOML file like those built in")
         return content.decode("utf-8-sig")
     except (FileNotFoundError, ValueError) as error:

@@ -25,7 +25,7 @@ MODES = 200
 RIGID = 1e-14
 """Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
 
-APART = 3e-6
+CRITICAL_DISTANCE = 3e-6
 """Relative distance to which the two exponents of a critically damped mode are moved apart. It changes the
 square of its frequency by 1e-11, as much as rounding then costs."""
 
@@ -199,7 +199,9 @@ def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shap
             f"do not hold; add a stiffness to K, or compile it with condense=False"
         )
     root = np.sqrt((rates / 2) ** 2 - squares + 0j)
-    root = np.where(np.abs(root) < APART * np.sqrt(squares), APART * np.sqrt(squares), root)
+    root = np.where(
+        np.abs(root) < CRITICAL_DISTANCE * np.sqrt(squares), CRITICAL_DISTANCE * np.sqrt(squares), root
+    )
     first, second = -rates / 2 + root, -rates / 2 - root
     oscillates = root.imag != 0
     single = np.flatnonzero(~oscillates)

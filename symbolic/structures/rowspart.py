@@ -15,10 +15,10 @@ from symbolic.structures.linearpart import Modes
 from symbolic.structures.matrices import RELATIVE_STEP, index
 from symbolic.structures.modal import DEFECTIVE
 
-NOTHING = 1e-9
+NOT_MIXED = 1e-9
 """Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
 
-SAME = 16 * np.finfo(float).eps
+SAME_MATRIX = 16 * np.finfo(float).eps
 """Largest difference of equal matrices by rounding, as a part of the largest coefficient."""
 
 
@@ -177,7 +177,7 @@ class RowsPart:
         at = self._solved(parameter)
         turned = at.inverse @ state @ at.vectors
         gaps = at.values - at.values[:, None]
-        apart = np.abs(turned) > NOTHING * np.abs(turned).max(initial=0.0)
+        apart = np.abs(turned) > NOT_MIXED * np.abs(turned).max(initial=0.0)
         mixed = np.where(apart & (gaps != 0), turned / np.where(gaps == 0, 1.0, gaps), 0.0)
         np.fill_diagonal(mixed, 0.0)
         if not np.abs(mixed).max(initial=0.0) < 1 / DEFECTIVE:
@@ -244,6 +244,6 @@ def _modes(state: Array, rates: Array) -> Eigen:
 def _same(given: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
     """Whether equations are the same but for rounding."""
     return all(
-        bool((np.abs(a - b) <= SAME * np.abs(b).max(initial=0.0)).all())
+        bool((np.abs(a - b) <= SAME_MATRIX * np.abs(b).max(initial=0.0)).all())
         for a, b in zip(given, other, strict=True)
     )

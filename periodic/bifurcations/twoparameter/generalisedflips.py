@@ -20,7 +20,7 @@ SIMPLE = 1e-3
 """With a second multiplier as near to -1 the coefficient is not computed: it is infinite at R2."""
 
 
-ROUNDING = 1e-8
+LEAST_COEFFICIENT = 1e-8
 """Smaller coefficients, in norms of the monodromy matrix, are 0: rounding leaves as much."""
 
 
@@ -45,7 +45,7 @@ def _coefficient(solution: Solution) -> float:
         place = f"{solution.problem.parameter} = {solution.value:.6g}"
         warnings.warn(f"GPD is not looked for about {place}: {error}", RuntimeWarning, stacklevel=2)
         return 0.0
-    return found if abs(found) > ROUNDING * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
+    return found if abs(found) > LEAST_COEFFICIENT * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
 
 
 GENERALISED = TestFunction(label=Label.GENERALISED_DOUBLING, value=_coefficient, genuine=_simple)

@@ -11,7 +11,7 @@ from periodic.bifurcations.label import Label
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import Complex
 
-HELD = 1e-6
+ON_CURVE = 1e-6
 """Error up to which, on a curve that holds it, a product of two multipliers is 1, a sum of eigenvalues 0."""
 
 CONDENSED = ("CondensedCollocation", "SplitHarmonicBalance")
@@ -83,7 +83,7 @@ def _real(found: Complex, equilibrium: bool) -> bool:
     if not len(off):
         return False
     k = int(off.argmin())
-    return bool(off[k] < HELD and a[k].imag == 0)
+    return bool(off[k] < ON_CURVE and a[k].imag == 0)
 
 
 def _flips(points: Sequence[Point], made: Mapping[str, Any]) -> str:

@@ -14,7 +14,7 @@ from periodic.results.plots.units import Shown, Units
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDING = 1e-9
+NO_DAMPING = 1e-9
 """Damping ratios smaller than this are taken for none."""
 
 
@@ -74,7 +74,7 @@ def plot_campbell(
     across, up = shown.unit("speed"), shown.unit("frequency")
     axes, speeds = fresh(axes), diagram.speeds / across.size
     for k, column in enumerate(diagram.frequencies.T):
-        unstable = diagram.damping[:, k] < -ROUNDING
+        unstable = diagram.damping[:, k] < -NO_DAMPING
         axes.plot(speeds, column / up.size, color="C0", linewidth=1.6, label="natural frequencies")
         if unstable.any():
             axes.plot(speeds[unstable], column[unstable] / up.size, "x", color="C1", label="unstable")

@@ -17,7 +17,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import MOST_MESHES
 from periodic.system.precision import CONVERGED
 
-LONGER = 1.2
+FARTHEST_AHEAD = 1.2
 """A change of pattern that lies within so many steps is where the step ends."""
 
 CHANGE_ITERATIONS = 8
@@ -60,7 +60,7 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
-        if not 0 < along <= LONGER * ds:
+        if not 0 < along <= FARTHEST_AHEAD * ds:
             return None
         if _comes_back(found, change, along <= CONVERGED * ds):
             return None
