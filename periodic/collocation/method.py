@@ -12,7 +12,7 @@ from periodic.collocation.elimination import elimination
 from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
 from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
+from periodic.collocation.meshmethod import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated

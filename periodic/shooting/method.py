@@ -13,7 +13,7 @@ from typing import cast
 import numpy as np
 
 from periodic.checks import number, whole
-from periodic.collocation.meshed import check_intervals, check_scheme, scheme_for
+from periodic.collocation.meshmethod import check_intervals, check_scheme, scheme_for
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.newton import Correction

@@ -19,8 +19,8 @@ from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
-from periodic.tracing.rereading import worded
-from periodic.tracing.resting import resting
+from periodic.tracing.eventsfrommotion import worded
+from periodic.tracing.meanequilibrium import resting
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)

@@ -10,12 +10,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from symbolic.checks import LONGEST_QUOTE
-from symbolic.scenes.changing import Steps, Value, address, complaint, keys_of, set_value
 from symbolic.scenes.errors import InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.names import built_in, scene_names
+from symbolic.scenes.overrides import Steps, Value, address, complaint, keys_of, set_value
 from symbolic.scenes.schema import Scene, schema_of
 
 Override = tuple[str, Value]
