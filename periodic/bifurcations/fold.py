@@ -1,4 +1,4 @@
-"""LP: folds (limit points, saddle-nodes), where the branch turns: d parameter / d arclength = 0."""
+"""LP: folds (limit points, saddle-nodes), where the parameter reverses: d parameter / d arclength = 0."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def slope(solution: Solution) -> float:
 def has_two_folds(base: Solution, new: Solution) -> bool:
     """Whether the parameter may reverse twice within a step.
 
-    Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
+    Its slope is about a parabola in the arclength, of which the end values and the mean are known.
     """
     way = difference(base.problem, base.orbit, new.orbit)
     mean = way.parameter / base.tangent.dot(
@@ -42,9 +42,9 @@ def has_two_folds(base: Solution, new: Solution) -> bool:
 
 
 def moves(base: Solution, new: Solution) -> float:
-    """Return what the parameter changes by between two solutions beyond what it is known to (SI).
+    """Return by how much the parameter changes between two solutions, less its error (SI).
 
-    Where the branch is vertical, as in a canard explosion, that is its error across the branch.
+    The error is that across the branch where it is vertical, as in a canard explosion.
     """
     return max(abs(new.value - base.value) - _blur(base, new), 0.0)
 
@@ -66,4 +66,4 @@ def _blur(base: Solution, new: Solution) -> float:
 
 
 FOLD = TestFunction(label=Label.FOLD, value=slope, twice=has_two_folds)
-"""Its parameter is second order in its place; those of the others are first order."""
+"""The error of its parameter is of second order in that of its place; of other points of first order."""

@@ -40,7 +40,7 @@ class Rows:
 class Evaluated:
     """Residual and derivatives at the collocation points of an orbit, as `LinearisationLike` has them.
 
-    All at once, interval after interval, when one of these is asked for; or of some intervals, where all of
+    They are computed for all intervals when first asked for; or for some intervals at a time, where all of
     them would take too much memory.
     """
 

@@ -24,10 +24,10 @@ from periodic.tracing.meanequilibrium import resting
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
-"""Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
+"""Where a branch that leads to the first orbit is begun, over the wanted parameter, in turn."""
 
 BESIDE_BOUND = 1e-6
-"""How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
+"""How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
 
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
@@ -45,8 +45,9 @@ Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
 class Start:
     """The search for the first orbit.
 
-    search: whether one that Newton does not find may be approached from elsewhere, by `follow`. shortfall:
-    why the way there ended where the method's reach does. tried: what was tried besides the guess.
+    search: whether an orbit that Newton does not find may be approached along a branch, by `follow`.
+    shortfall: why such a branch ended, where the method cannot resolve its orbits. tried: what was tried
+    besides the guess.
     """
 
     solver: Solver
@@ -119,7 +120,7 @@ class Start:
         )
 
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
-        """Guesses at the wanted parameters, each found only when those before have not served.
+        """Guesses at the wanted parameters, each computed only when those before have failed.
 
         The first is a motion that has settled, None where there is none; none at all where friction holds it.
         """
@@ -133,7 +134,7 @@ class Start:
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
-        """The rest under the mean load, if the guess does not begin there; none of free oscillations."""
+        """Equilibrium under the mean load, unless the guess begins there; none of free oscillations."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
@@ -192,7 +193,7 @@ class Start:
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 
     def _at_fold(self, guess: Orbit, sign: float, first: Solution) -> Solution:
-        """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+        """Find an orbit at a fold of the branch, where the parameter cannot be held."""
         failed = first.failed(Outcome.COLLAPSED) if first.ok else first
         problem = self.solver.problem
         try:

@@ -2,9 +2,9 @@
 
 A slow motion beside a repelling equilibrium of the fast states, as of a canard, is smooth, and few intervals
 have it to all digits; perturbations grow by exp(z) in one of them, z the interval's width times an eigenvalue
-of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So what
-grows by more than GROWING in an interval is followed on shorter ones along the same polynomials, and what
-decays fast with it, as both may cancel.
+of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So
+where a perturbation grows by more than exp(GROWING) in an interval, all are followed on shorter intervals
+along the same polynomials: those that decay fast too, as growth and decay may cancel.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ Equations = Callable[[System, Orbit, tuple[int, ...]], Operator]
 
 @dataclass(frozen=True)
 class SteppedCorrection(Correction):
-    """A correction that knows how perturbations pass from place to place, on intervals that resolve them."""
+    """A correction with the propagation of perturbations, on intervals that resolve it."""
 
     system: System | None = None
     equations: Equations | None = None
 
     @cached_property
     def stepping(self) -> Operator | None:
-        """The linearised equations, in substeps where there is fast growth; None where no more is known."""
+        """The linearised equations, in substeps where growth is fast; None where it is not."""
         assert self.system is not None and self.equations is not None
         if self.gentle:
             return self.operator
@@ -68,7 +68,7 @@ def stepping(
 
 
 def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
-    """Return into how many each interval is to be divided, shape (N,); one each where nothing grows fast."""
+    """Return the number of substeps of each interval, shape (N,): 1 where nothing grows fast."""
     one = np.ones(orbit.mesh.ntst, dtype=int)
     jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
