@@ -12,6 +12,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.events.modes import sides, twins
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
+from periodic.events.thresholds import SLOW_CROSSING
 from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
@@ -24,9 +25,6 @@ STEPS = 512
 
 FINE = 4096
 """Steps in the period that is kept."""
-
-BRIEF = 0.01
-"""Length (rad) of slips between two stretches of sticking that may be none."""
 
 PERIODS = 100
 """Most periods that a motion is given to settle."""
@@ -128,7 +126,7 @@ def _lasting(motion: Motion) -> list[Changed]:
                 continue
             rest = [each for each in found if each not in (first, second)]
             slips = first.before == STUCK and second.after == STUCK
-            if slips and (second.phase - first.phase) % FORCED < BRIEF:
+            if slips and (second.phase - first.phase) % FORCED < SLOW_CROSSING:
                 found = rest
             elif first.after == STUCK and second.before == STUCK and _passes(motion, joint, first, second):
                 passed = replace(first, after=second.after)

@@ -15,23 +15,18 @@ import numpy as np
 
 from periodic.events.modes import column, group, modes_at, of_kind, releases, sides, sticks, surface_of
 from periodic.events.rates import rate_at, slope_at
+from periodic.events.thresholds import AT_LEVEL
 from periodic.events.violations import Breach, between_nodes
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import STUCK, Kind, System, guards
 
-VANISHING = 0.1
-"""Part of the bound of what matters below which a stretch of sticking is given up again."""
-
 H = 2 * np.pi / 400
 """Step (rad) by which the end of a new stretch of sticking is looked for."""
 
 GAMMA = 1 - 1 / np.sqrt(2)
 """Of ROS2."""
-
-WRONG = 1e-9
-"""How far a switch, sigma or a phase may be on the wrong side."""
 
 Passage = tuple[EventNode, float, float]
 
@@ -64,7 +59,7 @@ def stop(switch: int, direction: int) -> EventNode:
 def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[Passage]:
     events, new = orbit.mesh.events, []
     found: list[Passage] = []
-    gone = _vanished(system, orbit, switch, VANISHING * least)
+    gone = _vanished(system, orbit, switch, least)
     for j in _own(system, orbit, switch):
         state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
         if events[j].switch != switch or j in gone:
@@ -134,12 +129,12 @@ def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, 
     """Changes of sign between collocation points that slip, with no event node of the switch between them."""
     tau = orbit.stage_phases.ravel()
     values, side = _values(system, orbit, switch)
-    values = np.where((np.abs(values) < WRONG) & (side != 0), side, values)
+    values = np.where((np.abs(values) < AT_LEVEL) & (side != 0), side, values)
     tied = orbit.phases[group(system, orbit.mesh, switch)]
     points = [(t, s) for t, s, mode in zip(tau, values, side, strict=True) if mode != STUCK]
     found = []
     for (t, s), (later, other) in pairwise([*points, *((t + orbit.mesh.period, s) for t, s in points[:1])]):
-        between = ((tied - t + WRONG) % orbit.mesh.period < later - t + 2 * WRONG).any()
+        between = ((tied - t + AT_LEVEL) % orbit.mesh.period < later - t + 2 * AT_LEVEL).any()
         if s * other < 0 and not between:
             place = t + (later - t) * s / (s - other)
             found.append((EventNode(switch, 1 if other > 0 else -1), float(place)))
@@ -182,7 +177,7 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
     tau = orbit.stage_phases[start : start + count].ravel()
     state = orbit.stages[start : start + count].reshape(len(tau), -1)
     sigma = _sigmas(system, orbit, switch, state, tau)
-    past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + WRONG)
+    past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + AT_LEVEL)
     if not past.size or past[0] == 0:
         return _Slip()
     first, way = past[0], 1 if sigma[past[0]] > 0 else -1

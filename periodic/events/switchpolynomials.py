@@ -16,19 +16,11 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
+from periodic.events.thresholds import AT_LEVEL, NOISE, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
-
-NOISE = 1e-11
-"""A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
-
-BRIEF = 1e-2
-"""Length (rad) of excursions beside an event node that are not told from the passage there."""
-
-SHARED = 1e-9
-"""A switch that is as near to its level at another one's event node passes it there too."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +165,7 @@ class SwitchPolynomials:
     def _directions_of(self, switch: int) -> list[int]:
         values, found = self.knots[:, :, switch], []
         surface = surface_of(self.system, switch)
-        near = SHARED * float(np.abs(values).max())
+        near = AT_LEVEL * float(np.abs(values).max())
         for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
             before, after = values[j - 1, -2], values[j, 1]
             shared = abs(values[j, 0]) <= near and before * after < 0
@@ -261,7 +253,8 @@ class SwitchPolynomials:
         at_level = at_nodes & (along.sides == 0)
         beside = at_level[(run[0] - 1) % len(at_level)] or at_level[(run[-1] + 1) % len(at_level)]
         return bool(
-            beside and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < BRIEF
+            beside
+            and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < SLOW_CROSSING
         )
 
     def _ends(self, switch: int) -> list[int]:

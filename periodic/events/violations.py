@@ -15,15 +15,10 @@ import numpy as np
 from periodic.events.impacts import slope_before
 from periodic.events.modes import mode_after, modes_in, surface_of
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import RELEASED, TOGETHER
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
-
-AT_LEVEL = 1e-8
-"""How near to 0 what happens at another's event node is, as a part of its largest value."""
-
-NOISE = 1e-10
-"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
 
 
 class Breach(Enum):
@@ -119,7 +114,7 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
 def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     """Where the motion slips that should be held at a surface, or the reverse."""
     assert surface.releases is not None
-    past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > NOISE]
+    past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > RELEASED]
     if past:  # past a limit the motion turns back at once
         return past
     return [
@@ -170,7 +165,7 @@ def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> lis
         release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
         torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
         most = largest(SwitchPolynomials(system, orbit), release)
-        if not torn and abs(before[release]) > AT_LEVEL * most:
+        if not torn and abs(before[release]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 

@@ -31,13 +31,11 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.twins import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import SHALLOW
 from periodic.events.violations import largest
 from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System
-
-SHALLOW = 0.1
-"""Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
 
 
 @dataclass(frozen=True)
