@@ -57,8 +57,8 @@ def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, 
     """Return the modes that an impact of an orbit brings about, as its event node has them."""
     event, found = orbit.mesh.events[index], list[tuple[int, int]]()
     for surface in others(system, event):
-        told, own = mode_after(surface, event), beside(system, orbit, index, surface)
-        if told == STUCK and abs(own.after) <= AT_LEVEL:
+        stated, own = mode_after(surface, event), beside(system, orbit, index, surface)
+        if stated == STUCK and abs(own.after) <= AT_LEVEL:
             found.append((surface.switch, STUCK))
         elif own.reached not in (0, own.mode):
             found.append((surface.switch, own.reached))

@@ -81,8 +81,8 @@ class SwitchPolynomials:
         mixed = _changing(bounds) | everywhere
         interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
         theta = np.tile(scheme.knots, len(values))
-        turning = np.flatnonzero(mixed & _changing(np.diff(bounds)))
-        found = [(j, t) for j in turning for t in _turns(scheme, values[j])]
+        bending = np.flatnonzero(mixed & _changing(np.diff(bounds)))
+        found = [(j, t) for j in bending for t in _stationary(scheme, values[j])]
         extra = np.array(found, dtype=float).reshape(-1, 2)
         interval = np.append(interval, extra[:, 0].astype(int))
         theta = np.append(theta, extra[:, 1])
@@ -95,10 +95,10 @@ class SwitchPolynomials:
         sides = np.sign(np.where(far, value, 0.0)).astype(int)
         return Along(interval, theta, grid.left[interval] + theta * grid.width[interval], value, sides)
 
-    def passages(self, switch: int) -> list[tuple[EventNode, float]]:
+    def crossings(self, switch: int) -> list[tuple[EventNode, float]]:
         """Return where a switch passes its level, with the phases in order, those of event nodes exact.
 
-        What an impact brings about is no passage.
+        What an impact brings about is no crossing.
         """
         along = self.along(switch)
         kept = np.flatnonzero(along.sides)
@@ -215,8 +215,8 @@ class SwitchPolynomials:
         values = np.nan_to_num(self.knots[:, :, switch])
         return int(np.sign(values.flat[np.abs(values).argmax()])) or 1
 
-    def unseen(self, switch: int, otherwise: int) -> list[Extremum]:
-        """Return the farthest point of each excursion past the level that the mesh is not tied to.
+    def unmarked(self, switch: int, otherwise: int) -> list[Extremum]:
+        """Return the farthest point of each excursion past the level that has no event nodes.
 
         `otherwise` is the side on which a switch without event nodes is taken to be. What begins or ends at
         an event node is none: there it is the node that is not yet, or not quite, at the passage.
@@ -247,7 +247,7 @@ class SwitchPolynomials:
         return bool(at_nodes[run].any())
 
     def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
-        """Whether it does, or is as brief beside one as what polynomials make of a slow passage."""
+        """Whether it does, or is as brief beside one as polynomials make a slow crossing."""
         if self._beginning(along, run, at_nodes):
             return True
         at_level = at_nodes & (along.sides == 0)
@@ -279,7 +279,7 @@ class SwitchPolynomials:
         """
         own = sorted(self._tied(switch))
 
-        def stretch(e: Extremum) -> int:
+        def between_nodes(e: Extremum) -> int:
             return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
@@ -292,7 +292,7 @@ class SwitchPolynomials:
         first = min(every, key=lambda e: far(e, phase))
         width, same = (
             self.orbit.grid.width[first.interval],
-            [e for e in every if stretch(e) == stretch(first)],
+            [e for e in every if between_nodes(e) == between_nodes(first)],
         )
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
@@ -342,7 +342,7 @@ def _monomial(scheme: Scheme) -> Array:
     return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
 
 
-def _turns(scheme: Scheme, values: Array) -> list[float]:
+def _stationary(scheme: Scheme, values: Array) -> list[float]:
     """Zeros of the derivative of the polynomial through values at the knots, inside (0, 1)."""
     slope = _monomial(scheme) @ values
     largest = float(np.abs(slope).max())

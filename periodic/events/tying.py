@@ -126,7 +126,7 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
-        new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
+        new = [Crossing(*crossing_at, 0.0) for crossing_at in dense.crossings(k)]
         found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME_PHASE for f in found)]
     return found
 
@@ -196,7 +196,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *sticking.transitions(system, orbit, LEAST))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)

@@ -94,7 +94,7 @@ def _excursions(
 ) -> list[Violation]:
     """The excursions of a switch past its level that no event node tells of."""
     sides, found = dense.expected(switch, otherwise), list[Violation]()
-    for e in dense.unseen(switch, otherwise):
+    for e in dense.unmarked(switch, otherwise):
         side = int(sides[e.interval])
         found.append(Violation(breach, switch, e, side, -side * e.value / most))
     return found
@@ -175,19 +175,19 @@ def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
     event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
     surface = surface_of(system, event.switch)
 
-    def told(breach: Breach, slope: float) -> list[Violation]:
+    def reported(breach: Breach, slope: float) -> list[Violation]:
         ahead = slope * event.direction
         return [] if ahead > 0 else [Violation(breach, event.switch, index, event.direction, -ahead)]
 
     if surface.kind == Kind.IMPACT:
-        return told(Breach.GRAZED, slope_before(system, orbit, index))
+        return reported(Breach.GRAZED, slope_before(system, orbit, index))
     if surface.releases is not None:
-        reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
+        reversed_there = reported(Breach.REVERSED, slope_before(system, orbit, index))
         return reversed_there + _unforced(system, orbit, index, surface)
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])
-    return told(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+    return reported(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
 
 
 def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

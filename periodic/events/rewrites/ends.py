@@ -69,9 +69,9 @@ class Excursion:
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     """Yield all that may end on an orbit."""
     events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
-    about = {i for turn in reversals(system, orbit) for i in (turn.begin, turn.inside[-1])}
-    for turn in reversals(system, orbit):
-        yield Excursion(REVERSAL, turn.begin)
+    about = {i for reversal in reversals(system, orbit) for i in (reversal.begin, reversal.inside[-1])}
+    for reversal in reversals(system, orbit):
+        yield Excursion(REVERSAL, reversal.begin)
     for i in tied(system, orbit):
         dense = SwitchPolynomials(system, orbit)
         yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
@@ -111,7 +111,7 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         return _reversal(system, orbit, i)
     if row is ADDING_ABOUT:
         return _about(system, orbit, i)
-    return _stretch(system, orbit, row, i)
+    return _vanishing(system, orbit, row, i)
 
 
 def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
@@ -128,11 +128,11 @@ def _middle(orbit: Orbit, segment: int) -> float:
 
 def _reversal(system: System, orbit: Orbit, begin: int) -> Site:
     """An excursion about a reversal of friction."""
-    turn = next(turn for turn in reversals(system, orbit) if turn.begin == begin)
-    first, at = orbit.mesh.events[begin], turn.inside[0]
+    reversal = next(reversal for reversal in reversals(system, orbit) if reversal.begin == begin)
+    first, at = orbit.mesh.events[begin], reversal.inside[0]
     left = short_of(system, orbit, first.switch, float(orbit.phases[at]))
     held = Limit(at, first.switch, -first.direction, left)
-    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(turn.begin, turn.end))
+    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(reversal.begin, reversal.end))
 
 
 def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
@@ -198,7 +198,7 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     return None
 
 
-def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
+def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
     """A stretch of sticking or slipping."""
     surface = _surface(system, orbit, i)
     assert surface is not None and surface.releases is not None

@@ -40,7 +40,7 @@ def reversals(system: System, orbit: Orbit) -> list[Reversal]:
         inside = ahead[:1] if stuck_until(system, orbit, ahead[0]) is None else ahead[:2]
         last = ahead[len(inside)]
         closes = events[last].switch == first.switch and events[last].direction == -first.direction
-        if closes and _turns(system, orbit, inside[0], first.switch):
+        if closes and _is_stationary(system, orbit, inside[0], first.switch):
             found.append(Reversal(i, tuple(inside), last))
     return found
 
@@ -51,7 +51,7 @@ def stuck_until(system: System, orbit: Orbit, node: int) -> int | None:
     return sticks(system, orbit.mesh, switch, node) if switch in of_held(system) else None
 
 
-def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
+def _is_stationary(system: System, orbit: Orbit, node: int, switch: int) -> bool:
     """Whether a switch turns at an event node."""
     flat, at = (-1, orbit.stages.shape[2]), orbit.mesh.starts[node]
     states = np.concatenate([orbit.nodes[at : at + 1], orbit.stages.reshape(flat)])
@@ -71,7 +71,7 @@ def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float
                 continue
             length = float((orbit.phases[release] - orbit.phases[j]) % orbit.mesh.period)
             since = float((phase - orbit.phases[j] + AT_EXTREMUM) % orbit.mesh.period) - AT_EXTREMUM
-            if since <= length + AT_EXTREMUM and _turns(system, orbit, j, switch):
+            if since <= length + AT_EXTREMUM and _is_stationary(system, orbit, j, switch):
                 return phase - since, phase - since + length
     return phase, phase
 

@@ -138,8 +138,8 @@ class Ends:
         found = [own]
         for other in excursions(system, orbit):
             if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < BESIDE_EXTREMUM:
-                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _touched(each)}
-                found += [site] if not gone & set(_touched(site)) else []
+                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _changed(each)}
+                found += [site] if not gone & set(_changed(site)) else []
         return found
 
     def _mesh(self, orbit: Orbit, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -176,5 +176,5 @@ class Ends:
         return held
 
 
-def _touched(site: Site) -> Sequence[int]:
+def _changed(site: Site) -> Sequence[int]:
     return (*site.removed, *(j for j, _ in site.replaced))

@@ -44,8 +44,8 @@ def last_impact(system: System, orbit: Orbit, index: int) -> list[Site]:
     """Return the sites where an impact ends: what it reversed passes its level there instead, or stops."""
     event, phase = orbit.mesh.events[index], float(orbit.phases[index])
     held, found = Clearance(event.switch, -event.direction, phase), list[Site]()
-    passing = [Added(EventNode(k, mode), phase, 0.0) for k, mode in event.modes]
-    found.append(Site(IMPACT, event.switch, index, held, 0.0, tuple(passing), (index,)))
+    crossing = [Added(EventNode(k, mode), phase, 0.0) for k, mode in event.modes]
+    found.append(Site(IMPACT, event.switch, index, held, 0.0, tuple(crossing), (index,)))
     stopping, gone = list[Added](), [index]
     for k, mode in event.modes:
         after = _stop_after(system, orbit, index, k)
