@@ -116,7 +116,7 @@ def orbit_of(motion: Motion) -> Orbit:
 def _lasting(motion: Motion) -> list[Changed]:
     """The changes of mode without what is an error of the steps.
 
-    Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
+    Slips between two sticking segments that are brief, and stops of one step where rates lead on.
     """
     found = list(motion.events)
     for joint in motion.joints:

@@ -1,4 +1,4 @@
-"""Side conditions at a change of events: how far a switch is from its level, how long a stretch is."""
+"""Side conditions at a change of events: how far a switch is from its level, how long a segment is."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Where a switch s with a jump vanishes and the equations of both sides lead back to s = 0, the motion stays
 there, with the part sigma of the jump, -1 < sigma < 1, that keeps s' = 0. It leaves where sigma reaches 1 or
--1. A stretch of sticking lies between an event node of s and one of a release; see `periodic.system.Jumping`.
+-1. A sticking segment lies between an event node of s and one of a release; see `periodic.system.Jumping`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import STUCK, Kind, System, guards
 
 H = 2 * np.pi / 400
-"""Step (rad) by which the end of a new stretch of sticking is looked for."""
+"""Step (rad) by which the end of a new sticking segment is looked for."""
 
 GAMMA = 1 - 1 / np.sqrt(2)
 """Of ROS2."""
@@ -34,7 +34,7 @@ Transition = tuple[EventNode, float, float]
 def transitions(system: System, orbit: Orbit, least: float) -> list[Transition]:
     """Return event, phase and |slope| of the event nodes that jumps with sliding want.
 
-    least: change of a switch by which a stretch of sticking matters.
+    least: change of a switch by which a sticking segment matters.
     """
     held, sliders = ([s.switch for s in of_kind(system, kind)] for kind in (Kind.SLIDING, Kind.SLIDER))
     if held and orbit.mesh.events and not any(v.breach is Breach.MODE for v in between_nodes(system, orbit)):
@@ -94,9 +94,9 @@ def _transitions(system: System, orbit: Orbit, switch: int, least: float) -> lis
 
 
 def _vanished(system: System, orbit: Orbit, switch: int, least: float) -> set[int]:
-    """Event nodes about stretches of sticking, and of slipping between two of them, too short to matter.
+    """Event nodes about sticking segments, and of slipping between two of them, too short to matter.
 
-    A stretch of sticking that leads on to the side it came for leaves the crossing.
+    A sticking segment that leads on to the side it came for leaves the crossing.
     """
     events, own = orbit.mesh.events, group(system, orbit.mesh, switch)
     gone: set[int] = set()
@@ -161,14 +161,14 @@ class _Sticking:
 
 @dataclass(frozen=True)
 class _Slip:
-    """A slip within a stretch of sticking: its release and the next stop, and how far s goes."""
+    """A slip within a sticking segment: its release and the next stop, and how far s goes."""
 
     transitions: tuple[Transition, ...] = ()
     size: float = 0.0
 
 
 def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
-    """The first slip that is missing in the stretch of sticking that begins at an event node.
+    """The first slip that is missing in the sticking segment that begins at an event node.
 
     It ends about where the integral of sigma - 1, a parabola from its crossing on, comes back to 0.
     """

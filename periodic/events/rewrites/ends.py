@@ -181,7 +181,7 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
-    """The row of the stretch between an event node and the next one; None where it cannot vanish."""
+    """The row of the segment between an event node and the next one; None where it cannot vanish."""
     surface = _surface(system, orbit, segment)
     if surface is None:
         return None
@@ -199,7 +199,7 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
 
 
 def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
-    """A stretch of sticking or slipping."""
+    """A segment of sticking or slipping."""
     surface = _surface(system, orbit, i)
     assert surface is not None and surface.releases is not None
     j, guard = (i + 1) % len(orbit.phases), surface.switch
@@ -224,7 +224,7 @@ def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
 
 
 def longest_slip(system: System, orbit: Orbit, switch: int) -> float:
-    """Return the length of the longest stretch without sticking at a guard."""
+    """Return the length of the longest slip at a guard."""
     own, surface = group(system, orbit.mesh, switch), surface_of(system, switch)
     pairs = zip(own, [*own[1:], *own[:1]], strict=True)
     slips = [(i, j) for i, j in pairs if mode_after(surface, orbit.mesh.events[i]) != STUCK]

@@ -39,8 +39,8 @@ def first_change(
 ) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
-    `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
-    it is none of the system, on this mesh. A grazing that may be the end of an excursion is told as either.
+    `after` may be a guess, its event nodes out of order. What begins comes before what ends: an orbit past
+    it is none of the system, on this mesh. A grazing that may be the end of an excursion is given as both.
     """
     if not system.switches:
         return None

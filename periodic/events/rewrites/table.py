@@ -37,7 +37,7 @@ SHORT = decades(LONGEST, LEAST_GRAZING)
 SHORTER = decades(LONGEST, LEAST_CROSSING)[len(SHORT) :]
 FLAT = tuple(size ** (2 / 3) for size in decades(LONGEST, LEAST_GRAZING**1.5))
 """Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: of what
-touches; the further ones of what passes; of slips between two stretches of sticking. The latter change the
+touches; the further ones of what passes; of slips between two sticking segments. The latter change the
 states by the cube of their length, what touches by its square: the sizes are those of one effect.
 """
 
