@@ -12,7 +12,7 @@ from periodic.collocation.elimination import elimination
 from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
 from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
+from periodic.collocation.meshmethod import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
@@ -39,7 +39,7 @@ from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
 from periodic.system import Kind, System, surfaces_of
 
-ASIDE = (1.0, 0.0, 10.0)
+NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
 
 SHALLOWER = (10.0, 100.0)
@@ -140,7 +140,7 @@ class Collocation(MeshMethod):
         Past its kink a switch hardly changes, and the row of the event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
-        for before in ASIDE if deep.any() else (0.0,):
+        for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
             yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
 
     def error(
@@ -158,8 +158,8 @@ class Collocation(MeshMethod):
             return error
         missing = self._misheld(system, orbit, error)
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
-        unseen = lost(system, orbit) if found.unresolved else 0.0
-        multiplier = max(error.multiplier, unseen, missing, rounding)
+        unresolved = lost(system, orbit) if found.unresolved else 0.0
+        multiplier = max(error.multiplier, unresolved, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:

@@ -12,12 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.events.modes import linearise, sides
+from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System
-
-BEFORE = 1e-9
-"""How far before a kink (rad) the equations are evaluated where a collocation point falls on it."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ class Rows:
 class Evaluated:
     """Residual and derivatives at the collocation points of an orbit, as `LinearisationLike` has them.
 
-    All at once, interval after interval, when one of these is asked for; or of some intervals, where all of
+    They are computed for all intervals when first asked for; or for some intervals at a time, where all of
     them would take too much memory.
     """
 
@@ -70,7 +68,7 @@ class Evaluated:
             if line.d_state.shape[1:] != (line.residual.shape[1], n):
                 return line  # it is refused where stages are eliminated
             late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate[ends])
-            line.residual[ends] += BEFORE * late
+            line.residual[ends] += SAME_PHASE * late
         return line
 
     @cached_property
@@ -118,7 +116,7 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Evaluated:
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
-    """Phases and stages at which the equations are evaluated: the collocation points, BEFORE a kink.
+    """Phases and stages at which the equations are evaluated: the collocation points, SAME_PHASE a kink.
 
     A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
     either side, as rounding has it. To first order the residual is moved back to the kink.
@@ -126,8 +124,8 @@ def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
     tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
     if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
         stages = stages.copy()
-        tau[ends, -1] -= BEFORE
-        stages[ends, -1] -= BEFORE * rate[ends, -1]
+        tau[ends, -1] -= SAME_PHASE
+        stages[ends, -1] -= SAME_PHASE * rate[ends, -1]
     return tau, stages
 
 

@@ -12,6 +12,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.events.modes import sides, twins
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
+from periodic.events.thresholds import SLOW_CROSSING
 from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
@@ -25,10 +26,7 @@ STEPS = 512
 FINE = 4096
 """Steps in the period that is kept."""
 
-BRIEF = 0.01
-"""Length (rad) of slips between two stretches of sticking that may be none."""
-
-PERIODS = 60
+PERIODS = 100
 """Most periods that a motion is given to settle."""
 
 STILL = 1e-3
@@ -118,7 +116,7 @@ def orbit_of(motion: Motion) -> Orbit:
 def _lasting(motion: Motion) -> list[Changed]:
     """The changes of mode without what is an error of the steps.
 
-    Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
+    Slips between two sticking segments that are brief, and stops of one step where rates lead on.
     """
     found = list(motion.events)
     for joint in motion.joints:
@@ -128,7 +126,7 @@ def _lasting(motion: Motion) -> list[Changed]:
                 continue
             rest = [each for each in found if each not in (first, second)]
             slips = first.before == STUCK and second.after == STUCK
-            if slips and (second.phase - first.phase) % FORCED < BRIEF:
+            if slips and (second.phase - first.phase) % FORCED < SLOW_CROSSING:
                 found = rest
             elif first.after == STUCK and second.before == STUCK and _passes(motion, joint, first, second):
                 passed = replace(first, after=second.after)

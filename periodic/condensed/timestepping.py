@@ -30,12 +30,7 @@ from periodic.system import (
     linear_of,
     surfaces_of,
 )
-
-STEP_ITERATIONS = 8
-"""Newton steps in a step in time."""
-
-STEP_INCREMENT = 1e-10
-"""Increment at which a step in time is solved."""
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 PARTS = 8
 """Shorter steps in one in which a mode changes."""
@@ -251,13 +246,13 @@ class Motion:
         """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
         shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
-        for _ in range(STEP_ITERATIONS):
+        for _ in range(MOST_ITERATIONS):
             x[self.places] = shown + step.local @ unknown[self.forces]
             change = -np.linalg.solve(*self._equations(x, unknown, parts, tau, step)).astype(float)
             x[self.own] += change[:own]
             unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
             parts[self._stuck[0]] += change[own + len(unknown) :]
-            if np.abs(change).max() < STEP_INCREMENT * (1 + np.abs(unknown).max()):
+            if np.abs(change).max() < CONVERGED * (1 + np.abs(unknown).max()):
                 break
         x[self.places] = shown + step.local @ unknown[self.forces]
         return x, unknown, parts

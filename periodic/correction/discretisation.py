@@ -237,7 +237,7 @@ class Discretisation(Protocol):
 
     @property
     def trusted(self) -> float:
-        """Error of the multipliers above which no special points are located by them."""
+        """Error of the multipliers above which they are not used to locate special points."""
         return float("inf")
 
     @property
@@ -246,7 +246,7 @@ class Discretisation(Protocol):
         return ()
 
     def at(self, tolerance: float) -> Self:
-        """Return the discretisation with all settings that were left open chosen for a tolerance.
+        """Return the discretisation with every setting that was left open chosen for a tolerance.
 
         Parameters
         ----------
@@ -266,7 +266,7 @@ class Discretisation(Protocol):
         return self
 
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
-        """Return an orbit with the events of its own motion, followed in time through its period.
+        """Return a guess with the events of the motion itself, integrated in time over one period.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ class Discretisation(Protocol):
         return None
 
     def accepted(self, system: System, correction: Correction) -> Correction:
-        """Return a converged correction with its fundamental matrices, or as failed where it is spurious.
+        """Return a converged correction with its fundamental matrices; a spurious one as failed.
 
         Parameters
         ----------

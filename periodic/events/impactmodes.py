@@ -12,12 +12,10 @@ import numpy as np
 
 from periodic.events.modes import mode_after, sides
 from periodic.events.rates import before
+from periodic.events.thresholds import AT_LEVEL
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
-
-SHALLOW = 1e-9
-"""A guard that is as near to its level, as a part of its largest value, is on neither side."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class Sides:
     @property
     def reached(self) -> int:
         """The side to which the impact takes it; the mode that it had where it is on none."""
-        return int(np.sign(self.after)) if abs(self.after) > SHALLOW else self.mode
+        return int(np.sign(self.after)) if abs(self.after) > AT_LEVEL else self.mode
 
 
 def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Sides:
@@ -44,7 +42,7 @@ def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Si
     values = values / (float(np.abs(values).max()) or 1.0)
     early, late = float(values[-2]), float(values[-1])
     mode = 0 if surface.column is None else int(sides(system, orbit)[interval, surface.column])
-    if mode == 0 and abs(early) > SHALLOW:
+    if mode == 0 and abs(early) > AT_LEVEL:
         mode = int(np.sign(early))
     return Sides(early, late, mode)
 
@@ -59,8 +57,8 @@ def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, 
     """Return the modes that an impact of an orbit brings about, as its event node has them."""
     event, found = orbit.mesh.events[index], list[tuple[int, int]]()
     for surface in others(system, event):
-        told, own = mode_after(surface, event), beside(system, orbit, index, surface)
-        if told == STUCK and abs(own.after) <= SHALLOW:
+        stated, own = mode_after(surface, event), beside(system, orbit, index, surface)
+        if stated == STUCK and abs(own.after) <= AT_LEVEL:
             found.append((surface.switch, STUCK))
         elif own.reached not in (0, own.mode):
             found.append((surface.switch, own.reached))

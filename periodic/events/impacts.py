@@ -1,7 +1,7 @@
 """Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
 
 The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
-it is told by `periodic.events.saltation`.
+it: `periodic.events.saltation`.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.events.thresholds import SHALLOW
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -31,10 +32,6 @@ from periodic.system import (
 
 LOOKS = 3
 """States at which guards are compared."""
-
-SHALLOW = 0.05
-"""How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
-
 
 _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
     weakref.WeakKeyDictionary()

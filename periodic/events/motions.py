@@ -14,9 +14,10 @@ import numpy as np
 
 from periodic.events.modes import twins
 from periodic.events.rewrites.sites import Node, ordered
+from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
-from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import (
@@ -32,24 +33,18 @@ from periodic.system import (
     surfaces_of,
 )
 
-PER_PERIOD, LEAST = 60, 4
-"""Intervals in a period, and in the shortest segment."""
-
-SAME = 1e-9
-"""Events that lie so near to each other (rad) are one."""
+PER_PERIOD = 60
+"""Intervals in a period of the guess."""
 
 APART = 1e-5
 """How far from each other (rad) events are put that are one in time, but do not bring each other about."""
-
-ASIDE = 1e-10
-"""How far beside an event (rad) the motion is looked at, which may jump there."""
 
 
 def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
     """Return the event nodes of what happened along a motion, with their phases."""
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
-    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME)):
+    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME_PHASE)):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
         for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
             node = _node(system, surfaces[apart[0].surface], apart)
@@ -146,7 +141,7 @@ def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
     rest = constant(uniform(Scheme(), 1), *system.rest(system.nominal), system.nominal)
     events, phases = ordered(nodes, rest)
     lengths = np.diff(np.append(phases, phases[0] + FORCED))
-    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST)
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), MIN_INTERVALS)
     breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
     return Mesh(Scheme(), breaks, events, FORCED), phases
 
@@ -165,8 +160,8 @@ def _on(
     nodes = mesh.nodes(phases)
     stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
     for start in mesh.starts:
-        nodes[start] += ASIDE
-        stages[start - 1, -1] -= ASIDE
+        nodes[start] += SAME_PHASE
+        stages[start - 1, -1] -= SAME_PHASE
     flat = np.mod(np.concatenate([nodes, stages.ravel()]), FORCED)
     phase, place = np.unique(np.append(flat, [0.0, FORCED]), return_inverse=True)
     path = system.motion(state, algebraic, parameter, phase, tolerance)

@@ -11,12 +11,7 @@ from periodic.events.modes import linearise
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
-
-ITERATIONS = 4
-"""Newton steps; one is enough where the equations are linear in rates and unknowns."""
-
-CLOSE = 1e-14
-"""Relative change that is none."""
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 
 def rates_at(
@@ -27,12 +22,12 @@ def rates_at(
     Raises numpy.linalg.LinAlgError where the equations do not determine it.
     """
     n, found = x.shape[1], np.concatenate([rate, algebraic], axis=1)
-    for _ in range(ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         line = linearise(system, found[:, :n], x, found[:, n:], phase, parameter, side)
         matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)
         change = np.linalg.solve(matrix, line.residual[..., None])[..., 0]
         found = found - change
-        if (np.abs(change).max(axis=1) <= CLOSE * (1 + np.abs(found).max(axis=1))).all():
+        if (np.abs(change).max(axis=1) <= CONVERGED * (1 + np.abs(found).max(axis=1))).all():
             break
     return found[:, :n]
 

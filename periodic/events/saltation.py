@@ -25,8 +25,9 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import Resetting, System, guards_gradient, resets_of
+from periodic.system.precision import difference_step
 
-STEP = 1e-3
+STEP = difference_step(order=4)
 """Step of differences in each argument, as a part of its size: they are of the fourth order."""
 
 STENCIL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))

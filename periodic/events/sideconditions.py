@@ -1,4 +1,4 @@
-"""Side conditions at a change of events: how far a switch is from its level, how long a stretch is."""
+"""Side conditions at a change of events: how far a switch is from its level, how long a segment is."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, guards, guards_gradient
+from periodic.system.precision import difference_step
 
-STEP = 1e-4
+STEP = difference_step(order=2)
 """Step (rad) along the motion of differences of a switch's gradient."""
 
 

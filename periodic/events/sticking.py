@@ -2,7 +2,7 @@
 
 Where a switch s with a jump vanishes and the equations of both sides lead back to s = 0, the motion stays
 there, with the part sigma of the jump, -1 < sigma < 1, that keeps s' = 0. It leaves where sigma reaches 1 or
--1. A stretch of sticking lies between an event node of s and one of a release; see `periodic.system.Jumping`.
+-1. A sticking segment lies between an event node of s and one of a release; see `periodic.system.Jumping`.
 """
 
 from __future__ import annotations
@@ -15,38 +15,33 @@ import numpy as np
 
 from periodic.events.modes import column, group, modes_at, of_kind, releases, sides, sticks, surface_of
 from periodic.events.rates import rate_at, slope_at
+from periodic.events.thresholds import AT_LEVEL
 from periodic.events.violations import Breach, between_nodes
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import STUCK, Kind, System, guards
 
-VANISHING = 0.1
-"""Part of the bound of what matters below which a stretch of sticking is given up again."""
-
 H = 2 * np.pi / 400
-"""Step (rad) by which the end of a new stretch of sticking is looked for."""
+"""Step (rad) by which the end of a new sticking segment is looked for."""
 
 GAMMA = 1 - 1 / np.sqrt(2)
 """Of ROS2."""
 
-WRONG = 1e-9
-"""How far a switch, sigma or a phase may be on the wrong side."""
-
-Passage = tuple[EventNode, float, float]
+Transition = tuple[EventNode, float, float]
 
 
-def passages(system: System, orbit: Orbit, least: float) -> list[Passage]:
+def transitions(system: System, orbit: Orbit, least: float) -> list[Transition]:
     """Return event, phase and |slope| of the event nodes that jumps with sliding want.
 
-    least: change of a switch by which a stretch of sticking matters.
+    least: change of a switch by which a sticking segment matters.
     """
     held, sliders = ([s.switch for s in of_kind(system, kind)] for kind in (Kind.SLIDING, Kind.SLIDER))
     if held and orbit.mesh.events and not any(v.breach is Breach.MODE for v in between_nodes(system, orbit)):
         sliders, held = [*sliders, *held], []
     own = [j for k in sliders for j in _own(system, orbit, k)]
     kept = [(orbit.mesh.events[j], float(orbit.phases[j]), 1.0) for j in own]
-    return kept + [passage for k in held for passage in _passages(system, orbit, k, least)]
+    return kept + [transition for k in held for transition in _transitions(system, orbit, k, least)]
 
 
 def _own(system: System, orbit: Orbit, switch: int) -> list[int]:
@@ -61,47 +56,47 @@ def stop(switch: int, direction: int) -> EventNode:
     return EventNode(switch, direction, modes=((switch, STUCK),))
 
 
-def _passages(system: System, orbit: Orbit, switch: int, least: float) -> list[Passage]:
+def _transitions(system: System, orbit: Orbit, switch: int, least: float) -> list[Transition]:
     events, new = orbit.mesh.events, []
-    found: list[Passage] = []
-    gone = _vanished(system, orbit, switch, VANISHING * least)
+    found: list[Transition] = []
+    gone = _vanished(system, orbit, switch, least)
     for j in _own(system, orbit, switch):
         state, phase = orbit.nodes[orbit.mesh.starts[j]], float(orbit.phases[j])
         if events[j].switch != switch or j in gone:
             found += [(events[j], phase, 1.0)] if j not in gone else []
             continue
         ending = sticks(system, orbit.mesh, switch, j)
-        passing = EventNode(switch, events[j].direction)
+        crossing = EventNode(switch, events[j].direction)
         if ending is None:
-            stretch = _stretch(system, orbit, switch, state, phase)
-            begins = stretch.release is not None and stretch.size > least
-            found.append((stop(switch, passing.direction) if begins else passing, phase, 1.0))
-            new += [stretch.release] if begins and stretch.release else []
+            sticking = _sticking(system, orbit, switch, state, phase)
+            begins = sticking.release is not None and sticking.size > least
+            found.append((stop(switch, crossing.direction) if begins else crossing, phase, 1.0))
+            new += [sticking.release] if begins and sticking.release else []
             continue
-        found.append((passing if ending in gone else events[j], phase, 1.0))
+        found.append((crossing if ending in gone else events[j], phase, 1.0))
         if ending not in gone:
             slip = _slip(system, orbit, switch, j)
-            found += slip.passages if slip.size > least else ()
+            found += slip.transitions if slip.size > least else ()
     if new:  # beyond a crossing that should stick an orbit tells nothing
         return found + new
     held = -np.inf
     for event, phase in _missed(system, orbit, switch):
         if phase < held:  # noise of a stop, or the way back from beyond it
             continue
-        stretch = _stretch(system, orbit, switch, orbit.state(np.array([phase]))[0], phase)
-        if stretch.release is None:
+        sticking = _sticking(system, orbit, switch, orbit.state(np.array([phase]))[0], phase)
+        if sticking.release is None:
             found.append((event, phase, 1.0))
         else:
             begun = (stop(switch, event.direction), phase, 1.0)
-            found += [begun, stretch.release] if stretch.size > least else []
-            held = stretch.release[1]
+            found += [begun, sticking.release] if sticking.size > least else []
+            held = sticking.release[1]
     return found
 
 
 def _vanished(system: System, orbit: Orbit, switch: int, least: float) -> set[int]:
-    """Event nodes about stretches of sticking, and of slipping between two of them, too short to matter.
+    """Event nodes about sticking segments, and of slipping between two of them, too short to matter.
 
-    A stretch of sticking that leads on to the side it came for leaves the crossing.
+    A sticking segment that leads on to the side it came for leaves the crossing.
     """
     events, own = orbit.mesh.events, group(system, orbit.mesh, switch)
     gone: set[int] = set()
@@ -134,12 +129,12 @@ def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, 
     """Changes of sign between collocation points that slip, with no event node of the switch between them."""
     tau = orbit.stage_phases.ravel()
     values, side = _values(system, orbit, switch)
-    values = np.where((np.abs(values) < WRONG) & (side != 0), side, values)
+    values = np.where((np.abs(values) < AT_LEVEL) & (side != 0), side, values)
     tied = orbit.phases[group(system, orbit.mesh, switch)]
     points = [(t, s) for t, s, mode in zip(tau, values, side, strict=True) if mode != STUCK]
     found = []
     for (t, s), (later, other) in pairwise([*points, *((t + orbit.mesh.period, s) for t, s in points[:1])]):
-        between = ((tied - t + WRONG) % orbit.mesh.period < later - t + 2 * WRONG).any()
+        between = ((tied - t + AT_LEVEL) % orbit.mesh.period < later - t + 2 * AT_LEVEL).any()
         if s * other < 0 and not between:
             place = t + (later - t) * s / (s - other)
             found.append((EventNode(switch, 1 if other > 0 else -1), float(place)))
@@ -155,34 +150,34 @@ def _values(system: System, orbit: Orbit, switch: int) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True)
-class _Stretch:
+class _Sticking:
     """Sticking that begins at a state: its release, None where it does not stick, and how far s would go if
     it slipped on instead until then.
     """
 
-    release: Passage | None = None
+    release: Transition | None = None
     size: float = 0.0
 
 
 @dataclass(frozen=True)
 class _Slip:
-    """A slip within a stretch of sticking: its release and the next stop, and how far s goes."""
+    """A slip within a sticking segment: its release and the next stop, and how far s goes."""
 
-    passages: tuple[Passage, ...] = ()
+    transitions: tuple[Transition, ...] = ()
     size: float = 0.0
 
 
 def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
-    """The first slip that is missing in the stretch of sticking that begins at an event node.
+    """The first slip that is missing in the sticking segment that begins at an event node.
 
-    It ends about where the integral of sigma - 1, a parabola from its passage on, comes back to 0.
+    It ends about where the integral of sigma - 1, a parabola from its crossing on, comes back to 0.
     """
     start, (up, down) = orbit.mesh.starts[node], releases(system, switch)
     count = len(orbit.mesh.breaks[node]) - 1
     tau = orbit.stage_phases[start : start + count].ravel()
     state = orbit.stages[start : start + count].reshape(len(tau), -1)
     sigma = _sigmas(system, orbit, switch, state, tau)
-    past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + WRONG)
+    past = np.flatnonzero(np.abs(sigma[:-1]) > 1 + AT_LEVEL)
     if not past.size or past[0] == 0:
         return _Slip()
     first, way = past[0], 1 if sigma[past[0]] > 0 else -1
@@ -201,16 +196,16 @@ def _slip(system: System, orbit: Orbit, switch: int, node: int) -> _Slip:
     return _Slip((release, stopped), excess * speed * (end - begin))
 
 
-def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: float) -> _Stretch:
+def _sticking(system: System, orbit: Orbit, switch: int, state: Array, phase: float) -> _Sticking:
     """What sticking at a state comes to: steps of Rosenbrock's method until sigma reaches 1 or -1."""
     sigma = _sigma(system, state, phase, orbit, switch)
     if not abs(sigma) < 1:
-        return _Stretch()
+        return _Sticking()
     (up, down), motion = releases(system, switch), _Motion(system, orbit, switch, phase)
     try:
         speed, held = min(motion.speeds(state, phase)), motion.steps(state, phase)
     except np.linalg.LinAlgError:  # the equations do not determine the rates, as without a mass
-        return _Stretch()
+        return _Sticking()
     x, tau = state, phase
     while tau < phase + orbit.mesh.period:
         x = held(x, tau)
@@ -219,8 +214,8 @@ def _stretch(system: System, orbit: Orbit, switch: int, state: Array, phase: flo
             way = 1 if sigma > 0 else -1
             place = tau - H * float(np.clip((sigma - way) / (sigma - before), 0, 1))
             release = (EventNode(up if way > 0 else down, way), place, 1.0)
-            return _Stretch(release, speed * (place - phase))
-    return _Stretch(None, np.inf)
+            return _Sticking(release, speed * (place - phase))
+    return _Sticking(None, np.inf)
 
 
 @dataclass(frozen=True)

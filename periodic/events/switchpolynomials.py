@@ -16,22 +16,11 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
+from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
-
-NOISE = 1e-11
-"""A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
-
-REAL = 1e-6
-"""Imaginary part below which a root is real: of double ones rounding leaves so much."""
-
-BRIEF = 1e-2
-"""Length (rad) of excursions beside an event node that are not told from the passage there."""
-
-SHARED = 1e-9
-"""A switch that is as near to its level at another one's event node passes it there too."""
 
 
 @dataclass(frozen=True)
@@ -92,9 +81,9 @@ class SwitchPolynomials:
         mixed = _changing(bounds) | everywhere
         interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
         theta = np.tile(scheme.knots, len(values))
-        turning = np.flatnonzero(mixed & _changing(np.diff(bounds)))
-        which, places = _turns(scheme, values[turning])
-        inside = turning[which]
+        bending = np.flatnonzero(mixed & _changing(np.diff(bounds)))
+        which, places = _stationary(scheme, values[bending])
+        inside = bending[which]
         interval, theta = np.append(interval, inside), np.append(theta, places)
         value = np.append(values.ravel(), np.einsum("il,il->i", scheme.basis(places), values[inside]))
         order = np.lexsort((theta, interval))
@@ -103,10 +92,10 @@ class SwitchPolynomials:
         sides = np.sign(np.where(far, value, 0.0)).astype(int)
         return Along(interval, theta, grid.left[interval] + theta * grid.width[interval], value, sides)
 
-    def passages(self, switch: int) -> list[tuple[EventNode, float]]:
+    def crossings(self, switch: int) -> list[tuple[EventNode, float]]:
         """Return where a switch passes its level, with the phases in order, those of event nodes exact.
 
-        What an impact brings about is no passage.
+        What an impact brings about is no crossing.
         """
         along = self.along(switch)
         kept = np.flatnonzero(along.sides)
@@ -173,7 +162,7 @@ class SwitchPolynomials:
     def _directions_of(self, switch: int) -> list[int]:
         values, found = self.knots[:, :, switch], []
         surface = surface_of(self.system, switch)
-        near = SHARED * float(np.abs(values).max())
+        near = AT_LEVEL * float(np.abs(values).max())
         for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
             before, after = values[j - 1, -2], values[j, 1]
             shared = abs(values[j, 0]) <= near and before * after < 0
@@ -223,8 +212,8 @@ class SwitchPolynomials:
         values = np.nan_to_num(self.knots[:, :, switch])
         return int(np.sign(values.flat[np.abs(values).argmax()])) or 1
 
-    def unseen(self, switch: int, otherwise: int) -> list[Extremum]:
-        """Return the farthest point of each excursion past the level that the mesh is not tied to.
+    def unmarked(self, switch: int, otherwise: int) -> list[Extremum]:
+        """Return the farthest point of each excursion past the level that has no event nodes.
 
         `otherwise` is the side on which a switch without event nodes is taken to be. What begins or ends at
         an event node is none: there it is the node that is not yet, or not quite, at the passage.
@@ -255,13 +244,14 @@ class SwitchPolynomials:
         return bool(at_nodes[run].any())
 
     def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
-        """Whether it does, or is as brief beside one as what polynomials make of a slow passage."""
+        """Whether it does, or is as brief beside one as polynomials make a slow crossing."""
         if self._beginning(along, run, at_nodes):
             return True
         at_level = at_nodes & (along.sides == 0)
         beside = at_level[(run[0] - 1) % len(at_level)] or at_level[(run[-1] + 1) % len(at_level)]
         return bool(
-            beside and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < BRIEF
+            beside
+            and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < SLOW_CROSSING
         )
 
     def _ends(self, switch: int) -> list[int]:
@@ -286,7 +276,7 @@ class SwitchPolynomials:
         """
         own = sorted(self._tied(switch))
 
-        def stretch(e: Extremum) -> int:
+        def between_nodes(e: Extremum) -> int:
             return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
@@ -299,7 +289,7 @@ class SwitchPolynomials:
         first = min(every, key=lambda e: far(e, phase))
         width, same = (
             self.orbit.grid.width[first.interval],
-            [e for e in every if stretch(e) == stretch(first)],
+            [e for e in every if between_nodes(e) == between_nodes(first)],
         )
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
@@ -349,13 +339,13 @@ def _monomial(scheme: Scheme) -> Array:
     return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
 
 
-def _turns(scheme: Scheme, values: Array) -> tuple[NDArray[np.int_], Array]:
+def _stationary(scheme: Scheme, values: Array) -> tuple[NDArray[np.int_], Array]:
     """Zeros inside (0, 1) of the derivatives of polynomials through values at the knots (K, ncol+1).
 
     Returns which polynomial each belongs to, and the zeros themselves.
     """
     roots = _roots(values @ _monomial(scheme).T)
-    inside = (np.abs(roots.imag) < REAL) & (roots.real > 0) & (roots.real < 1)
+    inside = (np.abs(roots.imag) < AT_EXTREMUM) & (roots.real > 0) & (roots.real < 1)
     return np.nonzero(inside)[0], roots.real[inside]
 
 

@@ -18,13 +18,11 @@ from periodic.events import impacts, sticking
 from periodic.events.impactmodes import brought_about
 from periodic.events.modes import bends
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import Kind, System, surfaces_of
-
-SAME = 1e-9
-"""Phases closer than this are the same."""
 
 DEEPEST = 0.1
 """Shallowest switch level worth an event node, in tolerances or errors of the states."""
@@ -128,8 +126,8 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
-        new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
-        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME for f in found)]
+        new = [Crossing(*crossing_at, 0.0) for crossing_at in dense.crossings(k)]
+        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME_PHASE for f in found)]
     return found
 
 
@@ -198,7 +196,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *sticking.transitions(system, orbit, LEAST))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
@@ -263,7 +261,9 @@ def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
 
 def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
     begin, end = excursion[0].phase, excursion[1].phase
-    return bool(np.mod(crossing.phase - begin + SAME, period) <= np.mod(end - begin, period) + 2 * SAME)
+    return bool(
+        np.mod(crossing.phase - begin + SAME_PHASE, period) <= np.mod(end - begin, period) + 2 * SAME_PHASE
+    )
 
 
 def _merged(found: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:

@@ -15,15 +15,10 @@ import numpy as np
 from periodic.events.impacts import slope_before
 from periodic.events.modes import mode_after, modes_in, surface_of
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import RELEASED, TOGETHER
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
-
-AT_LEVEL = 1e-8
-"""How near to 0 what happens at another's event node is, as a part of its largest value."""
-
-NOISE = 1e-10
-"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
 
 
 class Breach(Enum):
@@ -103,7 +98,7 @@ def _excursions(
 ) -> list[Violation]:
     """The excursions of a switch past its level that no event node tells of."""
     sides, found = dense.expected(switch, otherwise), list[Violation]()
-    for e in dense.unseen(switch, otherwise):
+    for e in dense.unmarked(switch, otherwise):
         side = int(sides[e.interval])
         found.append(Violation(breach, switch, e, side, -side * e.value / most))
     return found
@@ -123,7 +118,7 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
 def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     """Where the motion slips that should be held at a surface, or the reverse."""
     assert surface.releases is not None
-    past = [limit for limit in _limits(own, surface) if limit.depth > NOISE]
+    past = [limit for limit in _limits(own, surface) if limit.depth > RELEASED]
     if past:  # past a limit the motion turns back at once
         return past
     return [
@@ -180,7 +175,7 @@ def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Vi
         release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
         torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
         most = largest(dense, release)
-        if not torn and abs(before[release]) > AT_LEVEL * most:
+        if not torn and abs(before[release]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 
@@ -191,19 +186,19 @@ def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
     event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
     surface = surface_of(system, event.switch)
 
-    def told(breach: Breach, slope: float) -> list[Violation]:
+    def reported(breach: Breach, slope: float) -> list[Violation]:
         ahead = slope * event.direction
         return [] if ahead > 0 else [Violation(breach, event.switch, index, event.direction, -ahead)]
 
     if surface.kind == Kind.IMPACT:
-        return told(Breach.GRAZED, slope_before(system, orbit, index))
+        return reported(Breach.GRAZED, slope_before(system, orbit, index))
     if surface.releases is not None:
-        reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
+        reversed_there = reported(Breach.REVERSED, slope_before(system, orbit, index))
         return reversed_there + _unforced(dense, index, surface)
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])
-    return told(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+    return reported(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
 
 
 def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

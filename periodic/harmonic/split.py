@@ -20,7 +20,7 @@ from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
+from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
@@ -41,7 +41,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.multipliers import Spectrum
@@ -216,8 +216,8 @@ class SplitHarmonicBalance(HarmonicBalance):
         more = mesh_for(present + max(4, present // 2), orbit.mesh.period)
         fine = with_unknowns(system, series(orbit, more))
         direction = tangent.restricted(orbit, fine)
-        across = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], USUAL
+        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
             factor = newton.max_change / max(step.length, newton.max_change)

@@ -21,6 +21,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
+from periodic.system.precision import LARGEST
 
 GROWTH = 1e6
 """Growth of motions within a period above which mesh points are not computed from the first one alone."""
@@ -28,7 +29,7 @@ GROWTH = 1e6
 PLACES = 16
 """Between so many places at the most growth is looked at."""
 
-LARGEST_FUNDAMENTAL = 1e150
+LARGEST_FUNDAMENTAL = float(np.sqrt(LARGEST))
 """Largest fundamental matrices that are given: products of two are finite."""
 
 PAIRED_UP_TO = 16

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array, Scheme
 
+MIN_INTERVALS = 4
+"""Least number of intervals in a segment."""
+
 INSIDE = 2
 """Most event nodes within a brief excursion: friction turns or holds the motion there, and lets it go."""
 

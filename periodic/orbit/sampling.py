@@ -10,8 +10,8 @@ import scipy
 from numpy.typing import ArrayLike
 
 from periodic.orbit.layout import Layout, Quantity, layout_of
-from periodic.orbit.mesh import EventNode, Mesh, uniform
-from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
+from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System, index_of, resets_of
 
@@ -21,17 +21,11 @@ PER_PERIOD = 96
 GRADED = 384
 """Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
 
-LEAST_PEAK_TO_PEAK = 1e-6
-"""Least peak to peak (scaled) that samples are compared with."""
-
-APART = 1e-9
+LEAST_WIDTH = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
 
-SHOWN = 0.01
+FARTHEST_SAMPLE = 0.01
 """Largest distance of the samples from the orbit, in peaks to peak."""
-
-LEAST_INTERVALS = 4
-"""Fewest intervals between two impacts."""
 
 
 def sampled(
@@ -110,20 +104,20 @@ def _through(phase: Array, periods: int, state: Array, algebraic: Array, paramet
     even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     orbit = _on(even, phase, state, algebraic, parameter)
     missed = np.abs(orbit.state(phase) - state).max(axis=0)
-    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)).all():
+    if (missed <= FARTHEST_SAMPLE * np.maximum(np.ptp(state, axis=0), LEAST_SPAN)).all():
         return orbit
     return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
 
 
 def _graded(phase: Array, state: Array, ntst: int) -> Mesh:
     """Intervals that end at samples, of about equal arclength over phase and scaled states."""
-    sizes = np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)
+    sizes = np.maximum(np.ptp(state, axis=0), LEAST_SPAN)
     steps = np.diff(np.column_stack([FORCED * state / sizes, phase]), axis=0)
     length = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))
     chosen = np.unique(np.searchsorted(length, np.linspace(0, length[-1], ntst + 1)))
     period = FORCED * round((phase[-1] - phase[0]) / FORCED)
     inside = np.sort(np.mod(phase[chosen[:-1]], period)) / period
-    breaks = np.concatenate([[0.0], inside[(inside > APART) & (inside < 1 - APART)], [1.0]])
+    breaks = np.concatenate([[0.0], inside[(inside > LEAST_WIDTH) & (inside < 1 - LEAST_WIDTH)], [1.0]])
     return Mesh(Scheme(), (breaks,), (), period)
 
 
@@ -159,7 +153,7 @@ def _through_impacts(
     x, z = (np.concatenate([a[first:], a[1:first]]) for a in (state, algebraic))
     cuts = [0, *(second[1:] - first), len(tau)]
     lengths = np.diff(np.append(phase[second], phase[first] + period))
-    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST_INTERVALS)
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), MIN_INTERVALS)
     breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
     mesh = Mesh(Scheme(), breaks, events, period)
     grid = mesh.grid(phase[second])

@@ -15,7 +15,7 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
-from periodic.bifurcations.locate import Sought, special_points
+from periodic.bifurcations.location import Sought, special_points
 from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turningpoint import Found, at_once
 from periodic.bifurcations.twoparameter import codim2
@@ -28,7 +28,7 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
-from periodic.tracing.rereading import reread
+from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
@@ -311,7 +311,7 @@ class Continuation:
 
     def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
         """What no labelled point accounts for between points in order along the branch."""
-        return gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""

@@ -7,7 +7,7 @@ import numpy as np
 from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
 
-SINGULAR = 1e-12
+FREE_MOTION = 1e-12
 """Least singular value of a stiffness, of the largest, below which nothing holds a motion."""
 
 TAKES_PART = 0.1
@@ -47,7 +47,7 @@ def drifting(system: System, parameter: Array) -> list[str]:
     if not np.isfinite(stiffness).all():
         return []
     _, sizes, ways = np.linalg.svd(stiffness)
-    if len(sizes) == 0 or sizes[-1] > SINGULAR * sizes[0]:
+    if len(sizes) == 0 or sizes[-1] > FREE_MOTION * sizes[0]:
         return []
     way = np.abs(ways[-1, : len(state)])
     return [s.name for s, part in zip(system.states, way, strict=True) if part > TAKES_PART * way.max()]

@@ -7,7 +7,7 @@ from typing import cast
 
 import numpy as np
 
-from periodic.collocation.meshed import MeshMethod
+from periodic.collocation.meshmethod import MeshMethod
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.whole.wider import WholeSystem

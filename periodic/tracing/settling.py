@@ -7,23 +7,16 @@ from typing import cast
 import numpy as np
 
 from periodic.condensed import settling as condensed
+from periodic.condensed.settling import PERIODS, STILL
 from periodic.correction.outcome import FAILURES
+from periodic.correction.tolerance import Accuracy
 from periodic.events.motions import orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
 
-PERIODS = 100
-"""Most periods of the excitation that a motion is given to settle."""
-
-STILL = 1e-3
-"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
-
-TOLERANCE = 1e-6
-"""Of the integration."""
-
-SAMPLES = 193
+PLACES_IN_PERIOD = 193
 """Places in a period at which it is looked at."""
 
 
@@ -37,17 +30,17 @@ def settled(system: System, start: Orbit) -> Orbit | None:
         return condensed.settled(system, start) if slides_of(system) else None
     if not hasattr(system, "motion"):
         return None
-    moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
+    moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]
     for _ in range(PERIODS):
         try:
-            path = moving.motion(state, algebraic, start.parameter, phase, TOLERANCE)
+            path = moving.motion(state, algebraic, start.parameter, phase, Accuracy.STANDARD)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
         if _closed(path.state):
-            last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
+            last = path.state[-1], path.algebraic[-1], start.parameter, Accuracy.STANDARD
             if (converged := orbit_of(moving, *last)) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
@@ -63,7 +56,7 @@ def held(system: System, motion: Orbit) -> list[str]:
     states, tau = motion.nodes[:-1], motion.grid.left
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
-    still = values <= TOLERANCE * slopes * motion.span()
+    still = values <= Accuracy.STANDARD * slopes * motion.span()
     unknown = [s.switch for s in surfaces_of(system) if s.releases is not None and s.place is None]
     return [system.switches[k].name for k in unknown if still[k]]
 

@@ -11,6 +11,7 @@ from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
+from periodic.correction.tolerance import COARSEST, Accuracy
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
@@ -18,21 +19,15 @@ from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.drift import drifting
-from periodic.tracing.rereading import worded
-from periodic.tracing.resting import resting
+from periodic.tracing.eventsfrommotion import worded
+from periodic.tracing.meanequilibrium import resting
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
-"""Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
+"""Where a branch that leads to the first orbit is begun, over the wanted parameter, in turn."""
 
-ASIDE = 1e-6
-"""How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
-
-LOOSE = 1e-2
-"""Tolerance of the way to a first orbit that is beyond the method's reach."""
-
-ROUGH = 1e-6
-"""Tolerance of the way to a first orbit."""
+BESIDE_BOUND = 1e-6
+"""How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
 
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
@@ -50,8 +45,9 @@ Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
 class Start:
     """The search for the first orbit.
 
-    search: whether one that Newton does not find may be approached from elsewhere, by `follow`. shortfall:
-    why the way there ended where the method's reach does. tried: what was tried besides the guess.
+    search: whether an orbit that Newton does not find may be approached along a branch, by `follow`.
+    shortfall: why such a branch ended, where the method cannot resolve its orbits. tried: what was tried
+    besides the guess.
     """
 
     solver: Solver
@@ -85,7 +81,7 @@ class Start:
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
-            return self._at_turn(guess, sign, first)
+            return self._at_fold(guess, sign, first)
         others = self._other_guesses(guess)
         if settles:
             motion = next(others, None)
@@ -124,7 +120,7 @@ class Start:
         )
 
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
-        """Guesses at the wanted parameters, each found only when those before have not served.
+        """Guesses at the wanted parameters, each computed only when those before have failed.
 
         The first is a motion that has settled, None where there is none; none at all where friction holds it.
         """
@@ -138,7 +134,7 @@ class Start:
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
-        """The rest under the mean load, if the guess does not begin there; none of free oscillations."""
+        """Equilibrium under the mean load, unless the guess begins there; none of free oscillations."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
@@ -180,7 +176,7 @@ class Start:
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
         """Find the first orbit by that of another discretisation; None where there is none."""
         solver, system = self.solver, self.solver.problem.system
-        loose = self._loosely(solver, LOOSE)
+        loose = self._loosely(solver, COARSEST)
         for method in solver.discretisation.alternatives:
             other = replace(loose, discretisation=method.at(loose.tolerance.orbit))
             near = other.discretisation.guess(system, guess.parameter, guess)
@@ -196,16 +192,16 @@ class Start:
         tolerance = replace(solver.tolerance, orbit=max(least, solver.tolerance.orbit))
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 
-    def _at_turn(self, guess: Orbit, sign: float, first: Solution) -> Solution:
-        """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+    def _at_fold(self, guess: Orbit, sign: float, first: Solution) -> Solution:
+        """Find an orbit at a fold of the branch, where the parameter cannot be held."""
         failed = first.failed(Outcome.COLLAPSED) if first.ok else first
         problem = self.solver.problem
         try:
-            across = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
+            kernel = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
         except FAILURES:
             return failed
-        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        aside = ASIDE * problem.scale
+        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, kernel, 0.0)))
+        aside = BESIDE_BOUND * problem.scale
         within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 
@@ -222,12 +218,12 @@ class Start:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
         own = replace(self.solver, problem=nearer)
-        solver = self._loosely(own, ROUGH) if own.tolerance.orbit < ROUGH else own
+        solver = self._loosely(own, Accuracy.STANDARD) if own.tolerance.orbit < Accuracy.STANDARD else own
         begin = first.orbit if solver is own else self._adopted(solver, first.orbit)
         orbit, stop = self.follow(solver, begin, sign, None)
         if stop.reason is Reason.INACCURATE and orbit is not None:
             self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
-            orbit, _ = self.follow(self._loosely(solver, LOOSE), orbit, sign, None)
+            orbit, _ = self.follow(self._loosely(solver, COARSEST), orbit, sign, None)
         if orbit is None or problem.value(orbit) != wanted:
             return None
         return orbit if solver is own else self._adopted(own, orbit)

@@ -79,7 +79,7 @@ class Body(Protocol):
         """
 
 
-def _turning(value: Value, symbol: ca.SX) -> ca.SX:
+def _angular(value: Value, symbol: ca.SX) -> ca.SX:
     """An angular frequency in rad/s, from the unit of the user's parameter."""
     given = value.unit if isinstance(value, Parameter) else ""
     if given not in ("", *ANGULAR):
@@ -282,7 +282,7 @@ class Assembly:
             something else.
         """
         symbol = self.numbers.symbol(value, name, unit, self.owner, allowed)
-        return _turning(value, symbol) if unit == "rad/s" else symbol
+        return _angular(value, symbol) if unit == "rad/s" else symbol
 
     def excite(self, frequency: ca.SX) -> None:
         """Set Omega, the angular frequency of the excitation: theta = Omega t.
@@ -579,7 +579,7 @@ class Assembly:
         self.places_held[len(self.switches)] = called, found
         return found
 
-    def slider(self, name: str, state: State, row: ca.SX, strain: ca.SX, limit: ca.SX) -> None:
+    def slider(self, name: str, state: State, row: ca.SX, elongation: ca.SX, limit: ca.SX) -> None:
         """Add an elastic slider: z is held while |e - z| < l, and carried along where e - z = l or -l.
 
         Parameters
@@ -593,7 +593,7 @@ class Assembly:
         strain, limit : casadi.SX
             e and l, functions of coordinates and the phase; all in the unit of z.
         """
-        index, scale, rates = len(self.switches), state.scale, (self.rate(strain), self.rate(limit))
+        index, scale, rates = len(self.switches), state.scale, (self.rate(elongation), self.rate(limit))
         speeds = tuple((rates[0] - way * rates[1]) / scale for way in (1, -1))
         slipping = tuple(state.derivative / scale - speed for speed in speeds)
         place = self.holds(state.name, state.symbol, scale, state.unit)
@@ -608,8 +608,8 @@ class Assembly:
         )
         self.differential_rows.append(row)
         self.switch(f"{name}: strained", rates[0] / scale, 0)
-        self.switch(f"{name}: slips up", (strain - state.symbol - limit) / scale, 1)
-        self.switch(f"{name}: slips down", (strain - state.symbol + limit) / scale, -1)
+        self.switch(f"{name}: slips up", (elongation - state.symbol - limit) / scale, 1)
+        self.switch(f"{name}: slips down", (elongation - state.symbol + limit) / scale, -1)
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

@@ -21,18 +21,18 @@ from symbolic.equations.samples import Samples, constant, multiples
 from symbolic.equations.variables import SwitchInfo
 
 LONG = 40
-"""Letters of an expression that still make a name."""
+"""Longest expression (letters) that is the name of its switch."""
 
 
 def find(assembly: Assembly) -> None:
-    """Add to an assembly the switches that its equations have and no part has declared.
+    """Add to an assembly the switches of its equations that no part has declared.
 
     Multiples of a switch that is there already are the same switch.
 
     Parameters
     ----------
     assembly : Assembly
-        The workbench of a model, all its parts laid and closed.
+        The assembly of a model, with all its parts, and closed.
     """
     forces = [motion.force for motion in assembly.motions.values()]
     rows = ca.vertcat(ca.SX(0, 1), *forces, *assembly.differential_rows, *assembly.algebraic_rows)
@@ -65,7 +65,7 @@ def _fixed(assembly: Assembly) -> list[ca.SX]:
 
 
 def _traits(assembly: Assembly) -> Callable[[ca.SX], Traits]:
-    """What a symbol is; a parameter is positive where its nominal value is."""
+    """The sign of a symbol as far as it is known; a parameter is positive where its nominal value is."""
     moving, fixed = _hashes(_moving(assembly)), _hashes(_fixed(assembly))
     positive = _hashes(n.parameter.symbol for n in assembly.numbers.taken if n.parameter.value > 0)
 
@@ -85,7 +85,7 @@ def _hashes(symbols: Iterable[ca.SX]) -> set[int]:
 
 
 def _written(assembly: Assembly, argument: ca.SX) -> str:
-    """An argument in letters, "x - 1"; a long one by the variables in it."""
+    """The text of an argument, "x - 1"; of a long one the names of its variables."""
     text = str(argument)
     for motion in assembly.motions.values():
         text = text.replace(f"(omega*{motion.velocity.name})", f"d{motion.position.name}/dt")
@@ -113,6 +113,6 @@ def _matching(text: str) -> int:
 
 
 def _unused(name: str, names: list[str]) -> str:
-    """The name, with a number where it is taken."""
+    """The name, with a number added where it is taken."""
     taken = [name, *(f"{name} ({k})" for k in range(2, len(names) + 2))]
     return next(each for each in taken if each not in names)

@@ -22,7 +22,7 @@ Rates = Callable[[float, Array], Array]
 
 @dataclass
 class Counted:
-    """Rates that are evaluated `most` times, and not again after a signal: CasADi drops what that raises."""
+    """Rates that are evaluated `most` times, and not again after a signal, whose exception CasADi drops."""
 
     rates: Rates
     most: float

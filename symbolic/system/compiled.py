@@ -28,10 +28,10 @@ from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
 from symbolic.tables import listed
 
-MANY, PLACES = 40, 20
+CONDENSED_FROM, STATES_PER_PLACE = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
-STRUCK, BETWEEN = 12, 10
+KINKED_FROM, KINKED_PER_PLACE = 12, 10
 """The same where motion has kinks, which excite modes far faster than the motion."""
 
 
@@ -181,7 +181,9 @@ class CompiledSystem:
 
     def condensed(self, *, always: bool = False) -> CompiledSystem | None:
         """Return the system of the nonlinear places alone: see `periodic.system.Condensable`."""
-        least, between = (STRUCK, BETWEEN) if self.switches else (MANY, PLACES)
+        least, between = (
+            (KINKED_FROM, KINKED_PER_PLACE) if self.switches else (CONDENSED_FROM, STATES_PER_PLACE)
+        )
         if not always and len(self.states) < least:
             return None
         found = self._condensed

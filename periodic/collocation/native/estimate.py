@@ -12,7 +12,7 @@ import numpy as np
 from periodic.collocation.fastmotions.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
 from periodic.collocation.native.perturbations import carried, multiplied
-from periodic.collocation.rounding import EPSILON, TERMS
+from periodic.collocation.rounding import TERMS
 from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
 from periodic.correction.outcome import FAILURES
@@ -24,6 +24,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System
+from periodic.system.precision import EPSILON
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
 _BETTER = tuple(f"better_{name}" for name in FOUND)

@@ -55,10 +55,10 @@ def motion(
     if part is None:
         raise ValueError("system has no structure; motion elsewhere is that of its states, as orbit['x'](t)")
     orbit = _with_forces(system, as_read_by(system, orbit))
-    seen = part.observed(orbit.parameter, freedoms, structure)
+    observed_at = part.observed(orbit.parameter, freedoms, structure)
     phases = np.atleast_1d(np.asarray(tau, dtype=float))
     forces = np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)])
-    states = _states(seen, orbit, forces, phases)
+    states = _states(observed_at, orbit, forces, phases)
     return states[:, ::2], states[:, 1::2]
 
 

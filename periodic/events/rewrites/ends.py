@@ -31,13 +31,11 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.twins import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import SHALLOW
 from periodic.events.violations import largest
 from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System
-
-SHALLOW = 0.1
-"""Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +69,9 @@ class Excursion:
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     """Yield all that may end on an orbit."""
     events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
-    about = {i for turn in reversals(system, orbit) for i in (turn.begin, turn.inside[-1])}
-    for turn in reversals(system, orbit):
-        yield Excursion(REVERSAL, turn.begin)
+    about = {i for reversal in reversals(system, orbit) for i in (reversal.begin, reversal.inside[-1])}
+    for reversal in reversals(system, orbit):
+        yield Excursion(REVERSAL, reversal.begin)
     for i in tied(system, orbit):
         dense = SwitchPolynomials(system, orbit)
         yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
@@ -113,7 +111,7 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         return _reversal(system, orbit, i)
     if row is ADDING_ABOUT:
         return _about(system, orbit, i)
-    return _stretch(system, orbit, row, i)
+    return _vanishing(system, orbit, row, i)
 
 
 def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
@@ -130,11 +128,11 @@ def _middle(orbit: Orbit, segment: int) -> float:
 
 def _reversal(system: System, orbit: Orbit, begin: int) -> Site:
     """An excursion about a reversal of friction."""
-    turn = next(turn for turn in reversals(system, orbit) if turn.begin == begin)
-    first, at = orbit.mesh.events[begin], turn.inside[0]
+    reversal = next(reversal for reversal in reversals(system, orbit) if reversal.begin == begin)
+    first, at = orbit.mesh.events[begin], reversal.inside[0]
     left = short_of(system, orbit, first.switch, float(orbit.phases[at]))
     held = Limit(at, first.switch, -first.direction, left)
-    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(turn.begin, turn.end))
+    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(reversal.begin, reversal.end))
 
 
 def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
@@ -183,7 +181,7 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
-    """The row of the stretch between an event node and the next one; None where it cannot vanish."""
+    """The row of the segment between an event node and the next one; None where it cannot vanish."""
     surface = _surface(system, orbit, segment)
     if surface is None:
         return None
@@ -200,8 +198,8 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     return None
 
 
-def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
-    """A stretch of sticking or slipping."""
+def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
+    """A segment of sticking or slipping."""
     surface = _surface(system, orbit, i)
     assert surface is not None and surface.releases is not None
     j, guard = (i + 1) % len(orbit.phases), surface.switch
@@ -226,7 +224,7 @@ def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
 
 
 def longest_slip(system: System, orbit: Orbit, switch: int) -> float:
-    """Return the length of the longest stretch without sticking at a guard."""
+    """Return the length of the longest slip at a guard."""
     own, surface = group(system, orbit.mesh, switch), surface_of(system, switch)
     pairs = zip(own, [*own[1:], *own[:1]], strict=True)
     slips = [(i, j) for i, j in pairs if mode_after(surface, orbit.mesh.events[i]) != STUCK]

@@ -25,18 +25,13 @@ from periodic.events.rewrites.table import (
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import LONGEST, VANISHING
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
 from periodic.orbit.orbit import Orbit
 from periodic.system import System
 
-VANISHING = 0.5
-"""What a step would leave this part of, by its tangent, may end within the step."""
-
 ENDS_BELOW = SHORT[-1]
 """Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
-
-LAST = 1e-2
-"""Length (rad) of the last slips of a motion that will not slip any more."""
 
 
 def first_change(
@@ -44,8 +39,8 @@ def first_change(
 ) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
-    `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
-    it is none of the system, on this mesh. A grazing that may be the end of an excursion is told as either.
+    `after` may be a guess, its event nodes out of order. What begins comes before what ends: an orbit past
+    it is none of the system, on this mesh. A grazing that may be the end of an excursion is given as both.
     """
     if not system.switches:
         return None
@@ -142,7 +137,7 @@ def _ending(
         jump = sliding(system, site.switch)
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now
-        size = min(LAST, half) if last else size
+        size = min(LONGEST, half) if last else size
     if then > (max(half, size) if row.power == ROOT and not (last or row.gradual) else size):
         return None
     final = last or size <= row.least

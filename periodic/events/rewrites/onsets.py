@@ -22,19 +22,11 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.twins import with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
 from periodic.events.violations import Breach, Violation, largest, limits
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
-
-AT_ONCE = 1e-7
-"""Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
-
-SHORT_OF = 1e-9
-"""How far from where something begins orbits without it are held, in the same part: rounding decides."""
-
-BESIDE = 1e-2
-"""Extrema that lie so near to each other (rad) are one: a switch may stay at its level for a while."""
 
 
 def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
@@ -52,7 +44,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
 
     Nothing where it is none on that orbit.
     """
-    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= AT_ONCE]
+    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
@@ -102,7 +94,7 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
             if sides[e.interval] == side and not any(
-                apart(e.phase, tau, dense.orbit) < BESIDE for tau in own
+                apart(e.phase, tau, dense.orbit) < SLOW_CROSSING for tau in own
             ):
                 yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
 
@@ -124,7 +116,7 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         guard = surface.switch
         stop = EventNode(guard, side, modes=((guard, STUCK),))
         new = (EventNode(k, -side), early), (stop, late)
-        row, left = ADDING_SLIDING, SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
+        row, left = ADDING_SLIDING, AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
     if surface.kind == Kind.SLIDER:
@@ -160,7 +152,7 @@ def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation)
     else:
         stops = replace(event, modes=((guard, STUCK), *others))
         row, changed, new = CROSSING_SLIDING, stops, EventNode(limit.switch, event.direction)
-    held_at = Limit(node, limit.switch, limit.side, SHORT_OF * most)
+    held_at = Limit(node, limit.switch, limit.side, AT_LEVEL * most)
     value = -limit.depth
     return Site(row, limit.switch, node, held_at, value, (Added(new, phase, 1.0),), (), ((node, changed),))
 
@@ -183,7 +175,7 @@ def _same(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
     if not (isinstance(one.at, Extremum) and isinstance(other.at, Extremum)):
         return one.at == other.at
     if one.row is not GRAZING:
-        return apart(one.at.phase, other.at.phase, orbit) < BESIDE
+        return apart(one.at.phase, other.at.phase, orbit) < SLOW_CROSSING
     begin, end = held(system, orbit, one.switch, one.at.phase)
-    later = np.mod(other.at.phase - begin + BESIDE, orbit.mesh.period)
-    return bool(later <= end - begin + 2 * BESIDE)
+    later = np.mod(other.at.phase - begin + SLOW_CROSSING, orbit.mesh.period)
+    return bool(later <= end - begin + 2 * SLOW_CROSSING)

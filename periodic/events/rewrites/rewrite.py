@@ -19,23 +19,18 @@ from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import SHORT_OF, at_once
+from periodic.events.rewrites.onsets import at_once
 from periodic.events.rewrites.sites import Site, index_of, rewritten
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
 from periodic.events.violations import largest
-from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
+from periodic.refinement.equidistribution import density, redistribute, spread
 from periodic.system import System
-
-ALIKE = 1e-3
-"""Excursions whose sizes differ by this part end at once."""
-
-BRIEF = 2.0
-"""Excursions at most so many times as long as one that ends end with it, or are about to."""
 
 
 @dataclass(frozen=True)
@@ -142,9 +137,9 @@ class Ends:
         """What ends of the same row, as small as this."""
         found = [own]
         for other in excursions(system, orbit):
-            if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < ALIKE:
-                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _touched(each)}
-                found += [site] if not gone & set(_touched(site)) else []
+            if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < BESIDE_EXTREMUM:
+                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _changed(each)}
+                found += [site] if not gone & set(_changed(site)) else []
         return found
 
     def _mesh(self, orbit: Orbit, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -158,7 +153,7 @@ class Ends:
 
     def _brief(self, orbit: Orbit) -> NDArray[np.bool_]:
         """Which intervals are those of excursions about as short as this one."""
-        brief = orbit.mesh.segment_lengths(orbit.phases) < BRIEF * self.size
+        brief = orbit.mesh.segment_lengths(orbit.phases) < self.size / VANISHING
         return np.repeat(brief, [len(breaks) - 1 for breaks in orbit.mesh.breaks])
 
     def _held(
@@ -170,7 +165,7 @@ class Ends:
         held, left = own.held, 0.0
         jump = sliding(system, own.switch)
         if jump is not None and not own.row.touches:
-            left = SHORT_OF * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
+            left = AT_LEVEL * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
             assert isinstance(held, Clearance | Limit)
             held = replace(held, level=left)
         if isinstance(held, Limit):
@@ -181,5 +176,5 @@ class Ends:
         return held
 
 
-def _touched(site: Site) -> Sequence[int]:
+def _changed(site: Site) -> Sequence[int]:
     return (*site.removed, *(j for j, _ in site.replaced))

@@ -28,17 +28,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from periodic.events.thresholds import LEAST_CROSSING, LEAST_GRAZING, LONGEST, decades
+
 ROOT, LINEAR = 0.5, 1.0
 """Powers of the size in the depth: of what touches, and of what passes."""
 
-SHORT = (1e-2, 1e-3, 1e-4)
-"""Lengths (rad) at which patterns are exchanged, tried in turn; of impacts speeds, as parts of the range."""
-
-SHORTER = (1e-5, 1e-6)
-"""Those tried where these lead to none, or lie beyond more folds than one."""
-
-FLAT = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
-"""The same of slips between two stretches of sticking, whose size falls as the cube of their length."""
+SHORT = decades(LONGEST, LEAST_GRAZING)
+SHORTER = decades(LONGEST, LEAST_CROSSING)[len(SHORT) :]
+FLAT = tuple(size ** (2 / 3) for size in decades(LONGEST, LEAST_GRAZING**1.5))
+"""Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: of what
+touches; the further ones of what passes; of slips between two sticking segments. The latter change the
+states by the cube of their length, what touches by its square: the sizes are those of one effect.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,12 +8,10 @@ from periodic.events.modes import mode_after, surface_of, twins
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
+from periodic.events.thresholds import BESIDE_EXTREMUM
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, System
-
-SAME = 1e-3
-"""Phases closer than this (rad) are those of one turn of the strain."""
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
@@ -31,7 +29,7 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
         return _grazing(system, orbit, site, guard, both)
     release, stop = site.added
     for j, event in enumerate(orbit.mesh.events):
-        if event.switch in both and apart(float(orbit.phases[j]), site.at.phase, orbit) < SAME:
+        if event.switch in both and apart(float(orbit.phases[j]), site.at.phase, orbit) < BESIDE_EXTREMUM:
             joined = replace(event, modes=(*event.modes, (guard, STUCK)))
             return replace(site, added=(release,), replaced=((j, joined),))
     return site

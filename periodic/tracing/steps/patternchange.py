@@ -14,24 +14,17 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
+from periodic.refinement.adaptation import MOST_MESHES
+from periodic.system.precision import CONVERGED
 
-LONGER = 1.2
+FARTHEST_AHEAD = 1.2
 """A change of pattern that lies within so many steps is where the step ends."""
-
-LAST_INCREMENT = 1e-8
-"""Newton's last increment there, before one more step."""
 
 CHANGE_ITERATIONS = 8
 """Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
 FARTHEST_BEYOND = 0.02
 """Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
-
-STANDING = 1e-8
-"""A change that is no farther than this part of a step is at its base."""
-
-MESHES_BEYOND = 4
-"""How often the mesh of the orbit beyond a change is made anew."""
 
 CHANGES_IN_A_STEP = 8
 """Most changes of the pattern that are tried as the first one in a step."""
@@ -50,7 +43,7 @@ def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
     """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
     guess = tangent(solver.problem, base, ds)
     change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
-    if change is None or not change.strict or change.part > STANDING:
+    if change is None or not change.strict or change.part > CONVERGED:
         return None
     return Reached(base, 0.0, change)
 
@@ -67,9 +60,9 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
-        if not 0 < along <= LONGER * ds:
+        if not 0 < along <= FARTHEST_AHEAD * ds:
             return None
-        if _comes_back(found, change, along <= STANDING * ds):
+        if _comes_back(found, change, along <= CONVERGED * ds):
             return None
         earlier = method.change(system, base.orbit, found.orbit)
         if earlier is None or (not change.strict and not earlier.strict):
@@ -98,7 +91,7 @@ def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> 
     """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
     newton = solver.tolerance.newton
     most = min(most or newton.max_iterations, newton.max_iterations)
-    close = replace(newton, tolerance=min(LAST_INCREMENT, newton.tolerance), close=0.0, max_iterations=most)
+    close = replace(newton, tolerance=min(CONVERGED, newton.tolerance), close=0.0, max_iterations=most)
     return solver.on(guess, held, close)
 
 
@@ -170,7 +163,7 @@ def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solu
 
     Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
     """
-    for _ in range(MESHES_BEYOND):
+    for _ in range(MOST_MESHES):
         if not found.ok or found.error.curable <= solver.tolerance.orbit:
             break
         mesh = found.refinement.refined()

@@ -1,7 +1,7 @@
-"""One step of a continuation: its end on a mesh that suits it, or why it is rejected; the mesh of the next.
+"""One step of a continuation: its end on a mesh made for it, or why it is rejected; the mesh of the next.
 
 A step is rejected where Newton fails, where its end is not where its two tangents lead (a jump to another
-branch), where the tangent turns too much, where an event node is past the end of its excursion, or where
+branch), where the tangent turns by too much, where an orbit violates the word of its event nodes, or where
 the error estimate exceeds the tolerance on a mesh made for the new orbit.
 """
 
@@ -34,7 +34,7 @@ class BeyondError(RejectedError):
 @dataclass(frozen=True)
 class Attempt:
     """A step that was tried: the base on the mesh of its end, the end, its length, and the largest ratio to a
-    bound that a step as long would have next."""
+    bound that is expected of a next step of that length."""
 
     base: Solution
     new: Solution
@@ -62,7 +62,7 @@ class Stepper:
         """Take one step.
 
         The mesh is made anew up to `meshes` times, while it changes; where then only the multipliers' error
-        still exceeds its bound the point stands, and tells it.
+        exceeds its bound, the step is accepted and the point says so.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class Stepper:
         Raises
         ------
         RejectedError
-            Where it leads to no orbit, or to one that is not believed.
+            Where it leads to no orbit, or to one that fails a check.
         """
         tolerance = self.solver.tolerance.orbit
         for left in reversed(range(self.control.meshes + 1)):
@@ -149,7 +149,7 @@ class Stepper:
         return replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
 
     def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
-        """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""
+        """Solve the base again on the mesh made for the new orbit, with the base's own event nodes."""
         moved = carried(self.solver, base, mesh, base.orbit.phases)
         if not moved.ok:
             raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
@@ -158,7 +158,7 @@ class Stepper:
         return moved
 
     def remeshed(self, new: Solution, due: bool) -> Solution:
-        """A solution on a mesh for the step from it: right event nodes, an error inside its window.
+        """Return a solution on the mesh of the next step: its event nodes, an error within bounds.
 
         Parameters
         ----------

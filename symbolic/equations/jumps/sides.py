@@ -16,7 +16,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.jumps.operations import Operations
-from symbolic.equations.jumps.sliding import Slide, sliding
+from symbolic.equations.jumps.sliding import EQUAL, Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
 
@@ -24,19 +24,16 @@ ZERO_ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
 
 ZERO_VALUE = 1e-10
-"""Value of a switch that is as good as 0."""
-
-EQUAL = 1e-8
-"""Difference of residuals, relative to them, that is none."""
+"""Value of a switch that counts as 0."""
 
 
 @dataclass(frozen=True)
 class Sided:
     """The residual with sides: a symbol each for the switches with the indices `jumps`, among them sliders.
 
-    slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
-    positive side and on the negative one, the other jumps on their given sides; between them the motion is
-    held.
+    slides: the switches along which a motion can slide, each with the two functions that pass 0 where sliding
+    ends: s' with the equations of the positive side and with those of the negative one, other jumps being on
+    their given sides. The motion is held as long as 0 lies between the two.
     """
 
     residual: ca.SX
@@ -65,11 +62,11 @@ def sided(
     excluded : tuple of int
         Switches that are no jumps of the equations: impacts.
     moving : casadi.SX, optional
-        Rows that tell all rates, where those of the residual do not.
+        Rows that determine all rates, where those of the residual do not.
     sliders : tuple of int
-        Switches that have a side besides.
+        Further switches that have a side.
     places : mapping of int to casadi.SX, optional
-        Of the switches at which something may be held all along, how far it is from where it is.
+        Of switches at which something may be held all along: its distance from the place there.
 
     Returns
     -------

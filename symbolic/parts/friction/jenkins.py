@@ -148,14 +148,14 @@ def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name
     creep = ca.SX(CREEP)
     if part.creep is not None:
         creep = assembly.parameter(part.creep, "creep", "rad", POSITIVE)
-    z, strain = assembly.state(name, q.unit, scale, ca.SX(0)), deflection(assembly, q, to)
-    force = k * (strain - z.symbol)
+    z, elongation = assembly.state(name, q.unit, scale, ca.SX(0)), deflection(assembly, q, to)
+    force = k * (elongation - z.symbol)
     over = ca.fmax(force - limit, 0) + ca.fmin(force + limit, 0)
     resist(assembly, q, to, force)
     assembly.output(f"force of {name}", "N", force)
     row = (creep * (z.derivative - LEAK * force / k) - over / k) / scale
     if part.creep is None:
-        assembly.slider(name, z, row, strain, limit / k)
+        assembly.slider(name, z, row, elongation, limit / k)
         return
     assembly.differential_rows.append(row)
     assembly.switch(f"{name}: f = F", (force - limit) / (k * scale), 0)

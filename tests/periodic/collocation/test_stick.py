@@ -7,7 +7,7 @@ import pytest
 
 import symbolic as sym
 from periodic.events.rewrites import first
-from periodic.events.sticking import _stretch
+from periodic.events.sticking import _sticking
 from periodic.events.violations import Breach, Violation
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
@@ -33,7 +33,7 @@ def test_release_of_a_mass_that_another_pulls(side: int, begin: float) -> None:
     state = np.zeros(len(names))
     state[names.index("y'")] = side * 1.5
     (switch,) = slides_of(system)
-    found = _stretch(system, orbit, switch, state, begin)
+    found = _sticking(system, orbit, switch, state, begin)
     assert found.release is not None
     assert found.release[1] == pytest.approx(begin + np.arcsin(1 / 1.5), abs=1e-4)
 
@@ -51,7 +51,7 @@ def test_release_beside_a_fast_mode() -> None:
     state = np.zeros(len(names))
     state[names.index("y'")] = 1.5
     (switch,) = slides_of(system)
-    found = _stretch(system, orbit, switch, state, 0.0)
+    found = _sticking(system, orbit, switch, state, 0.0)
     assert found.release is not None
     assert found.release[1] == pytest.approx(np.arcsin(1 / 1.5), abs=1e-4)
 
@@ -66,7 +66,7 @@ def test_stretch_without_end() -> None:
     state = np.zeros(len(names))
     state[names.index("y'")] = 0.9
     (switch,) = slides_of(system)
-    found = _stretch(system, orbit, switch, state, 0.0)
+    found = _sticking(system, orbit, switch, state, 0.0)
     assert found.release is None and found.size == np.inf
 
 

@@ -63,7 +63,7 @@ def test_forces_at_an_event_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> N
     system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
     orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
     assert len(SplitLinearisation.about(system, orbit, ()).saltations) == 2
-    monkeypatch.setattr(modalsaltation, "FORCE_ITERATIONS", 1)
+    monkeypatch.setattr(modalsaltation, "MOST_ITERATIONS", 1)
     with pytest.raises(np.linalg.LinAlgError, match="forces at an event"):
         _ = SplitLinearisation.about(system, orbit, ()).saltations
 

@@ -18,7 +18,7 @@ from survey.rows import CONTROL, TOL, row, traced, verdicts
 
 import periodic as per
 from periodic import Reason
-from periodic.bifurcations.locate import special_points
+from periodic.bifurcations.location import special_points
 from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond

@@ -12,7 +12,7 @@ import symbolic as sym
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme
-from periodic.tracing.resting import resting
+from periodic.tracing.meanequilibrium import resting
 
 CLEARANCE = 5e-5
 FILM = {"viscosity": 0.02, "radius": 0.025, "length": 0.025, "clearance": CLEARANCE}
@@ -78,7 +78,7 @@ def test_linear_part_without_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     start = at_rest(system, uniform(Scheme(), 4), system.nominal)
     for modes in (lambda parameter: drifting, lost):
         part = SimpleNamespace(modes=modes, states=(0,), forces=(0,))
-        monkeypatch.setattr("periodic.tracing.resting.linear_of", lambda _, part=part: part)
+        monkeypatch.setattr("periodic.tracing.meanequilibrium.linear_of", lambda _, part=part: part)
         assert resting(system, start) is None
 
 

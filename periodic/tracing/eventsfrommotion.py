@@ -23,10 +23,10 @@ from periodic.tracing.steps.patternchange import Crossed
 MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
-AHEAD = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
+DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
-FARTHEST = 1.0
+FARTHEST_ASIDE = 1.0
 """How far from where the tangent leads it may be, in the length of the step."""
 
 
@@ -52,7 +52,7 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
     sign = float(np.sign(base.tangent.parameter))
     if problem.free != (problem.index,) or sign == 0:
         return None
-    for ds in (part * first for part in AHEAD):
+    for ds in (part * first for part in DISTANCES_BEYOND):
         ahead = tangent(problem, base, ds)
         value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
@@ -63,7 +63,7 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):
+        if distance(problem, ahead, found.orbit) > FARTHEST_ASIDE * distance(problem, base.orbit, ahead):
             continue
         if found.tangent.parameter * sign > 0:
             apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
