@@ -41,7 +41,8 @@ def all_along(
         stuck = np.flatnonzero(mode == STUCK)
         if len(stuck):
             place, weights = surface.place
-            parameter[place] = float(orbit.nodes[stuck[-1]] @ np.array(weights))
+            places = orbit.nodes[stuck] @ np.array(weights)
+            parameter[place] = (places.min() + places.max()) / 2  # between the slips that are gone
             modes[surface.switch] = HELD
     changed = not np.array_equal(parameter, orbit.parameter)
     return tuple(modes.items()), parameter if changed else None

@@ -21,6 +21,7 @@ from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import (
+    HELD,
     STUCK,
     Jumping,
     Kind,
@@ -101,6 +102,11 @@ def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
         return own
     passes = event.switch == surface.switch or event.switch in (surface.releases or ())
     return event.direction if passes and surface.kind != Kind.IMPACT else None
+
+
+def held_all_along(mesh: Mesh, surface: SurfaceLike) -> bool:
+    """Whether a motion is held at a surface all along."""
+    return dict(mesh.modes).get(surface.switch) == HELD
 
 
 def group(system: System, mesh: Mesh, switch: int) -> list[int]:

@@ -83,6 +83,10 @@ class Start:
         if not self.search:
             return self._at_fold(guess, sign, first)
         others = self._other_guesses(guess)
+        if slips:
+            last = worded(solver, first.orbit, sign)
+            if last.ok and np.isfinite(last.error.motion):
+                return last
         if settles:
             motion = next(others, None)
             if motion is not None and (last := worded(self.solver, motion, sign)).ok:

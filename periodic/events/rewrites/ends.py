@@ -20,6 +20,7 @@ from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CORNER,
     CROSSING_SLIDING,
+    FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
@@ -79,11 +80,14 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
         second = events[(i + 1) % k]
         if first.switch == second.switch in own and i not in about:
             yield Excursion(GRAZING, i)
+        both = only_slips(system, orbit, i)
+        if both and both[0].index == i:
+            yield Excursion(FIRST_SLIPS, i, segments=tuple(j for slip in both for j in slip.segments))
         row = _held(system, orbit, i)
-        if row is not None:
+        if row is not None and not both:
             yield Excursion(row, i)
         inner = slip_about(system, orbit, i)
-        if inner:
+        if inner and not both:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
@@ -95,6 +99,8 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
     """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
+    if excursion.row is FIRST_SLIPS:
+        return _first_slips(system, orbit, excursion.index)
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]
@@ -168,6 +174,36 @@ def _about(system: System, orbit: Orbit, begin: int) -> Site:
     gone = begin, (inner[-1] + 1) % len(orbit.phases)
     held = Limit(inner[0], first.switch, -first.direction)
     return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, removed=gone)
+
+
+def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:
+    """Return the slips of a joint, there and back, if it has no others and one of both begins at an event."""
+    surface = surface_of(system, orbit.mesh.events[begin].switch)
+    if surface.releases is None or surface.place is None:
+        return []
+    own = group(system, orbit.mesh, surface.switch)
+    begun = [i for i in own if mode_after(surface, orbit.mesh.events[i]) != STUCK]
+    ways = {orbit.mesh.events[i].direction for i in begun}
+    if begin not in begun or len(own) != 4 or ways != {1, -1}:
+        return []
+    found = [slip for slip in (_slip(system, orbit, i) for i in begun) if slip is not None]
+    return found if len(found) == 2 else []
+
+
+def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
+    """The slip that begins at an event node and may end, by itself or about events at other surfaces."""
+    if _held(system, orbit, begin) is ADDING_SLIDING:
+        return Excursion(ADDING_SLIDING, begin, segments=(begin,))
+    inner = slip_about(system, orbit, begin)
+    return Excursion(ADDING_ABOUT, begin, segments=(begin, inner[-1])) if inner else None
+
+
+def _first_slips(system: System, orbit: Orbit, begin: int) -> list[Site]:
+    """The only slips of a joint, without which it is held all along and touches where one was."""
+    each = [_end(system, orbit, slip.row, slip.index) for slip in only_slips(system, orbit, begin)]
+    removed = tuple(j for site in each for j in site.removed)
+    replaced = tuple(pair for site in each for pair in site.replaced)
+    return [replace(site, row=FIRST_SLIPS, removed=removed, replaced=replaced) for site in each]
 
 
 def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:

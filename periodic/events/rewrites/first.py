@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.change import Change
-from periodic.events.modes import of_held, sliding, surface_of
+from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
 from periodic.events.rewrites.onsets import begins
 from periodic.events.rewrites.rewrite import Begins, Ends
@@ -82,7 +82,9 @@ def _onsets(
         return []
     held = of_held(system)
     slips = any(end.site.row is not SWAP and sliding(system, end.site.switch) is not None for end in ending)
-    resting = {jump for jump in held if not SwitchPolynomials(system, before).knots[:, :, jump].any()}
+    dense = SwitchPolynomials(system, before)
+    loose = [k for k in held if not held_all_along(before.mesh, surface_of(system, k))]
+    resting = {jump for jump in loose if not dense.knots[:, :, jump].any()}
     found = list[Begins | WholeOrbit]()
     for violation in between_nodes(system, after, before):
         jump = sliding(system, violation.switch)

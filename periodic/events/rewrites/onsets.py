@@ -7,17 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.events.modes import group, mode_after, surface_of
+from periodic.events.modes import group, held_all_along, mode_after, surface_of
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CROSSING_SLIDING,
+    FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
     SWITCHING_SLIDING,
+    Row,
 )
 from periodic.events.rewrites.twins import with_twins
 from periodic.events.sideconditions import Clearance, Limit
@@ -59,7 +61,20 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
-    return found
+    return [*found, *_back(system, orbit, found)]
+
+
+def _back(system: System, orbit: Orbit, found: list[Site]) -> list[Site]:
+    """Of what slips first the slip the other way, where it is not at once: in a period it comes back."""
+    if found[0].row is not FIRST_SLIPS:
+        return []
+    surface, missing = surface_of(system, found[0].switch), list[Site]()
+    assert surface.releases is not None
+    for switch in surface.releases:
+        if all(site.switch != switch for site in found):
+            dense = SwitchPolynomials(system, orbit)
+            missing += [min(_extrema(dense, surface, switch), key=lambda site: site.value)]
+    return missing
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
@@ -67,22 +82,27 @@ def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
         for switch in (surface.switch, *(surface.releases or ())):
-            if row_of(surface, switch) == row:
+            if row_of(orbit, surface, switch) == row:
                 yield from _extrema(dense, surface, switch)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
             yield from (site for site in each if site.row.name == row)
 
 
-def row_of(surface: SurfaceLike, switch: int) -> str:
+def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
     """Return the name of the row for an extremum of a switch."""
     if surface.kind in (Kind.KINK, Kind.JUMP):
         return GRAZING.name
     if surface.kind == Kind.IMPACT:
         return IMPACT.name
     if surface.releases is not None:
-        return (GRAZING_SLIDING if switch == surface.switch else ADDING_SLIDING).name
+        return (GRAZING_SLIDING if switch == surface.switch else _slip(orbit, surface)).name
     return ""
+
+
+def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
+    """The row of a slip of what is held."""
+    return FIRST_SLIPS if held_all_along(orbit.mesh, surface) else ADDING_SLIDING
 
 
 def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
@@ -116,7 +136,7 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         guard = surface.switch
         stop = EventNode(guard, side, modes=((guard, STUCK),))
         new = (EventNode(k, -side), early), (stop, late)
-        row, left = ADDING_SLIDING, AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
+        row, left = _slip(orbit, surface), AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
     if surface.kind == Kind.SLIDER:

@@ -164,7 +164,7 @@ class Ends:
             return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         held, left = own.held, 0.0
         jump = sliding(system, own.switch)
-        if jump is not None and not own.row.touches:
+        if jump is not None and own.row is not GRAZING_SLIDING:
             left = AT_LEVEL * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
             assert isinstance(held, Clearance | Limit)
             held = replace(held, level=left)

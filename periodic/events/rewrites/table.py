@@ -10,6 +10,8 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     crossing-sliding       (+ -)               (+ 0)(0 -)        limit            length
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
     the same about w       w, in 0             (0 +) w (+ 0)     limit            length
+    first slips            0 all along         (0 +)(+ 0) and    clearance        length
+                                               (0 -)(- 0)
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
@@ -80,6 +82,9 @@ GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
 ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
 ADDING_ABOUT = Row(
     name="adding-sliding about another event", touches=False, power=ROOT, sizes=FLAT, gradual=True
+)
+FIRST_SLIPS = Row(
+    name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
 )
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
