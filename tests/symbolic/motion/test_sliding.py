@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
-import scipy.integrate
 from reference.contact import period
 from support.drawn.contact import Drawn
 
@@ -61,22 +58,13 @@ def test_friction_and_a_wall() -> None:
     np.testing.assert_allclose(found.end, [motion["q0"][end], motion["q0'"][end]], atol=1e-8)
 
 
-def test_fast_modes_need_no_steps_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert a beam's tip on friction, ringing, to 1e-4 of one followed to 1e-10; by Radau."""
+def test_fast_modes_need_no_steps_of_their_own() -> None:
+    """Assert a beam's tip on friction, ringing, to 1e-4 of one followed to 1e-10."""
     structure = sym.Structure(
         sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=3), damping=0.02
     )
-    tip, asked = structure["tip"], list[str]()
+    tip = structure["tip"]
     parts = structure + sym.CoulombFriction(tip, 0.002) + sym.HarmonicForce(tip, 0.02, 2.0)
     system = sym.compile(parts, condense=False)
-    for method in ("Radau", "LSODA"):
-        kind = getattr(scipy.integrate, method)
-
-        def noted(*given: Any, kind: Any = kind, **options: Any) -> Any:
-            asked.append(kind.__name__)
-            return kind(*given, **options)
-
-        monkeypatch.setattr(scipy.integrate, method, noted)
     loose, tight = (sym.simulate(system, settle=0, periods=2, tolerance=tol) for tol in (1e-6, 1e-10))
-    assert asked[0] == "Radau" and asked[-1] == "LSODA"
     assert np.abs(loose["tip"] - tight["tip"]).max() < 1e-4 * np.ptp(tight["tip"])
