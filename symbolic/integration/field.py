@@ -18,6 +18,12 @@ from symbolic.integration.cvodes import Cvodes
 from symbolic.integration.lsoda import failure, followed
 from symbolic.integration.rates import SENSITIVITY, constraint_rows, explicit_rates
 
+RINGING = 1000.0
+"""Rad by which a mode turns along a motion from which on Radau integrates it: CVODES follows each cycle."""
+
+LOOSE = 1e-6
+"""Tolerance from which on it does; to a finer one it takes as many steps."""
+
 CONSTRAINT_ITERATIONS = 20
 """Most Gauss-Newton steps onto the constraints."""
 
@@ -61,7 +67,8 @@ class VectorField:
 
         Raises IntegrationError where both integrators fail.
         """
-        found = self._cvodes.run(start, phase, given, tolerance)
+        rings = tolerance >= LOOSE and self._rings(start, phase, given)
+        found = None if rings else self._cvodes.run(start, phase, given, tolerance)
         if found is not None:
             return found
         later = followed(
@@ -70,8 +77,16 @@ class VectorField:
             start,
             phase,
             tolerance,
+            "Radau" if rings else "LSODA",
         )
         return np.concatenate([start[None], later])
+
+    def _rings(self, start: Array, phase: Array, given: Array) -> bool:
+        """Whether a mode turns so often along a motion that Radau, which lets it die away, is faster."""
+        slope = np.array(self._slope(start, phase[0], given))
+        if not np.isfinite(slope).all():
+            return False
+        return float(np.abs(np.linalg.eigvals(slope).imag).max()) * (phase[-1] - phase[0]) > RINGING
 
     def along(self, values: Array, phase: Array, given: Array) -> Array:
         """Return y' along a motion, shape (K, w)."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from reference.contact import period
@@ -9,6 +11,7 @@ from support.drawn.contact import Drawn
 
 import periodic as per
 import symbolic as sym
+from symbolic.integration import field
 
 F = sym.functions
 
@@ -58,13 +61,21 @@ def test_friction_and_a_wall() -> None:
     np.testing.assert_allclose(found.end, [motion["q0"][end], motion["q0'"][end]], atol=1e-8)
 
 
-def test_fast_modes_need_no_steps_of_their_own() -> None:
-    """Assert a beam's tip on friction, ringing, to 1e-4 of one followed to 1e-10."""
+def test_fast_modes_need_no_steps_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert a beam's tip on friction, ringing, to 1e-4 of one followed to 1e-10; by Radau."""
     structure = sym.Structure(
         sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=3), damping=0.02
     )
-    tip = structure["tip"]
+    tip, followed, asked = structure["tip"], field.followed, list[str]()
     parts = structure + sym.CoulombFriction(tip, 0.002) + sym.HarmonicForce(tip, 0.02, 2.0)
     system = sym.compile(parts, condense=False)
-    loose, tight = (sym.simulate(system, settle=0, periods=2, tolerance=tol) for tol in (1e-6, 1e-10))
+
+    def noted(*given: Any) -> Any:
+        asked.append(given[5])
+        return followed(*given)
+
+    monkeypatch.setattr(field, "followed", noted)
+    loose, by = sym.simulate(system, settle=0, periods=2, tolerance=1e-6), set(asked)
+    tight = sym.simulate(system, settle=0, periods=2, tolerance=1e-10)
+    assert by == {"Radau"} and set(asked) == by
     assert np.abs(loose["tip"] - tight["tip"]).max() < 1e-4 * np.ptp(tight["tip"])
