@@ -18,12 +18,10 @@ from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.surfaces import MINUS, PLUS, STUCK, Kind, Surface
 from symbolic.integration.cvodes import IntegrationError
+from symbolic.integration.field import VectorField
 
 Modes = tuple[int, ...]
 """Of every surface of a system, in their order; 0 of those that have none."""
-
-HELD = (Kind.SLIDING, Kind.SLIDER)
-"""Kinds of surfaces that may be STUCK."""
 
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
@@ -36,6 +34,8 @@ class Switched(Protocol):
     def expressions(self) -> Expressions: ...
     @property
     def surfaces(self) -> Sequence[Surface]: ...
+    @property
+    def field(self) -> VectorField: ...
     def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array: ...
     def switch_gradient(
         self, state: Array, phase: Array, parameter: Array, side: Array | None = None
@@ -102,7 +102,7 @@ class Switching:
         """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
         found = np.zeros(self.system.expressions.sided.side.numel())
         for surface, mode in zip(self.surfaces, modes, strict=True):
-            if surface.kind in HELD and surface.column is not None:
+            if surface.column is not None:
                 found[surface.column] = mode
         return found
 
@@ -117,11 +117,6 @@ class Switching:
                 found.append(Guard(i, surface.switch, mode))
         return found
 
-    def values(self, guards: Sequence[Guard], modes: Modes, phase: Array, state: Array) -> Array:
-        """Return guards along a motion, (N, guards)."""
-        signs = np.array([guard.sign for guard in guards])
-        return self._switches(modes, phase, state)[:, [guard.switch for guard in guards]] * signs
-
     def begin(self, tau: float, state: Array) -> tuple[Array, Modes]:
         """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
         values = self._at((0,) * len(self.surfaces), tau, state)
@@ -130,7 +125,7 @@ class Switching:
 
     def _first(self, surface: Surface, values: Array) -> int:
         """The mode of a surface as its guard has it."""
-        if surface.kind in (Kind.JUMP, Kind.RELAY, Kind.MARKER):
+        if surface.kind == Kind.MARKER:
             return 0
         if surface.kind == Kind.IMPACT:
             return PLUS
@@ -142,6 +137,10 @@ class Switching:
             return way if slips else STUCK
         return STUCK if surface.kind == Kind.SLIDING and abs(rate) <= self.tolerance else way
 
+    def maps(self, fallen: Sequence[Guard]) -> bool:
+        """Return whether an event at which some guards have fallen to 0 is an impact, or more than one."""
+        return any(self.surfaces[guard.surface].kind == Kind.IMPACT for guard in fallen)
+
     def passed(self, fallen: Sequence[Guard], modes: Modes, tau: float, state: Array) -> tuple[Array, Modes]:
         """Return state and modes after an event at which some guards have fallen to 0."""
         new, tossed = list(modes), set()
@@ -150,7 +149,7 @@ class Switching:
             if surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
-            elif surface.kind == Kind.KINK:
+            elif surface.kind in (Kind.KINK, Kind.JUMP):
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
@@ -229,30 +228,6 @@ class Switching:
     def _switches(self, modes: Modes, phase: Array, state: Array) -> Array:
         side = np.repeat(self.side(modes)[None], len(phase), axis=0)
         return self.system.switch(state, phase, self.parameter, side)
-
-    def along(
-        self, tau: float, state: Array, crossings: Sequence[tuple[int, float, float]]
-    ) -> tuple[Event, ...]:
-        """Return the events of a motion through kinks and impacts alone.
-
-        Parameters
-        ----------
-        tau : float
-            Phase where it begins.
-        state : ndarray, shape (n,)
-            State there.
-        crossings : sequence of tuple
-            Switch, phase, and the rate with which it passes.
-        """
-        modes, found = self.begin(tau, state)[1], []
-        places = {surface.switch: i for i, surface in enumerate(self.surfaces)}
-        for switch, phase, rate in crossings:
-            i = places[switch]
-            impact = self.surfaces[i].kind == Kind.IMPACT
-            after = PLUS if impact or rate > 0 else MINUS
-            modes = (*modes[:i], after, *modes[i + 1 :])
-            found.append(Event(i, after if impact else -after, after, phase, modes))
-        return tuple(found)
 
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
         """Return what has happened to the surfaces: changes of mode, and impacts."""

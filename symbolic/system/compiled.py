@@ -14,9 +14,10 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
-from symbolic.equations.surfaces import Kind, Surface, surfaces
+from symbolic.equations.surfaces import Surface, surfaces
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.integration.field import VectorField
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.kernels.choice import Kernels
@@ -275,11 +276,6 @@ class CompiledSystem:
         names = [parameter.name for parameter in self.parameters]
         return {k: (names.index(name), weights) for k, (name, weights) in self.expressions.places.items()}
 
-    @property
-    def kinks(self) -> tuple[int, ...]:
-        """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
-        return tuple(surface.switch for surface in self.surfaces if surface.kind == Kind.KINK)
-
     def linearise_beside(
         self,
         rate: Array,
@@ -405,8 +401,13 @@ class CompiledSystem:
         return Flow(self, tolerance).run(state, algebraic, parameter, phase)
 
     @cached_property
+    def field(self) -> VectorField:
+        """The rates, and the integrators along them."""
+        return VectorField(self.expressions)
+
+    @cached_property
     def _flow(self) -> SensitiveFlow:
-        return SensitiveFlow(self.expressions, self.move, self.kinks)
+        return SensitiveFlow(self, self.move)
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""
