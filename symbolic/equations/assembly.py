@@ -590,7 +590,7 @@ class Assembly:
             z.
         row : casadi.SX
             The row of z where the state decides, as that of one who creeps.
-        strain, limit : casadi.SX
+        elongation, limit : casadi.SX
             e and l, functions of coordinates and the phase; all in the unit of z.
         """
         index, scale, rates = len(self.switches), state.scale, (self.rate(elongation), self.rate(limit))
