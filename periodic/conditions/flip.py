@@ -16,7 +16,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS, difference_step
 
-MONODROMY_STEP = difference_step(order=4, derivative=2)
+MONODROMY_STEP = 3e-3
 """Length of the differences, which are of fourth order, as a part of the motion q."""
 
 

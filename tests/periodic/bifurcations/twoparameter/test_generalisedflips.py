@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import periodic as per
 import symbolic as sym
-from periodic.conditions.flip import MONODROMY_STEP, flip_coefficient
+from periodic.conditions.flip import flip_coefficient
 
 COUPLED = 0.7
 
@@ -96,7 +96,7 @@ def test_coefficient_by_integration() -> None:
     q, p = right[:, np.abs(values + 1).argmin()].real, left[:, np.abs(others + 1).argmin()].real
     assert np.abs(values + 1).min() < 1e-6
     q = q * point.orbit.span() / np.sqrt(grid.mean_weights @ ((motions @ q) ** 2).sum(axis=1))
-    h = MONODROMY_STEP
+    h = 3e-3
     maps = {k: integrated(x + k * h * q, *forced)[-1] for k in (-2, -1, 1, 2)}
     first = (maps[-2] - 8 * maps[-1] + 8 * maps[1] - maps[2]) / (12 * h)
     second = (-maps[-2] + 16 * maps[-1] - 30 * A + 16 * maps[1] - maps[2]) / (12 * h**2)
