@@ -20,7 +20,7 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.events import motions, tying
+from periodic.events import motions
 from periodic.events.modes import completed, group, of_held, of_kind
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
@@ -30,7 +30,6 @@ from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
-from periodic.refinement.equidistribution import redistribute
 from periodic.system import Kind, System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
@@ -102,20 +101,21 @@ class MeshMethod(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
+        near = self._worded(system, replace(near, parameter=parameter, equilibrium=False))
         old = near.mesh
         mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
-        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
-        return relax(system, self._tied(system, adopted))
+        return relax(system, transfer(near, mesh, near.phases))
 
-    def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        held = of_held(system)
-        if not held or any(group(system, orbit.mesh, k) for k in held):
+    @staticmethod
+    def _worded(system: System, orbit: Orbit) -> Orbit:
+        """A motion that sticks and slips, followed, with event nodes where it does: Newton needs them."""
+        held, mesh = of_held(system), orbit.mesh
+        if not held or any(group(system, mesh, k) or k in dict(mesh.modes) for k in held):
             return orbit
-        settings = (self.kinks or KinkSettings()).at(self.tolerance)
-        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
-        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
-        return transfer(orbit, mesh, phases)
+        try:
+            return motions.followed(system, orbit, FOLLOWED) or orbit
+        except FAILURES:
+            return orbit
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""

@@ -25,6 +25,7 @@ from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
+from periodic.events.modes import of_held
 from periodic.events.noderows import event_rows
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
@@ -37,7 +38,7 @@ from periodic.refinement.demand import demand, evenly, wanted_ntst
 from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
-from periodic.system import Kind, System, surfaces_of
+from periodic.system import System
 
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
@@ -163,9 +164,8 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:
-        """Return whether several joints may stick, or sliders are held: in time they find how."""
-        held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
-        return len(held) > 1 or Kind.SLIDER in held
+        """Return whether anything may be held: in time it finds how."""
+        return bool(of_held(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

@@ -14,7 +14,7 @@ from periodic.linear.unknowns import mean_weights
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, linear_of
-from periodic.system.precision import CONVERGED, MOST_ITERATIONS, difference_step
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 MONODROMY_STEP = 3e-3
 """Length of the differences, which are of fourth order, as a part of the motion q."""

@@ -217,11 +217,6 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
     return sides(system, orbit)[interval][None]
 
 
-def modes_at(system: System, orbit: Orbit, phase: Array) -> Array:
-    """Return the modes at phases (K,), shape (K, columns)."""
-    return sides(system, orbit)[orbit.locate(phase)[0]]
-
-
 def linearise(
     system: System,
     rate: Array,

@@ -42,19 +42,6 @@ def rate_at(
     return rates_at(system, orbit.parameter, x, rate[None], algebraic[None], phase, side[None])[0]
 
 
-def slope_at(
-    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
-) -> Array:
-    """Return dx'/dx (n, n) there, from x' and z.
-
-    Raises numpy.linalg.LinAlgError where the equations do not determine it.
-    """
-    n = x.shape[1]
-    line = linearise(system, rate[None], x, algebraic[None], phase, orbit.parameter, side[None])
-    matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
-    return np.asarray(-np.linalg.solve(matrix, line.d_state[0])[:n])
-
-
 def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
     """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
     interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst

@@ -14,9 +14,9 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
-from periodic.events import impacts, sticking
+from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
-from periodic.events.modes import bends
+from periodic.events.modes import bends, surface_of
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode
@@ -30,9 +30,6 @@ DEEPEST = 0.1
 
 MILD = 0.1
 """Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
-
-LEAST = 1e-13
-"""Least change of a switch for which sticking is looked for on an orbit that lacks it."""
 
 
 @dataclass(frozen=True)
@@ -196,7 +193,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*_impacts(system, orbit), *sticking.transitions(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *_held(system, orbit))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
@@ -209,6 +206,12 @@ def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float
         event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
         found.append((event, float(orbit.phases[i]), abs(impacts.slope_before(system, orbit, i))))
     return found
+
+
+def _held(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """The event nodes of an orbit at which what is held is stopped, released or passed, as they are."""
+    both = zip(orbit.mesh.events, orbit.phases, strict=True)
+    return [(e, float(tau), 1.0) for e, tau in both if surface_of(system, e.switch).releases is not None]
 
 
 def _phase(crossing: Crossing) -> float:

@@ -82,7 +82,9 @@ class VectorField:
         return np.concatenate([start[None], later])
 
     def _rings(self, start: Array, phase: Array, given: Array) -> bool:
-        """Whether a mode turns so often along a motion that Radau, which lets it die away, is faster."""
+        """Whether beside friction a mode turns so often that Radau, which lets it die away, is faster."""
+        if not self.expressions.sided.slides:
+            return False
         slope = np.array(self._slope(start, phase[0], given))
         if not np.isfinite(slope).all():
             return False

@@ -23,8 +23,11 @@ from symbolic.integration.modes import Event, Guard, Modes, Switching
 LONGEST = math.pi / 32
 """Longest interval (rad) between two phases at which guards are looked at."""
 
-AHEAD, LEAST = 64, 4
-"""Most and fewest intervals of a piece that are integrated at once, before it is known whether it ends."""
+PERIOD = 2 * math.pi
+"""Of the excitation, in tau: no more is integrated at once before it is known whether a piece ends."""
+
+LEAST = 4
+"""Fewest intervals that are integrated at once."""
 
 PARTS = 16
 """Into how many an interval is cut in which a guard may fall to 0."""
@@ -42,7 +45,7 @@ BESIDE = 1e-13
 """How far beside its zero a guard is, in the same part, where a piece ends and the next begins."""
 
 MOST_EVENTS = 1000
-"""Most events in a period of the excitation, 2 pi in tau: after more they pile up in a point."""
+"""Most events in a period: after more they pile up in a point."""
 
 Sweep = Callable[[Modes, Array, Array], Array]
 """Integrates in some modes from y (w,) at phase[0] to all of phase (K,): y at each, shape (K, w)."""
@@ -114,7 +117,7 @@ class Follower:
         if modes is None:
             state, modes = self.switching.begin(float(phase[0]), y[: self.states])
             y = self._with(y, state, float(phase[0]))
-        self._most = MOST_EVENTS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi))
+        self._most = MOST_EVENTS * math.ceil((phase[-1] - phase[0]) / PERIOD)
         self._enter(modes)
         with heard() as self._raised:
             values = self._all(y, phase)
@@ -125,14 +128,15 @@ class Follower:
         if not self._guards:
             return self.sweep(self._modes, y, phase)
         every, wanted = _filled(phase)
-        found, i, begun, ahead = [y[None]], 0, 0, AHEAD
+        most = max(LEAST, math.ceil((len(every) - 1) * PERIOD / (every[-1] - every[0])))
+        found, i, begun, ahead = [y[None]], 0, 0, most
         while i < len(every) - 1:
             values = self._ahead(found[-1][-1], every[i : i + ahead + 1])
             last, event = self._looked(values, every[i : i + len(values)])
             found.append(values[1 : last + 1])
             i += last
             if event is None:
-                ahead = min(2 * ahead, AHEAD)
+                ahead = min(2 * ahead, most)
             else:  # the next piece may be as long as this one
                 found.append(self._across(*event, every[i + 1])[None])
                 i += 1
