@@ -23,12 +23,13 @@ from periodic.events.rewrites.table import (
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
     REVERSAL,
     SWAP,
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import without
+from periodic.events.rewrites.together import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
@@ -192,7 +193,7 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
         return GRAZING_SLIDING
     if surface.kind == Kind.SLIDER:
-        return ADDING_SLIDING if then and not stuck else None
+        return LIMIT_GRAZING if then and not stuck else None
     if stuck:
         return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
     if then:

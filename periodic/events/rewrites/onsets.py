@@ -17,9 +17,10 @@ from periodic.events.rewrites.table import (
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
     SWITCHING_SLIDING,
 )
-from periodic.events.rewrites.twins import with_twins
+from periodic.events.rewrites.twins import leading, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.violations import Breach, Violation, largest, limits
@@ -89,7 +90,8 @@ def row_of(surface: SurfaceLike, switch: int) -> str:
     if surface.kind == Kind.IMPACT:
         return IMPACT.name
     if surface.releases is not None:
-        return (GRAZING_SLIDING if switch == surface.switch else ADDING_SLIDING).name
+        limit = LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
+        return (GRAZING_SLIDING if switch == surface.switch else limit).name
     return ""
 
 
@@ -115,6 +117,9 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:
+        surface = leading(system, surface)
+        assert surface.releases is not None
+        k, at = surface.switch, replace(at, switch=surface.switch)
         release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
         new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
@@ -124,12 +129,11 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         guard = surface.switch
         stop = EventNode(guard, side, modes=((guard, STUCK),))
         new = (EventNode(k, -side), early), (stop, late)
-        row, left = ADDING_SLIDING, SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
+        row = LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
+        left = SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
-    if surface.kind == Kind.SLIDER:
-        return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
-    return Site(row, k, at, held_at, value, added)
+    return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
 
 
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:

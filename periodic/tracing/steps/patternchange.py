@@ -157,7 +157,9 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
     moved = old if way.parameter is None else replace(old, parameter=way.parameter)
     for guess in solver.transfers(moved, way.mesh, way.phases):
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
-        if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+        if not new.ok or np.isinf(new.error.motion):  # it violates its word
+            continue
+        if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
         if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
