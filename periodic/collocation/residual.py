@@ -131,12 +131,14 @@ def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
     return tau, stages
 
 
-def rows_of(orbit: Orbit, line: LinearisationLike) -> Rows:
+def rows_of(orbit: Orbit, line: LinearisationLike, tied: bool = False) -> Rows:
     """Return the rows of evaluated equations, with columns for the event nodes' phases.
 
+    tied: only for those at the ends of each interval's own segment, `Mesh.ties`, which no others move.
     Raises FloatingPointError where they are not finite.
     """
-    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
+    gradients = orbit.mesh.tie_gradients if tied else orbit.mesh.gradients
+    moving = _phase_columns(orbit, line.d_rate, line.d_phase, *gradients)
     columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
     return finite(Rows(np.concatenate(columns, axis=2), line.d_algebraic))
 
@@ -148,14 +150,15 @@ def finite(rows: Rows) -> Rows:
     return rows
 
 
-def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
-    """Derivatives of the rows in the event nodes' phases, which move and stretch the intervals."""
-    grid, points = orbit.grid, orbit.mesh.scheme.points
-    k = len(orbit.phases)
+def _phase_columns(
+    orbit: Orbit, d_rate: Array, d_phase: Array, left_gradient: Array, width_gradient: Array
+) -> Array:
+    """Derivatives of the rows in event nodes' phases (N, k), which move and stretch the intervals."""
+    points, k = orbit.mesh.scheme.points, left_gradient.shape[1]
     if k == 0:
         return np.zeros((*d_phase.shape, 0))
-    shift = grid.left_gradient[:, None, :] + grid.width_gradient[:, None, :] * points[:, None]
-    stretch = np.repeat(grid.width_gradient / grid.width[:, None], len(points), axis=0)
+    shift = left_gradient[:, None, :] + width_gradient[:, None, :] * points[:, None]
+    stretch = np.repeat(width_gradient / orbit.grid.width[:, None], len(points), axis=0)
     rate = orbit.knot_rates[:, 1:].reshape(len(d_phase), -1, 1)
     return d_phase[:, :, None] * shift.reshape(len(d_phase), 1, k) - (d_rate @ rate) * stretch[:, None, :]
 

@@ -24,6 +24,9 @@ from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guar
 NOISE = 1e-11
 """A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
 
+REAL = 1e-6
+"""Imaginary part below which a root is real: of double ones rounding leaves so much."""
+
 BRIEF = 1e-2
 """Length (rad) of excursions beside an event node that are not told from the passage there."""
 
@@ -90,13 +93,10 @@ class SwitchPolynomials:
         interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
         theta = np.tile(scheme.knots, len(values))
         turning = np.flatnonzero(mixed & _changing(np.diff(bounds)))
-        found = [(j, t) for j in turning for t in _turns(scheme, values[j])]
-        extra = np.array(found, dtype=float).reshape(-1, 2)
-        interval = np.append(interval, extra[:, 0].astype(int))
-        theta = np.append(theta, extra[:, 1])
-        value = np.append(
-            values.ravel(), np.einsum("il,il->i", scheme.basis(extra[:, 1]), values[extra[:, 0].astype(int)])
-        )
+        which, places = _turns(scheme, values[turning])
+        inside = turning[which]
+        interval, theta = np.append(interval, inside), np.append(theta, places)
+        value = np.append(values.ravel(), np.einsum("il,il->i", scheme.basis(places), values[inside]))
         order = np.lexsort((theta, interval))
         interval, theta, value = interval[order], theta[order], value[order]
         far = np.isfinite(value) & (np.abs(value) > NOISE * np.abs(values).max())
@@ -349,12 +349,27 @@ def _monomial(scheme: Scheme) -> Array:
     return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
 
 
-def _turns(scheme: Scheme, values: Array) -> list[float]:
-    """Zeros of the derivative of the polynomial through values at the knots, inside (0, 1)."""
-    slope = _monomial(scheme) @ values
-    largest = float(np.abs(slope).max())
-    if largest == 0.0:
-        return []
-    roots = np.polynomial.polynomial.polyroots(slope)
-    real = roots.real[np.abs(roots.imag) < 1e-6]
-    return sorted(float(t) for t in real if 0 < t < 1)
+def _turns(scheme: Scheme, values: Array) -> tuple[NDArray[np.int_], Array]:
+    """Zeros inside (0, 1) of the derivatives of polynomials through values at the knots (K, ncol+1).
+
+    Returns which polynomial each belongs to, and the zeros themselves.
+    """
+    roots = _roots(values @ _monomial(scheme).T)
+    inside = (np.abs(roots.imag) < REAL) & (roots.real > 0) & (roots.real < 1)
+    return np.nonzero(inside)[0], roots.real[inside]
+
+
+def _roots(coefficients: Array) -> NDArray[np.complex128]:
+    """Roots of polynomials with such coefficients (K, degree+1), lowest first: (K, degree), NaN where fewer.
+
+    They are the eigenvalues of companion matrices, all at once.
+    """
+    count, most = coefficients.shape
+    degree = (np.arange(most) * (coefficients != 0)).max(axis=1, initial=0)
+    found = np.full((count, most - 1), np.nan, dtype=np.complex128)
+    for d in set(degree.tolist()) - {0}:
+        own = coefficients[degree == d, : d + 1]
+        companion = np.tile(np.eye(d, k=1), (len(own), 1, 1))
+        companion[:, :, 0] -= (own[:, :-1] / own[:, -1:])[:, ::-1]
+        found[degree == d, :d] = np.linalg.eigvals(companion)
+    return found

@@ -118,8 +118,7 @@ class Chain:
     def steps(self) -> Array:
         """How perturbations pass from joint to joint, each interval as a rule, shape (N, n, n)."""
         perturbed: Array | None = getattr(self.eliminated, "perturbed", None)
-        step, n = self.eliminated.step, self.eliminated.step.shape[1]
-        return step[self._joints[1:] - 1, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
+        return self._held if perturbed is None else perturbed[:, :, : perturbed.shape[1]]
 
     @cached_property
     def fundamental(self) -> Array:
@@ -128,15 +127,31 @@ class Chain:
             found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
             if self.growth <= LARGEST_FUNDAMENTAL:
                 return found
-        return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
+        return np.array(list(accumulate(self.steps, after_bounded, initial=np.eye(self.steps.shape[1]))))
 
     @cached_property
     def growth(self) -> float:
         """How much motions grow at the most from one joint to another; of large systems from the first."""
+        return self._growing(self.steps)
+
+    def _growing(self, steps: Array) -> float:
+        """The same by steps (N, n, n) from joint to joint."""
         if self.maps.shape[1] <= PAIRED_UP_TO:
-            return between_any(self.steps)
+            return between_any(steps)
         found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
         return found if np.isfinite(found) else np.inf
+
+    @cached_property
+    def _spread(self) -> float:
+        """How much increments grow at the most from joint to joint, event nodes held."""
+        if getattr(self.eliminated, "jumps", ()):
+            return self._growing(self._held)
+        return self.growth
+
+    @property
+    def _held(self) -> Array:
+        """How mesh points follow from joint to joint, event nodes held, shape (N, n, n)."""
+        return self.eliminated.step[self._joints[1:] - 1, :, 1 : 1 + self.eliminated.step.shape[1]]
 
     @property
     def effect(self) -> Array:
@@ -152,7 +167,7 @@ class Chain:
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
         orbit, n = self.orbit, self.maps.shape[1]
-        if self.growth > GROWTH:
+        if self._spread > GROWTH:
             maps, top = self._from_both_ends()
         else:
             maps, top = self.maps, self.maps[-1].copy()
@@ -241,8 +256,8 @@ def between_any(steps: Array) -> float:
     return largest
 
 
-def _after_bounded(before: Array, step: Array) -> Array:
-    """A product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
+def after_bounded(before: Array, step: Array) -> Array:
+    """Return the product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
     product = step @ before
     size = float(np.abs(product).max())
     return product if size <= LARGEST_FUNDAMENTAL else product * (LARGEST_FUNDAMENTAL / size)
