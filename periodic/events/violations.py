@@ -23,7 +23,8 @@ AT_LEVEL = 1e-8
 """How near to 0 what happens at another's event node is, as a part of its largest value."""
 
 NOISE = 1e-10
-"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
+"""How near to 0 a release may be on either side of it at an event node, or all along where friction beside a
+slider holds, as a part of its largest value."""
 
 
 class Breach(Enum):
@@ -122,11 +123,13 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
     past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > NOISE]
     if past:  # past a limit the motion turns back at once
         return past
-    return [
+    each = (
         violation
         for k in (surface.switch, *surface.releases)
         for violation in _excursions(own, k, base.side(k), largest(own, k), Breach.MODE)
-    ]
+    )
+    # beside friction that holds, a slider stays at its limit, and leaves it as slowly as a motion from rest
+    return [v for v in each if surface.kind != Kind.SLIDER or v.depth > NOISE]
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:

@@ -305,9 +305,8 @@ class Continuation:
                 longest = ds = ds * rejected.shorter ** max(1, tried_before - RELENTING)
                 beyond = isinstance(rejected, BeyondError)
                 self._unread = worded and isinstance(rejected, WordError)
-                if self._unread or not ds >= (
-                    max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
-                ):
+                least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
+                if self._unread or not ds >= least:
                     self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
                     return None
 

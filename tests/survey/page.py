@@ -19,10 +19,11 @@ is a model); and two to six masses or a beam with two to eight joints, dry frict
 some with cubic springs, each from both ends of its range (`tests/support/drawn/joints.py`). Each is traced
 through a resonance at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of
 CPU; those with several joints at most {many_points}, {many_newton} and {many_seconds:g} s, limits of work
-and none of accuracy. {judged} points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution
-in closed form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py`
-with `closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
-than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs
+and none of accuracy. {judged} points of each, drawn at random, are judged: orbit and multipliers by an
+event-exact solution in closed form or by Taylor's series, that shares nothing with the packages
+(`tests/reference/contact.py` with `closer.py` in extended precision, `tests/reference/joints`). A point is
+wrong where an error is more than ten times what the point claims and more than 1e-5, or where its stability
+is not so. `make survey` runs
 them, in some
 20 minutes on two cores.
 
