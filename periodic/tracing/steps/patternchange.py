@@ -25,7 +25,11 @@ CHANGE_ITERATIONS = 8
 """Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
 FARTHEST_BEYOND = 0.02
-"""Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
+"""Distance of the orbits on either side of a change, in the metric of continuation, at the most,"""
+
+ACROSS = 2.0
+"""... or in the last step, in which what ends has become half as large at least: beyond, two events that have
+changed places are as far apart again."""
 
 STANDING = 1e-8
 """A change that is no farther than this part of a step is at its base."""
@@ -162,7 +166,7 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
-        if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
+        if apart <= max(FARTHEST_BEYOND, ACROSS * at.ds) and problem.low <= new.value <= problem.high:
             return Crossed(new, apart, way.touches)
     return None
 
