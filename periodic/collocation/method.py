@@ -207,6 +207,11 @@ class CollocationRefinement(Refinement):
         return tying.fits(self.wanted, self.orbit)
 
     @property
+    def mendable(self) -> bool:
+        """Whether other meshes may lessen the error."""
+        return not self._in_wrong_mode
+
+    @property
     def exhausted(self) -> bool:
         """Whether the orbit has the largest number of intervals."""
         return self.orbit.mesh.ntst >= self.method.ntst_max and not self._in_wrong_mode

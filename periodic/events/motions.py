@@ -14,6 +14,7 @@ import numpy as np
 
 from periodic.events.modes import twins
 from periodic.events.rewrites.sites import Node, ordered
+from periodic.events.rewrites.together import together
 from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -49,7 +50,7 @@ def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
         for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
             node = _node(system, surfaces[apart[0].surface], apart)
             found.append((node, apart[0].phase + count * APART))
-    return found
+    return together(system, found, APART)
 
 
 def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
@@ -79,8 +80,10 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
 
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:
-    """What brings the others about that happen at once: an impact, then what comes to rest."""
-    return 0 if surface.kind == Kind.IMPACT else 2 if event.before == STUCK else 1
+    """What brings the others about that happen at once: an impact, what comes to rest, friction let go."""
+    if surface.kind == Kind.IMPACT:
+        return 0
+    return (3 if surface.kind == Kind.SLIDER else 2) if event.before == STUCK else 1
 
 
 def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
@@ -93,15 +96,17 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
 
 
 def orbit_of(
-    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float
+    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float, begin: float = 0.0
 ) -> Orbit | None:
     """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
+
+    begin: the phase of the state.
 
     Raises what the integration raises.
     """
     if not any(surface.releases is not None for surface in surfaces_of(system)):
         return None
-    whole = system.motion(state, algebraic, parameter, np.array([0.0, FORCED]), tolerance)
+    whole = system.motion(state, algebraic, parameter, np.array([begin, begin + FORCED]), tolerance)
     if not hasattr(whole, "modes"):
         return None
     whole = cast(Followed, whole)
@@ -119,19 +124,29 @@ def orbit_of(
             mode = HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance)
+    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin)
 
 
 def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
-    It may violate its word: that of the motion does not. Raises what the integration raises.
+    It is followed from amid its longest segment, as far from all events as can be. It may violate its word:
+    that of the motion does not. Raises what the integration raises.
     """
     if not hasattr(system, "motion") or linear_of(system) or orbit.mesh.period != FORCED:
         return None
-    at = np.zeros(1)
+    at = np.mod(amid(orbit), FORCED)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
-    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance)
+    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance, float(at[0]))
+
+
+def amid(orbit: Orbit) -> Array:
+    """Return the phase in the middle of the longest segment; 0 where there are none."""
+    if not orbit.mesh.events:
+        return np.array(0.0)
+    lengths = orbit.mesh.segment_lengths(orbit.phases)
+    longest = int(np.argmax(lengths))
+    return np.array(orbit.phases[longest] + lengths[longest] / 2)
 
 
 def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
@@ -154,16 +169,17 @@ def _on(
     algebraic: Array,
     parameter: Array,
     tolerance: float,
+    begin: float,
 ) -> Orbit:
-    """The motion at the points of a mesh, which may begin anywhere in it."""
+    """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
     nodes = mesh.nodes(phases)
     stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
     for start in mesh.starts:
         nodes[start] += SAME_PHASE
         stages[start - 1, -1] -= SAME_PHASE
-    flat = np.mod(np.concatenate([nodes, stages.ravel()]), FORCED)
-    phase, place = np.unique(np.append(flat, [0.0, FORCED]), return_inverse=True)
+    flat = begin + np.mod(np.concatenate([nodes, stages.ravel()]) - begin, FORCED)
+    phase, place = np.unique(np.append(flat, [begin, begin + FORCED]), return_inverse=True)
     path = system.motion(state, algebraic, parameter, phase, tolerance)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]

@@ -121,11 +121,13 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
     past = [limit for limit in _limits(own, surface) if limit.depth > RELEASED]
     if past:  # past a limit the motion turns back at once
         return past
-    return [
+    each = (
         violation
         for k in (surface.switch, *surface.releases)
         for violation in _excursions(own, k, base.side(k), largest(own, k), Breach.MODE)
-    ]
+    )
+    # beside friction that holds, a slider stays at its limit, and leaves it as slowly as a motion from rest
+    return [v for v in each if surface.kind != Kind.SLIDER or v.depth > RELEASED]
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:

@@ -32,9 +32,13 @@ from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
-from periodic.tracing.steps.stepper import BeyondError, Stepper
+from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
+
+RELENTING = 2
+"""Rejected steps after which each is shortened by a higher power than the one before: orbits on a mesh may
+exist for so short a way only, as beside a grazing, that there would be dozens."""
 
 NEARLY = 1e-2
 """Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
@@ -100,6 +104,7 @@ class Continuation:
     state: State | None = field(default=None, repr=False)
     ended: Checkpoint | None = field(default=None, repr=False)
     _running: Iterator[Point] | None = field(default=None, init=False, repr=False)
+    _unread: bool = field(default=False, init=False, repr=False)
     _since_remesh: int = field(default=0, init=False, repr=False)
     _count: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
@@ -241,12 +246,14 @@ class Continuation:
         """Take steps from a base, which is the last solution on a mesh for the next one."""
         assert self.state is not None
         while self.state.steps + 1 < self.control.max_points:
-            step = self._taken(base)
+            step = self._taken(base, worded=True)
+            if step is None and self._reread(self.state.last):
+                yield self.collected[-1]
+                base = self._prepared(self.state.last)
+                continue
+            if step is None and self._unread:
+                step = self._taken(base, worded=False)
             if step is None:
-                if self._reread(self.state.last):
-                    yield self.collected[-1]
-                    base = self._prepared(self.state.last)
-                    continue
                 yield self._emitted(base, Label.FAILED)
                 return
             for special in step.special:
@@ -266,9 +273,13 @@ class Continuation:
             base = self._prepared(self.state.last)
         self.stop = Stop.max_points(self.control.max_points)
 
-    def _taken(self, base: Solution) -> Step | None:
-        """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
+    def _taken(self, base: Solution, worded: bool) -> Step | None:
+        """Take one step, as long as can be; set `stop` where even the shortest is rejected.
+
+        worded: whether that is so at once where an orbit is met that violates its word, which may be read.
+        """
         assert self.state is not None
+        self.stop, self._unread, tried_before = None, False, 0
         ds, begin, origin = self.state.ds, self.state.begun.value, base
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
@@ -290,9 +301,12 @@ class Continuation:
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:
-                longest = ds = ds * rejected.shorter
+                tried_before += 1
+                longest = ds = ds * rejected.shorter ** max(1, tried_before - RELENTING)
                 beyond = isinstance(rejected, BeyondError)
-                if not ds >= (max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min):
+                self._unread = worded and isinstance(rejected, WordError)
+                least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
+                if self._unread or not ds >= least:
                     self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
                     return None
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.identity import distance
+from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -26,8 +27,8 @@ MOST_READINGS = 5
 DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
-FARTHEST_ASIDE = 1.0
-"""How far from where the tangent leads it may be, in the length of the step."""
+FARTHEST = 2.0
+"""How far from the base it may be, in the length of the step along the tangent."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
@@ -54,19 +55,17 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         return None
     for ds in (part * first for part in DISTANCES_BEYOND):
         ahead = tangent(problem, base, ds)
-        value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
-        parameter[problem.index] = value
-        changed = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
+        parameter[problem.index] = float(np.clip(problem.value(ahead), low, high))
+        near = ahead if in_order(ahead) else base.orbit
+        changed = solver.discretisation.reworded(problem.system, replace(near, parameter=parameter))
         if changed is None:
             return None
         found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > FARTHEST_ASIDE * distance(problem, base.orbit, ahead):
-            continue
-        if found.tangent.parameter * sign > 0:
-            apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
+        apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
+        if apart <= FARTHEST * ds and found.tangent.parameter * sign > 0:
             return Crossed(found, apart, touches=False)
     return None
 

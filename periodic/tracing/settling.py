@@ -15,6 +15,13 @@ from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
+from periodic.tracing.returnmap import ReturnMap
+
+NEAR = 1e-2
+"""The same of an orbit on which Newton's method on the return map ends: its word can be read."""
+
+TRANSIENTS = (10, 40)
+"""Periods after which an orbit is looked for near the motion."""
 
 PLACES_IN_PERIOD = 193
 """Places in a period at which it is looked at."""
@@ -23,8 +30,8 @@ PLACES_IN_PERIOD = 193
 def settled(system: System, start: Orbit) -> Orbit | None:
     """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    None where it does not settle within PERIODS, where its integration fails, and of a system that cannot be
-    followed in time.
+    One that takes long is looked for by Newton's method on its return map. None where none is found within
+    PERIODS, where its integration fails, and of a system that cannot be followed in time.
     """
     if linear_of(system):
         return condensed.settled(system, start) if slides_of(system) else None
@@ -32,20 +39,36 @@ def settled(system: System, start: Orbit) -> Orbit | None:
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
     state, algebraic = start.nodes[0], start.algebraic[0, 0]
-    for _ in range(PERIODS):
+    for count in range(PERIODS):
         try:
+            found = None
+            if count in TRANSIENTS:
+                found = _fixed(moving, state, algebraic, start.parameter, phase)
+            state = state if found is None else found
             path = moving.motion(state, algebraic, start.parameter, phase, Accuracy.STANDARD)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
-        if _closed(path.state):
+        if found is not None or _closed(path.state):
             last = path.state[-1], path.algebraic[-1], start.parameter, Accuracy.STANDARD
             if (converged := orbit_of(moving, *last)) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
         state, algebraic = path.state[-1], path.algebraic[-1]
     return None
+
+
+def _fixed(moving: Moving, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Array | None:
+    """The beginning of an orbit near a motion, if Newton's method finds one."""
+
+    def follow(begin: Array) -> Array:
+        return moving.motion(begin, algebraic, parameter, phase, Accuracy.STANDARD).state
+
+    try:
+        return ReturnMap(follow, STILL / 2, NEAR).fixed(state)
+    except FAILURES:
+        return None
 
 
 def held(system: System, motion: Orbit) -> list[str]:

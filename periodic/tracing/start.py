@@ -217,8 +217,7 @@ class Start:
         parameter[problem.index] = far = factor * wanted
         sign = int(np.sign(wanted - far))
         near = replace(guess, parameter=parameter)
-        first = self._fixed(self._rest(near) or near, float(sign))
-        if not first.ok or far == wanted:
+        if far == wanted or not (first := self._there(near, float(sign))).ok:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
         own = replace(self.solver, problem=nearer)
@@ -231,6 +230,15 @@ class Start:
         if orbit is None or problem.value(orbit) != wanted:
             return None
         return orbit if solver is own else self._adopted(own, orbit)
+
+    def _there(self, near: Orbit, sign: float) -> Solution:
+        """An orbit elsewhere: from rest, or from a motion that has settled there."""
+        solver, system = self.solver, self.solver.problem.system
+        first = self._fixed(self._rest(near) or near, sign)
+        if not solver.discretisation.settles(system) or first.ok and np.isfinite(first.error.motion):
+            return first
+        motion = settled(system, near)
+        return first if motion is None else worded(solver, self._adopted(solver, motion), sign)
 
     @staticmethod
     def _adopted(solver: Solver, orbit: Orbit) -> Orbit:

@@ -24,12 +24,13 @@ from periodic.events.rewrites.table import (
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
     REVERSAL,
     SWAP,
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import without
+from periodic.events.rewrites.together import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SHALLOW
@@ -192,8 +193,9 @@ def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:
 
 def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
     """The slip that begins at an event node and may end, by itself or about events at other surfaces."""
-    if _held(system, orbit, begin) is ADDING_SLIDING:
-        return Excursion(ADDING_SLIDING, begin, segments=(begin,))
+    row = _held(system, orbit, begin)
+    if row in (ADDING_SLIDING, LIMIT_GRAZING):
+        return Excursion(row, begin, segments=(begin,))
     inner = slip_about(system, orbit, begin)
     return Excursion(ADDING_ABOUT, begin, segments=(begin, inner[-1])) if inner else None
 
@@ -226,7 +228,7 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
         return GRAZING_SLIDING
     if surface.kind == Kind.SLIDER:
-        return ADDING_SLIDING if then and not stuck else None
+        return LIMIT_GRAZING if then and not stuck else None
     if stuck:
         return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
     if then:

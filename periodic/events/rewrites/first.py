@@ -18,6 +18,7 @@ from periodic.events.rewrites.table import (
     CORNER,
     GRAZING,
     IMPACT,
+    LIMIT_GRAZING,
     REVERSAL,
     ROOT,
     SHORT,
@@ -135,7 +136,7 @@ def _ending(
     if row is IMPACT and size >= half:
         return None
     site = ends(system, before, excursion)[0]
-    if row is ADDING_SLIDING:
+    if row in (ADDING_SLIDING, LIMIT_GRAZING):
         jump = sliding(system, site.switch)
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now

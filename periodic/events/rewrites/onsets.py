@@ -18,10 +18,11 @@ from periodic.events.rewrites.table import (
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import with_twins
+from periodic.events.rewrites.twins import leading, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
@@ -102,7 +103,9 @@ def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
 
 def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
     """The row of a slip of what is held."""
-    return FIRST_SLIPS if held_all_along(orbit.mesh, surface) else ADDING_SLIDING
+    if held_all_along(orbit.mesh, surface):
+        return FIRST_SLIPS
+    return LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
 
 
 def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
@@ -127,6 +130,9 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:
+        surface = leading(system, surface)
+        assert surface.releases is not None
+        k, at = surface.switch, replace(at, switch=surface.switch)
         release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
         new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
@@ -139,9 +145,7 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         row, left = _slip(orbit, surface), AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
-    if surface.kind == Kind.SLIDER:
-        return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
-    return Site(row, k, at, held_at, value, added)
+    return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
 
 
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:

@@ -20,8 +20,9 @@ from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import at_once
-from periodic.events.rewrites.sites import Site, index_of, rewritten
+from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
@@ -77,7 +78,7 @@ class Begins:
         row = self.site.row
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
-                events, phases = rewritten(orbit, chosen, size)
+                events, phases = rewritten(system, orbit, chosen, size)
                 if inconsistency(system, events):
                     continue
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
@@ -124,7 +125,7 @@ class Ends:
         for own in ends(system, orbit, self.excursion):
             sites = self._alike(system, orbit, own)
             for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:
-                events, phases = rewritten(orbit, chosen, self.size)
+                events, phases = rewritten(system, orbit, chosen, self.size)
                 if inconsistency(system, events):
                     continue
                 mesh = self._mesh(orbit, events, phases)
@@ -174,6 +175,13 @@ class Ends:
             pair = event, float(orbit.phases[held.node])
             held = replace(held, node=index_of(events, phases, pair, orbit))
         return held
+
+
+def rewritten(
+    system: System, orbit: Orbit, sites: Sequence[Site], size: float
+) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and phases of an orbit after the edits at some sites, in order."""
+    return ordered(together(system, in_order(edited(orbit, sites, size), orbit), size), orbit)
 
 
 def _changed(site: Site) -> Sequence[int]:

@@ -7,6 +7,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     grazing of an impact   nothing             (+ +)             clearance        speed
     grazing-sliding        nothing             (+ 0)(0 +)        clearance        length
     adding-sliding         nothing, in 0       (0 +)(+ 0)        clearance        length
+    grazing of a limit     nothing, in 0       (0 +)(+ 0)        clearance        length
     crossing-sliding       (+ -)               (+ 0)(0 -)        limit            length
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
     the same about w       w, in 0             (0 +) w (+ 0)     limit            length
@@ -15,6 +16,9 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+
+The grazing of a limit is adding-sliding of a slider: what slips forgets where it was held before, however
+briefly, and so the multipliers jump, which they do not where friction slips.
 
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
 joint where one is pulled most. What begins is of no
@@ -86,6 +90,7 @@ ADDING_ABOUT = Row(
 FIRST_SLIPS = Row(
     name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
 )
+LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)

@@ -24,7 +24,11 @@ CHANGE_ITERATIONS = 8
 """Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
 FARTHEST_BEYOND = 0.02
-"""Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
+"""Distance of the orbits on either side of a change, in the metric of continuation, at the most,"""
+
+ACROSS = 2.0
+"""... or in the last step, in which what ends has become half as large at least: beyond, two events that have
+changed places are as far apart again."""
 
 CHANGES_IN_A_STEP = 8
 """Most changes of the pattern that are tried as the first one in a step."""
@@ -150,10 +154,12 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
     moved = old if way.parameter is None else replace(old, parameter=way.parameter)
     for guess in solver.transfers(moved, way.mesh, way.phases):
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
-        if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+        if not new.ok or np.isinf(new.error.motion):  # it violates its word
+            continue
+        if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
-        if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
+        if apart <= max(FARTHEST_BEYOND, ACROSS * at.ds) and problem.low <= new.value <= problem.high:
             return Crossed(new, apart, way.touches)
     return None
 

@@ -27,6 +27,10 @@ MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
 
 
+class WordError(RejectedError):
+    """A step to an orbit that violates its word."""
+
+
 class BeyondError(RejectedError):
     """A step to an orbit that the method's finest mesh does not resolve."""
 
@@ -87,6 +91,8 @@ class Stepper:
             new = tried.new
             if new.error.curable <= tolerance:
                 return tried
+            if not new.refinement.mendable:
+                raise WordError(new.refinement.shortfall)
             if collapsed(base.orbit, new):
                 raise RejectedError("the orbit shrinks to nothing in one step")
             mesh = new.refinement.refined()
@@ -103,16 +109,16 @@ class Stepper:
         """Solve a step away, or where the pattern of events changes before that. Raises RejectedError."""
         solver, control = self.solver, self.control
         new, change = self._end(base, ds)
-        if change is not None:
-            ds = change.ds
+        length = ds if change is None else change.ds
         furthest = 0.0
-        for ratio in bound_ratios(base, new, ds, control, solver.tolerance.orbit):
+        for ratio in bound_ratios(base, new, length, control, solver.tolerance.orbit):
             if not ratio.size <= 1:
-                raise RejectedError(ratio.why, control.shorter(ratio.size))
+                part = min(length / ds, 1.0)  # a shorter step would end at the change again
+                raise RejectedError(ratio.why, part * control.shorter(ratio.size))
             furthest = max(furthest, ratio.ahead)
         if new.orbit.equilibrium:
-            self._check_middle(base, new, ds)
-        return Attempt(base, new, ds, furthest, change)
+            self._check_middle(base, new, length)
+        return Attempt(base, new, length, furthest, change)
 
     def _check_middle(self, base: Solution, new: Solution, ds: float) -> None:
         """Reject a step of equilibria round a corner where branches cross: its middle is off the cubic."""
