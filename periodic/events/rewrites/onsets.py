@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.events.modes import group, mode_after, surface_of
+from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
@@ -17,6 +18,7 @@ from periodic.events.rewrites.table import (
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    SHORT_OF,
     SWITCHING_SLIDING,
 )
 from periodic.events.rewrites.twins import with_twins
@@ -29,9 +31,6 @@ from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
 
 AT_ONCE = 1e-7
 """Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
-
-SHORT_OF = 1e-9
-"""How far from where something begins orbits without it are held, in the same part: rounding decides."""
 
 BESIDE = 1e-2
 """Extrema that lie so near to each other (rad) are one: a switch may stay at its level for a while."""
@@ -79,7 +78,7 @@ def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
                 yield from _extrema(dense, surface, switch)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
-            yield from (site for site in each if site.row.name == row)
+            yield from (site for site in each if site is not None and site.row.name == row)
 
 
 def row_of(surface: SurfaceLike, switch: int) -> str:
@@ -147,9 +146,11 @@ def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float
     return Site(GRAZING, k, at, Clearance(k, side, at.phase, left), value, added)
 
 
-def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site:
+def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site | None:
     """The site at an event node where a passage may begin to be held, or a stop may break."""
     assert isinstance(limit.at, int)
+    if surface_of(system, orbit.mesh.events[limit.at].switch).kind == Kind.IMPACT:
+        return begun(system, orbit, surface, limit)
     node, event, guard = limit.at, orbit.mesh.events[limit.at], surface.switch
     phase, most = float(orbit.phases[node]), _largest_release(system, orbit, surface)
     others = tuple(pair for pair in event.modes if pair[0] != guard)

@@ -19,9 +19,9 @@ from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import SHORT_OF, at_once
+from periodic.events.rewrites.onsets import at_once
 from periodic.events.rewrites.sites import Site, index_of, rewritten
-from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SHORT_OF
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
@@ -165,11 +165,11 @@ class Ends:
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
         """What is 0 where it ends, but for what rounding decides."""
-        if own.row is SWAP:
-            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         held, left = own.held, 0.0
+        if isinstance(held, Length):
+            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         jump = sliding(system, own.switch)
-        if jump is not None and not own.row.touches:
+        if jump is not None and (isinstance(held, Limit) or not own.row.touches):
             left = SHORT_OF * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
             assert isinstance(held, Clearance | Limit)
             held = replace(held, level=left)

@@ -67,7 +67,7 @@ class Site:
 
     def begin(self, orbit: Orbit, size: float) -> Node:
         """The event node with which what begins begins."""
-        if self.replaced:
+        if self.replaced and not any(each.part < 0 for each in self.added):
             node, event = self.replaced[0]
             return event, float(orbit.phases[node])
         return self.added[0].at(size)
