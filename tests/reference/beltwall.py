@@ -57,7 +57,10 @@ class BeltWall:
         return at
 
     def after(self, t: float, state: Array, w: float) -> tuple[Array, Array, str]:
-        """Return state and monodromy matrix after a period, and the word: impacts I, modes + - 0."""
+        """Return state and monodromy matrix after a period, and the word of what happens.
+
+        Modes + - 0 that begin, and impacts: P after which x' > v, M after which it is less.
+        """
         end, y, word = t + 2 * np.pi / w, np.array(state, dtype=float), ""
         mode, matrix = float(np.sign(y[1] - self.v)), np.eye(2)
         for _ in range(MOST):
@@ -93,7 +96,7 @@ class BeltWall:
         if what == "wall":
             y = np.array([y[0], -self.e * y[1]])
             after = float(np.sign(y[1] - self.v))
-            return after, y, "I"
+            return after, y, "P" if after > 0 else "M"
         pulled = self._pulled(t, y, w)
         if what == "turn":
             y = np.array([y[0], self.v])

@@ -21,6 +21,12 @@ RANGE = 0.5, 2.2
 AFTER = BeltWall(c=0.1, v=0.95, f=0.16, gap=1.9, e=0.5, below=True)
 """Its rebound reaches the belt's speed: friction turns just after an impact, or at it."""
 
+BEFORE = BeltWall(c=0.1, v=0.15, f=0.5, gap=0.4, e=0.7)
+"""It arrives at the wall with the belt's speed, and is let go by it just before an impact, or at it."""
+
+CAUGHT = BeltWall(c=0.17, v=0.5, f=0.43, gap=0.56, e=0.43, below=True)
+"""It rebounds with the belt's speed, and is caught from either side."""
+
 
 @dataclass(frozen=True)
 class Belt(sym.Part):
@@ -70,6 +76,27 @@ def test_whole_range(branch: per.Branch) -> None:
 def test_orbits_and_multipliers(branch: per.Branch) -> None:
     """Assert every eighth orbit and its multipliers: to 1e-8 and 1e-6, or ten times what is claimed."""
     assert judged(branch, AFTER) > 10
+
+
+@pytest.mark.parametrize(
+    ("machine", "bounds", "words"),
+    [
+        (BEFORE, (0.8, 1.8), ["+-M", "+M", "+M+0-M", "+M+0M"]),
+        (CAUGHT, (1.2, 1.8), ["M+-", "M0+-", "P0+-", "P0+0-"]),
+    ],
+)
+def test_before_and_after(machine: BeltWall, bounds: tuple[float, float], words: list[str]) -> None:
+    """Assert that branches pass what happens before impacts, and stops after them; orbits as above.
+
+    Their words are those of their own motions: an impact takes over what friction did just before it, and a
+    stop after it is reached from the other side of the belt's speed.
+    """
+    branch = per.trace(system(machine), "Omega", bounds, start=bounds[1])
+    assert branch.stop.reason is per.Reason.BOUND
+    assert not branch.unaccounted
+    assert judged(branch, machine) > 3
+    passed = [machine.after(*away(point, machine), point.parameter)[2] for point in branch]
+    assert [word for word in dict.fromkeys(passed) if word in words] == words
 
 
 def judged(branch: per.Branch, machine: BeltWall) -> int:
