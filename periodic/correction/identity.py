@@ -68,10 +68,12 @@ def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[Sha
     for start, event, phase in zip(a.mesh.starts, a.mesh.events, a.phases, strict=True):
         if event.switch not in resets:
             continue
-        alike = [p for e, p in zip(a.mesh.events, a.phases, strict=True) if e == event and p != phase]
+        own = zip(a.mesh.events, a.phases, strict=True)
+        alike = [p for e, p in own if e.switch == event.switch and p != phase]
         near = min([TWO_IMPACTS, *(abs(_wrapped(p - phase, period)) / 2 for p in alike)])
         each = zip(b.mesh.events, b.phases, b.mesh.starts, strict=True)
-        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for e, p, j in each if e == event]
+        theirs = [(p, j) for e, p, j in each if e.switch == event.switch]
+        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for p, j in theirs]
         shift, other = min(others, key=lambda found: abs(found[0]), default=(np.inf, 0))
         if abs(shift) < near:
             starts = [int(start)] if start else [0, len(a.nodes) - 1]

@@ -1,7 +1,8 @@
 """What an impact brings about: it takes guards of other surfaces to their other side.
 
 An impact of a mass reverses its speed, and with it the speed at which friction on the mass slides. The mode
-of that surface changes at the impact's own event node.
+of that surface changes at the impact's own event node. Against a belt that moves the guard jumps without
+passing 0 as well, and it may be 0 just before or just after an impact that has speed.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.events.impacts import slope_before, tied
 from periodic.events.modes import mode_after, sides
 from periodic.events.rates import before
 from periodic.events.thresholds import AT_LEVEL
@@ -45,6 +47,34 @@ def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Si
     if mode == 0 and abs(early) > AT_LEVEL:
         mode = int(np.sign(early))
     return Sides(early, late, mode)
+
+
+def thrown(system: System, orbit: Orbit, surface: SurfaceLike) -> list[int]:
+    """Return the impacts of an orbit, by their event nodes, at which the guard of another surface jumps.
+
+    Not those at which it is 0 when the impact has no speed, as that of friction on the ground: it passes its
+    level where the impact ends.
+    """
+    if surface.kind not in (Kind.SLIDING, Kind.SLIDER):
+        return []
+    return [index for index in tied(system, orbit) if _thrown(system, orbit, surface.switch, index)]
+
+
+def _thrown(system: System, orbit: Orbit, switch: int, index: int) -> bool:
+    """Whether an impact throws a guard; at the state between the two about it the impact has no speed."""
+    _, x, phase = before(orbit, index)
+    start, own = orbit.mesh.starts[index], orbit.mesh.events[index].switch
+    after = orbit.nodes[start][None]
+    by_state, by_phase, _ = system.switch_gradient(after, phase, orbit.parameter)
+    arriving = slope_before(system, orbit, index)
+    leaving = float(by_phase[0, own] + by_state[0, own] @ orbit.node_rates[start])
+    if arriving == leaving:
+        return False
+    still = x + arriving / (arriving - leaving) * (after - x)
+    states, tau = np.concatenate([x, after, still]), np.repeat(phase, 3)
+    early, late, between = system.switch(states, tau, orbit.parameter)[:, switch]
+    least = AT_LEVEL * max(abs(early), abs(late))
+    return bool(abs(late - early) > least and abs(between) > least)
 
 
 def others(system: System, event: EventNode) -> list[SurfaceLike]:

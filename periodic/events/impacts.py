@@ -99,9 +99,12 @@ def perturbed(orbit: Orbit, step: Array, arriving: Array, found: Sequence[Jump])
     return passing
 
 
-def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
-    """Return the condition of an impact, linearised: s(x-, phi, p) = 0 where the interval before it ends."""
-    switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
+def arriving_row(system: System, orbit: Orbit, index: int, switch: int, free: tuple[int, ...]) -> Row:
+    """Return a switch s(x-, phi, p) where the interval before an event node ends, and its gradient.
+
+    That of an impact is 0 there.
+    """
+    k, end = len(orbit.phases), orbit.mesh.scheme.end
     interval, x, phase = before(orbit, index)
     side = modes_in(system, orbit, interval)
     d_state, d_phase, d_parameter = guards_gradient(system, x, phase, orbit.parameter, side)

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.impacts import slope_before
+from periodic.events.impacts import arriving_row, slope_before
 from periodic.events.modes import modes_in
+from periodic.events.noderows import node_row
 from periodic.events.rates import before, rate_before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.gradients import Points, Slopes, gathered
@@ -92,26 +93,22 @@ class Lengths:
 
 @dataclass(frozen=True)
 class Limit:
-    """Side condition: side * (a switch) is `level` at an event node, which need not be its own."""
+    """Side condition: side * (a switch) is `level` at an event node, which need not be its own.
+
+    arriving: whether it is that of the state before the impact there.
+    """
 
     node: int
     switch: int
     side: int
     level: float = 0.0
+    arriving: bool = False
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return its value and gradient."""
-        start, k = orbit.mesh.starts[self.node], len(orbit.phases)
-        where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
-        modes = modes_in(system, orbit, start - 1)
-        d_state, d_phase, d_parameter = guards_gradient(system, *where, modes)
-        nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
-        nodes[start] = d_state[0, self.switch]
-        outer[self.node] = d_phase[0, self.switch]
-        outer[k:] = d_parameter[0, self.switch, list(free)]
-        value = float(guards(system, *where, modes)[0, self.switch])
-        row = Row(value, nodes, outer).scaled(self.side)
-        return Row(row.value - self.level, row.nodes, row.outer)
+        at = arriving_row if self.arriving else node_row
+        row = at(system, orbit, self.node, self.switch, free).scaled(self.side)
+        return Row(row.value - self.level, row.nodes, row.outer, row.stages)
 
 
 @dataclass(frozen=True)

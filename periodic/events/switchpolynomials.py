@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from periodic.events.impactmodes import thrown
 from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode
@@ -259,7 +260,9 @@ class SwitchPolynomials:
         jump = sliding(self.system, switch)
         if jump is None:
             return list(self._tied(switch))
-        return [int(self.orbit.mesh.starts[i]) for i in group(self.system, self.orbit.mesh, jump)]
+        own = group(self.system, self.orbit.mesh, jump)
+        own += thrown(self.system, self.orbit, surface_of(self.system, jump))
+        return [int(self.orbit.mesh.starts[i]) for i in own]
 
     def value(self, at: Extremum) -> float:
         """Return the switch itself at a point, not the polynomial through its values at the knots."""

@@ -12,13 +12,16 @@ from enum import Enum, auto
 
 import numpy as np
 
+from periodic.events.impactmodes import thrown
 from periodic.events.impacts import slope_before
 from periodic.events.modes import mode_after, modes_in, surface_of
+from periodic.events.rates import before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import RELEASED, TOGETHER
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
+from periodic.orbit.scheme import Array
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
 
 class Breach(Enum):
@@ -40,13 +43,17 @@ class Breach(Enum):
 @dataclass(frozen=True)
 class Violation:
     """One of them: the switch, where (an extremum, or an event node), the side of its level that it should be
-    on, and how far it is past it, as a part of its largest value."""
+    on, and how far it is past it, as a part of its largest value.
+
+    arriving: whether that is the state before the impact at the event node.
+    """
 
     breach: Breach
     switch: int
     at: Extremum | int
     side: int
     depth: float
+    arriving: bool = False
 
 
 def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
@@ -133,7 +140,8 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
     """Return what keeps passages of a guard from being held, and stops from slipping on, at its event nodes.
 
-    Their depths are negative as long as it does.
+    At impacts that throw the guard, what keeps the modes before and after. Their depths are negative as long
+    as it does.
     """
     return _limits(SwitchPolynomials(system, orbit), surface)
 
@@ -141,7 +149,7 @@ def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation
 def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     system, orbit = dense.system, dense.orbit
     assert surface.releases is not None
-    (up, down), guard, found = surface.releases, surface.switch, list[Violation]()
+    (up, down), guard, found = surface.releases, surface.switch, _about_impacts(system, orbit, surface)
     nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
     if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
         return []
@@ -154,6 +162,50 @@ def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
         value = float(guards(system, *at, modes_in(system, orbit, int(start) - 1))[0, onward])
         found.append(Violation(Breach.MODE, onward, j, side, -side * value / most))
     return found
+
+
+def _about_impacts(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
+    """What keeps the modes before and after impacts that throw the guard of a surface."""
+    found = list[Violation]()
+    for j in thrown(system, orbit, surface):
+        if slope_before(system, orbit, j) * orbit.mesh.events[j].direction > 0:
+            interval, x, _ = before(orbit, j)
+            start = int(orbit.mesh.starts[j])
+            found += _beside_impact(system, orbit, surface, j, x, interval, arriving=True)
+            found += _beside_impact(system, orbit, surface, j, orbit.nodes[start][None], start)
+    return found
+
+
+def _beside_impact(
+    system: System,
+    orbit: Orbit,
+    surface: SurfaceLike,
+    node: int,
+    state: Array,
+    interval: int,
+    arriving: bool = False,
+) -> list[Violation]:
+    """What keeps the mode of a surface in the interval before or after an impact, at its end there."""
+    assert surface.column is not None
+    dense, phase = SwitchPolynomials(system, orbit), orbit.phases[node : node + 1]
+    mode = int(dense.modes[interval, surface.column])
+    values = guards(system, state, phase, orbit.parameter, modes_in(system, orbit, interval))[0]
+    return [
+        Violation(Breach.MODE, k, node, side, -side * float(values[k]) / largest(dense, k), arriving)
+        for k, side in _kept(surface, mode, arriving)
+    ]
+
+
+def _kept(surface: SurfaceLike, mode: int, arriving: bool) -> tuple[tuple[int, int], ...]:
+    """The switches that keep their side, with it, just before or after an impact that throws the guard.
+
+    What is held before is held by its limits; an elastic slider turns wherever its speed does.
+    """
+    assert surface.releases is not None
+    if mode in (STUCK, HELD):
+        up, down = surface.releases
+        return ((up, -1), (down, 1)) if arriving else ()
+    return ((surface.switch, mode),) if mode and surface.kind == Kind.SLIDING else ()
 
 
 def largest(dense: SwitchPolynomials, *switches: int) -> float:

@@ -11,6 +11,7 @@ from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
 from periodic.events.modes import bends, group, mode_after, surface_of
 from periodic.events.rewrites.corners import corner
+from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.reversals import reversals, short_of
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strikes import last_impact
@@ -18,6 +19,9 @@ from periodic.events.rewrites.swaps import swapped, swaps
 from periodic.events.rewrites.table import (
     ADDING_ABOUT,
     ADDING_SLIDING,
+    AFTER_IMPACT,
+    BEFORE_IMPACT,
+    CAUGHT,
     CORNER,
     CROSSING_SLIDING,
     FIRST_SLIPS,
@@ -25,6 +29,7 @@ from periodic.events.rewrites.table import (
     GRAZING_SLIDING,
     IMPACT,
     LIMIT_GRAZING,
+    RELEASE_AT_IMPACT,
     REVERSAL,
     SWAP,
     SWITCHING_SLIDING,
@@ -92,7 +97,12 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
-        if swaps(system, orbit, i) and i not in about:
+        if i in about:
+            continue
+        meets = meeting(system, orbit, i)
+        if meets is not None:
+            yield Excursion(meets, i)
+        elif swaps(system, orbit, i):
             yield Excursion(SWAP, i)
 
 
@@ -104,6 +114,8 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
         return _first_slips(system, orbit, excursion.index)
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
+    if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
+        return [met(system, orbit, excursion.row, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]
 
 
@@ -214,7 +226,9 @@ def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
     if i == j:
         return None
     surface = surface_of(system, orbit.mesh.events[i].switch)
-    ends = mode_after(surface, orbit.mesh.events[j]) is not None
+    second = orbit.mesh.events[j]
+    struck = surface_of(system, second.switch).kind == Kind.IMPACT
+    ends = mode_after(surface, second) is not None and not struck
     return surface if surface.releases is not None and ends else None
 
 

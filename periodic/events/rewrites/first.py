@@ -111,7 +111,9 @@ def _share(system: System, before: Orbit, violation: Violation) -> float:
         clear = abs(dense.nearest(at.switch, violation.side, at.phase).value) / most
     else:
         surface = surface_of(system, violation.switch)
-        clear = next(abs(each.depth) for each in limits(system, before, surface) if each.at == at)
+        same = violation.switch, at, violation.arriving
+        each = limits(system, before, surface)
+        clear = next((abs(v.depth) for v in each if (v.switch, v.at, v.arriving) == same), 0.0)
     return float(clear / (clear + abs(violation.depth)))
 
 

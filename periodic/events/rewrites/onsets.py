@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.events.modes import group, held_all_along, mode_after, surface_of
+from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
@@ -87,7 +88,7 @@ def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
                 yield from _extrema(dense, surface, switch)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
-            yield from (site for site in each if site.row.name == row)
+            yield from (site for site in each if site is not None and site.row.name == row)
 
 
 def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
@@ -163,9 +164,11 @@ def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float
     return Site(GRAZING, k, at, Clearance(k, side, at.phase, left), value, added)
 
 
-def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site:
+def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site | None:
     """The site at an event node where a passage may begin to be held, or a stop may break."""
     assert isinstance(limit.at, int)
+    if surface_of(system, orbit.mesh.events[limit.at].switch).kind == Kind.IMPACT:
+        return begun(system, orbit, surface, limit)
     node, event, guard = limit.at, orbit.mesh.events[limit.at], surface.switch
     phase, most = float(orbit.phases[node]), _largest_release(system, orbit, surface)
     others = tuple(pair for pair in event.modes if pair[0] != guard)

@@ -21,7 +21,7 @@ from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import at_once
 from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
-from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT
 from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
@@ -161,9 +161,9 @@ class Ends:
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
         """What is 0 where it ends, but for what rounding decides."""
-        if own.row is SWAP:
-            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         held, left = own.held, 0.0
+        if isinstance(held, Length):
+            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         jump = sliding(system, own.switch)
         if jump is not None and own.row is not GRAZING_SLIDING:
             left = AT_LEVEL * largest(SwitchPolynomials(system, orbit), *releases(system, jump))

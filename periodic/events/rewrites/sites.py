@@ -67,7 +67,8 @@ class Site:
 
     def begin(self, orbit: Orbit, size: float) -> Node:
         """The event node with which what begins begins."""
-        if self.replaced and isinstance(self.at, int):
+        early = any(each.part < 0 for each in self.added)
+        if self.replaced and isinstance(self.at, int) and not early:
             node, event = self.replaced[0]
             return event, float(orbit.phases[node])
         return self.added[0].at(size)

@@ -16,10 +16,16 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    corner before impact   I from a            (a b) I from b    limit            length
+    corner after impact    I to b              I to a, (a b)     limit            length
+    release at an impact   I from 0            (0 b) I from b    limit            length
+    caught after impact    I to +, (+ 0)       I to -, (- 0)     length           length
 
 The grazing of a limit is adding-sliding of a slider: what slips forgets where it was held before, however
 briefly, and so the multipliers jump, which they do not where friction slips.
 
+I is an impact that throws the guard of another surface, as that of friction against a belt: it takes it
+from a mode to a mode. Where the guard is 0 just before or after it the orbit passes the corner of both.
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
 joint where one is pulled most. What begins is of no
 size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
@@ -27,7 +33,7 @@ size there: size = c depth^power, the depth being how far the orbit without it w
 References
 ----------
 Nordmark, J. Sound Vib. 145 (1991) 279. di Bernardo, Budd, Champneys & Kowalczyk, Piecewise-smooth Dynamical
-Systems, 2008, chapters 6 to 8.
+Systems, 2008, chapters 6 to 8. Corners: di Bernardo, Budd & Champneys, Physica D 154 (2001) 171.
 """
 
 from __future__ import annotations
@@ -95,4 +101,12 @@ CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, siz
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)
 CORNER = Row(name="grazing in the corner of an impact", touches=True, power=LINEAR)
+BEFORE_IMPACT = Row(
+    name="corner collision before an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+)
+AFTER_IMPACT = Row(
+    name="corner collision after an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+)
+RELEASE_AT_IMPACT = Row(name="release at an impact", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+CAUGHT = Row(name="caught after an impact", touches=False, power=LINEAR)
 SWAP = Row(name="two events change places", touches=False, power=LINEAR)
