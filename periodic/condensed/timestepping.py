@@ -270,7 +270,8 @@ class Motion:
         Where it is stuck a switch is 0, and the equations lie between those of its two sides.
         """
         system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
-        given = ((x - self.state) / step.width)[None], x[None], unknown[None], at, self.parameter
+        amid = at - step.width / 2  # of forces that are constant in a step what is exact to second order
+        given = ((x - self.state) / step.width)[None], x[None], unknown[None], amid, self.parameter
         columns = np.arange(len(self.side))
         upper = np.where(np.isin(columns, stuck), 1.0, self.side)
         line, left = self._carried(linearise(system, *given, upper[None]), x, tau), []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import cast
 
 import numpy as np
@@ -27,14 +28,22 @@ SAMPLES = 193
 """Places in a period at which it is looked at."""
 
 
-def settled(system: System, start: Orbit) -> Orbit | None:
-    """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
+def settled(system: System, start: Orbit) -> Iterator[Orbit]:
+    """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    None where it does not settle within PERIODS, where its integration fails, and of a system that cannot be
-    followed in time.
+    One that has settled further may follow. None where it does not settle within PERIODS, where its
+    integration fails, and of a system that cannot be followed in time.
     """
     if linear_of(system):
-        return condensed.settled(system, start) if slides_of(system) else None
+        if slides_of(system):
+            yield from condensed.settled(system, start)
+        return
+    if (found := _integrated(system, start)) is not None:
+        yield found
+
+
+def _integrated(system: System, start: Orbit) -> Orbit | None:
+    """The motion of a system with all its states."""
     if not hasattr(system, "motion"):
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)

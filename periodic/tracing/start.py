@@ -88,9 +88,9 @@ class Start:
             return self._at_turn(guess, sign, first)
         others = self._other_guesses(guess)
         if settles:
-            motion = next(others, None)
-            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
-                return last
+            for motion in iter(lambda: next(others, None), None):
+                if (last := worded(self.solver, motion, sign)).ok:
+                    return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
             if (last := self._fixed(rest, sign)).ok:
@@ -126,15 +126,16 @@ class Start:
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses at the wanted parameters, each found only when those before have not served.
 
-        The first is a motion that has settled, None where there is none; none at all where friction holds it.
+        First a motion that has settled, further and further, then None; no more where friction holds it.
         """
-        motion = self._settled(guess)
-        names = [] if motion is None else held(self.solver.problem.system, motion)
-        if names:
-            self.tried[-1] += f": {' and '.join(names)} holds all along, at a place that is not determined"
-            return
         system, method = self.solver.problem.system, self.solver.discretisation
-        yield None if motion is None else method.guess(system, guess.parameter, motion)
+        for motion in self._settled(guess):
+            if names := held(system, motion):
+                place = "at a place that is not determined"
+                self.tried[-1] += f": {' and '.join(names)} holds all along, {place}"
+                return
+            yield method.guess(system, motion.parameter, motion)
+        yield None
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
@@ -145,13 +146,13 @@ class Start:
         rest = resting(problem.system, guess)
         return None if rest is None else self._adopted(self.solver, rest)
 
-    def _settled(self, guess: Orbit) -> Orbit | None:
+    def _settled(self, guess: Orbit) -> Iterator[Orbit]:
         """A simulation that is left to settle; none of free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
-            return None
+            return
         self.tried.append("a simulation left to settle")
-        return settled(problem.system, guess)
+        yield from settled(problem.system, guess)
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
