@@ -7,13 +7,13 @@ from typing import cast
 
 import numpy as np
 
-from periodic.condensed import settling as condensed
+from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.events.motions import orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
+from periodic.system import Moving, System, surfaces_of
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -28,17 +28,16 @@ SAMPLES = 193
 """Places in a period at which it is looked at."""
 
 
-def settled(system: System, start: Orbit) -> Iterator[Orbit]:
+def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
     """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    One that has settled further may follow. None where it does not settle within PERIODS, where its
-    integration fails, and of a system that cannot be followed in time.
+    By the method's own way, or by integration of all states. None where it does not settle within PERIODS,
+    where its integration fails, and of a system that cannot be followed in time.
     """
-    if linear_of(system):
-        if slides_of(system):
-            yield from condensed.settled(system, start)
-        return
-    if (found := _integrated(system, start)) is not None:
+    own = method.settled(system, start)
+    if own is not None:
+        yield from own
+    elif (found := _integrated(system, start)) is not None:
         yield found
 
 

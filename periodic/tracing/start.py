@@ -11,15 +11,14 @@ from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
+from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
-from periodic.tracing.drift import drifting
 from periodic.tracing.rereading import worded
-from periodic.tracing.resting import resting
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
@@ -116,7 +115,8 @@ class Start:
         if not self.tried:
             return outcome.value
         problem = self.solver.problem
-        free = [] if problem.autonomous else drifting(problem.system, parameter)
+        method, system = self.solver.discretisation, problem.system
+        free = [] if problem.autonomous else method.drifting(system, parameter)
         held = f"; nothing holds {' and '.join(free)}" if free else ""
         return (
             f"{outcome.value}{held}; nor was one found from {', '.join(self.tried)}; "
@@ -143,7 +143,7 @@ class Start:
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
-        rest = resting(problem.system, guess)
+        rest = method.resting(problem.system, guess)
         return None if rest is None else self._adopted(self.solver, rest)
 
     def _settled(self, guess: Orbit) -> Iterator[Orbit]:
@@ -152,7 +152,7 @@ class Start:
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return
         self.tried.append("a simulation left to settle")
-        yield from settled(problem.system, guess)
+        yield from settled(method, problem.system, guess)
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
@@ -203,7 +203,7 @@ class Start:
         problem = self.solver.problem
         try:
             across = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
-        except FAILURES:
+        except (*FAILURES, UnknownVariationsError):
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
         aside = ASIDE * problem.scale
