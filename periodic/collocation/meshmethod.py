@@ -26,6 +26,7 @@ from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
+from periodic.linear.variation import Variations
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
@@ -65,6 +66,9 @@ class MeshMethod(Discretisation):
 
     ends_below: ClassVar[float] = ENDS_BELOW
     """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
+
+    all_states: ClassVar[bool] = True
+    """Whether mesh points have all states, so that the map from one to the next is known as it is."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -156,6 +160,10 @@ class MeshMethod(Discretisation):
         """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
+
+    def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations | None:
+        """Return the motions beside an orbit; None where they are those of all states."""
+        return None
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""

@@ -260,15 +260,19 @@ class Motion:
     def _equations(
         self, x: Array, unknown: Array, parts: Array, tau: float, step: Step
     ) -> tuple[Array, Array]:
-        """Rows at the end of a step by own states, unknowns and parts of jumps, and what is left of them.
+        """Rows amid a step by own states, unknowns and parts of jumps at its end, and what is left of them.
 
-        Where it is stuck a switch is 0, and the equations lie between those of its two sides.
+        Forces are constant in it: those amid it are right to second order. At its end what is stuck has a
+        switch of 0; the equations lie between those of its two sides.
         """
         system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
-        given = ((x - self.state) / step.width)[None], x[None], unknown[None], at, self.parameter
+        amid = (x + self.state)[None] / 2, unknown[None], at - step.width / 2, self.parameter
+        given = ((x - self.state) / step.width)[None], *amid
         columns = np.arange(len(self.side))
         upper = np.where(np.isin(columns, stuck), 1.0, self.side)
-        line, left = self._carried(linearise(system, *given, upper[None]), x, tau), []
+        line, left = linearise(system, *given, upper[None]), []
+        line.d_state[0] /= 2
+        line = self._carried(line, x, tau)
         for i in stuck:
             lower = np.where(columns == i, -1.0, upper)
             left.append(self._carried(linearise(system, *given, lower[None]), x, tau).residual[0])

@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.collocation.elimination import eliminated
+from periodic.condensed.method import mesh_method
 from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain
 from periodic.linear.unknowns import mean_weights
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import System
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 MONODROMY_STEP = 3e-3
@@ -56,7 +57,7 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.48.
     """
     polynomial(orbit)
-    if len(orbit.phases) or linear_of(system) is not None:
+    if len(orbit.phases) or not mesh_method(system).all_states:
         raise ValueError("orbit has event nodes, or its system is condensed; it must be a smooth one")
     fundamental = chain(eliminated(system, orbit, ()))[:, :, 1:]
     A = fundamental[-1]

@@ -13,7 +13,9 @@ from typing import Protocol, Self, runtime_checkable
 
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
+from periodic.correction.drift import drifting
 from periodic.correction.error import ErrorEstimate
+from periodic.correction.meanequilibrium import resting
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -229,6 +231,57 @@ class Discretisation(Protocol):
             True where it is cheap, and finds what Newton does not.
         """
         return False
+
+    def settled(self, system: System, start: Orbit) -> Iterator[Orbit] | None:
+        """Return motions to which a system settles, by a way of the method's own.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        start : Orbit
+            Its parameters are theirs.
+
+        Returns
+        -------
+        iterator of Orbit, or None
+            Guesses, each settled further than the one before; None where all states are to be integrated.
+        """
+        return None
+
+    def resting(self, system: System, start: Orbit) -> Orbit | None:
+        """Return the rest under the mean of all loads; see `periodic.correction.meanequilibrium`.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        start : Orbit
+            An orbit; its parameters are those of the rest.
+
+        Returns
+        -------
+        Orbit or None
+            A constant one; None where the other is at rest already, and where there is none.
+        """
+        return resting(system, start)
+
+    def drifting(self, system: System, parameter: Array) -> list[str]:
+        """Return the states that nothing holds; see `periodic.correction.drift`.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+
+        Returns
+        -------
+        list of str
+            Their names; none as a rule.
+        """
+        return drifting(system, parameter)
 
     @property
     def stability(self) -> Stability:

@@ -30,7 +30,6 @@ from periodic.system import (
     Moving,
     SurfaceLike,
     System,
-    linear_of,
     surfaces_of,
 )
 
@@ -133,7 +132,7 @@ def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
     It is followed from amid its longest segment, as far from all events as can be. It may violate its word:
     that of the motion does not. Raises what the integration raises.
     """
-    if not hasattr(system, "motion") or linear_of(system) or orbit.mesh.period != FORCED:
+    if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
     at = np.mod(amid(orbit), FORCED)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]

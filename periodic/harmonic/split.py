@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,9 @@ from numpy.typing import NDArray
 from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
+from periodic.condensed.split import SplitMethod
 from periodic.correction.arclength import ArclengthConstraint
+from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
@@ -183,8 +186,10 @@ class SplitCorrection(Correction):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SplitHarmonicBalance(HarmonicBalance):
+class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
     """`HarmonicBalance` for a system with a linear part (`periodic.system.Split`)."""
+
+    whole: ClassVar[type[Discretisation]] = HarmonicBalance
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the balanced equations."""

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import cast
 
 import numpy as np
 
-from periodic.condensed import settling as condensed
-from periodic.condensed.settling import PERIODS, STILL
+from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
 from periodic.events.motions import orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
+from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
+
+PERIODS = 100
+"""Most periods of the excitation that a motion is given to settle."""
+
+STILL = 1e-3
+"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
 NEAR = 1e-2
 """The same of an orbit on which Newton's method on the return map ends: its word can be read."""
@@ -27,14 +33,21 @@ PLACES_IN_PERIOD = 193
 """Places in a period at which it is looked at."""
 
 
-def settled(system: System, start: Orbit) -> Orbit | None:
-    """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
+def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
+    """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    One that takes long is looked for by Newton's method on its return map. None where none is found within
-    PERIODS, where its integration fails, and of a system that cannot be followed in time.
+    By the method's own way, or by integration of all states. None where it does not settle within PERIODS,
+    where its integration fails, and of a system that cannot be followed in time.
     """
-    if linear_of(system):
-        return condensed.settled(system, start) if slides_of(system) else None
+    own = method.settled(system, start)
+    if own is not None:
+        yield from own
+    elif (found := _integrated(system, start)) is not None:
+        yield found
+
+
+def _integrated(system: System, start: Orbit) -> Orbit | None:
+    """The motion of a system with all its states."""
     if not hasattr(system, "motion"):
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)

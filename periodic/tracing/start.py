@@ -12,15 +12,14 @@ from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
 from periodic.correction.tolerance import COARSEST, Accuracy
+from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
-from periodic.tracing.drift import drifting
 from periodic.tracing.eventsfrommotion import worded
-from periodic.tracing.meanequilibrium import resting
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
@@ -88,9 +87,9 @@ class Start:
             if last.ok and np.isfinite(last.error.motion):
                 return last
         if settles:
-            motion = next(others, None)
-            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
-                return last
+            for motion in iter(lambda: next(others, None), None):
+                if (last := worded(self.solver, motion, sign)).ok:
+                    return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
             if (last := self._fixed(rest, sign)).ok:
@@ -116,7 +115,8 @@ class Start:
         if not self.tried:
             return outcome.value
         problem = self.solver.problem
-        free = [] if problem.autonomous else drifting(problem.system, parameter)
+        method, system = self.solver.discretisation, problem.system
+        free = [] if problem.autonomous else method.drifting(system, parameter)
         held = f"; nothing holds {' and '.join(free)}" if free else ""
         return (
             f"{outcome.value}{held}; nor was one found from {', '.join(self.tried)}; "
@@ -126,15 +126,16 @@ class Start:
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses at the wanted parameters, each computed only when those before have failed.
 
-        The first is a motion that has settled, None where there is none; none at all where friction holds it.
+        First a motion that has settled, further and further, then None; no more where friction holds it.
         """
-        motion = self._settled(guess)
-        names = [] if motion is None else held(self.solver.problem.system, motion)
-        if names:
-            self.tried[-1] += f": {' and '.join(names)} holds all along, at a place that is not determined"
-            return
         system, method = self.solver.problem.system, self.solver.discretisation
-        yield None if motion is None else method.guess(system, guess.parameter, motion)
+        for motion in self._settled(guess):
+            if names := held(system, motion):
+                place = "at a place that is not determined"
+                self.tried[-1] += f": {' and '.join(names)} holds all along, {place}"
+                return
+            yield method.guess(system, motion.parameter, motion)
+        yield None
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
@@ -142,16 +143,16 @@ class Start:
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
-        rest = resting(problem.system, guess)
+        rest = method.resting(problem.system, guess)
         return None if rest is None else self._adopted(self.solver, rest)
 
-    def _settled(self, guess: Orbit) -> Orbit | None:
+    def _settled(self, guess: Orbit) -> Iterator[Orbit]:
         """A simulation that is left to settle; none of free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
-            return None
+            return
         self.tried.append("a simulation left to settle")
-        return settled(problem.system, guess)
+        yield from settled(method, problem.system, guess)
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
@@ -202,7 +203,7 @@ class Start:
         problem = self.solver.problem
         try:
             kernel = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
-        except FAILURES:
+        except (*FAILURES, UnknownVariationsError):
             return failed
         found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, kernel, 0.0)))
         aside = BESIDE_BOUND * problem.scale
@@ -237,8 +238,9 @@ class Start:
         first = self._fixed(self._rest(near) or near, sign)
         if not solver.discretisation.settles(system) or first.ok and np.isfinite(first.error.motion):
             return first
-        motion = settled(system, near)
-        return first if motion is None else worded(solver, self._adopted(solver, motion), sign)
+        each = (self._adopted(solver, motion) for motion in settled(solver.discretisation, system, near))
+        found = (worded(solver, motion, sign) for motion in each)
+        return next((last for last in found if last.ok), first)
 
     @staticmethod
     def _adopted(solver: Solver, orbit: Orbit) -> Orbit:

@@ -11,10 +11,10 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
+from periodic.condensed.method import mesh_method
 from periodic.conditions.flip import flip_coefficient
 from periodic.correction.outcome import FAILURES
 from periodic.correction.solution import Solution
-from periodic.system import linear_of
 
 SIMPLE = 1e-3
 """With a second multiplier as near to -1 the coefficient is not computed: it is infinite at R2."""
@@ -37,7 +37,7 @@ def _coefficient(solution: Solution) -> float:
     """
     problem, orbit = solution.problem, solution.orbit
     system, known = problem.system, _simple(solution) and not problem.autonomous
-    if len(orbit.phases) or linear_of(system) is not None or not known:
+    if len(orbit.phases) or not mesh_method(system).all_states or not known:
         return 0.0
     try:
         found = flip_coefficient(system, orbit)

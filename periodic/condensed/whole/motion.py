@@ -62,6 +62,18 @@ def motion(
     return states[:, ::2], states[:, 1::2]
 
 
+def displacements(
+    system: System, orbit: Orbit, nodes: Sequence[tuple[str, int]], tau: Array, structure: str
+) -> Array:
+    """Return displacements (SI) of nodes of a structure, (K, nodes), whether it is condensed or not.
+
+    A node is a name among the outputs of a system with all states, and the index of a degree of freedom.
+    """
+    if linear_of(system) is None:
+        return np.stack([orbit[name](tau / orbit.omega) for name, _ in nodes], axis=1)
+    return motion(system, orbit, [k for _, k in nodes], tau, structure)[0]
+
+
 def _with_forces(system: System, orbit: Orbit) -> Orbit:
     """The orbit as a piecewise polynomial with the forces at its collocation points."""
     if type(orbit) is Orbit:

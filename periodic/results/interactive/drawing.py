@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from periodic.condensed.whole.motion import motion
+from periodic.condensed.whole.motion import displacements
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.units import prefixed
 from periodic.results.point import Point
-from periodic.system import System, linear_of
+from periodic.system import System
 
 LENGTHS = ("x", "y", "size", "depth")
 
@@ -92,9 +92,7 @@ def _deflected(shape: Mapping[str, Any], points: Sequence[Point], system: System
 def _deflections(orbit: Orbit, nodes: Sequence[tuple[str, int]], structure: str, system: System) -> Array:
     """Displacements of nodes over a period (SI), shape (nodes, STEPS)."""
     phases = np.linspace(0, orbit.mesh.period, SHAPE_INSTANTS, endpoint=False)
-    if linear_of(system) is not None:
-        return motion(system, orbit, [k for _, k in nodes], phases, structure)[0].T
-    return np.array([orbit[name](phases / orbit.omega) for name, _ in nodes])
+    return displacements(system, orbit, nodes, phases, structure).T
 
 
 def packed(values: Array) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import System
 
 FREE_MOTION = 1e-12
 """Least singular value of a stiffness, of the largest, below which nothing holds a motion."""
@@ -34,8 +34,6 @@ def drifting(system: System, parameter: Array) -> list[str]:
     list of str
         Their names.
     """
-    if linear_of(system) is not None:  # its modes tell
-        return []
     state, algebraic = system.rest(parameter)
     many = len(PHASES)
     places = state + AWAY * np.sin(1.0 + np.arange(many))[:, None] * np.ones_like(state)

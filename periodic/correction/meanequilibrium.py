@@ -11,7 +11,7 @@ from periodic.correction.outcome import FAILURES
 from periodic.orbit.construction import constant
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import LinearPart, System
 from periodic.system.precision import MOST_ITERATIONS
 
 PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
@@ -24,17 +24,18 @@ LEAST_LOAD_STEP = 1e-4
 """Smallest part of the load that is added at once."""
 
 
-def resting(system: System, start: Orbit) -> Orbit | None:
-    """Return the constant orbit at which R(0, x, z, tau, p) vanishes in the mean over a period.
+def resting(system: System, start: Orbit, part: LinearPart | None = None) -> Orbit | None:
+    """Return the constant orbit with mean R(0, x, z, tau, p) = 0 over a period at the parameters of another.
 
-    `start` gives the parameters and the first guess. Its residual, the load that is missing there, is added
-    in steps that Newton's method can follow: a film, for one, has no stiffness where it has no load. None
-    where `start` is in equilibrium already, and where the load cannot be added.
+    The load that is missing at the beginning of the other is added by and by, as far as Newton's method can
+    follow: a film, say, has no stiffness where it has no load, and ends at its clearance. None where the
+    other is at rest already, and where the load cannot be added. `part` is the linear part of a system whose
+    rows do not say it.
     """
     point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
     try:
         with np.errstate(divide="raise", invalid="raise"):  # a mode that nothing holds has no rest
-            balance = _Balance.of(system, start.parameter)
+            balance = _Balance.of(system, start.parameter, part)
         missing = balance.rows(point)[0]
         if _balanced(missing, point):
             return None
@@ -58,8 +59,7 @@ class _Balance:
     flexibility: Array
 
     @classmethod
-    def of(cls, system: System, parameter: Array) -> _Balance:
-        part = linear_of(system)
+    def of(cls, system: System, parameter: Array, part: LinearPart | None) -> _Balance:
         if part is None:
             none = np.empty(0, dtype=int)
             return cls(system, parameter, none, none, np.empty((0, 0)))
