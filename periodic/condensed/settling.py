@@ -45,13 +45,17 @@ INTERVALS = 192
 def settled(system: System, start: Orbit) -> Iterator[Orbit]:
     """Yield the motion to which a system with sliding jumps settles from rest, at an orbit's parameters.
 
-    Then the same settled further: changes of mode that lie near to each other are in order only then. None
-    where it does not settle within PERIODS, or cannot be followed.
+    Then the same settled further, and in finer steps: changes of mode that lie near to each other are in
+    order only then. None where it does not settle within PERIODS, or cannot be followed.
     """
     try:
         motion = Motion.at_rest(system, start.parameter, start.nodes[0], start.algebraic[0, 0])
-        for still, shortest in ((STILL, np.inf), (CLOSE, SHORTEST)):
-            motion.pace(STEPS, shortest)
+        for steps, shortest, still in (
+            (STEPS, np.inf, STILL),
+            (STEPS, SHORTEST, CLOSE),
+            (FINE, SHORTEST, CLOSE),
+        ):
+            motion.pace(steps, shortest)
             if not _settles(motion, still):
                 return
             motion.pace(FINE, SHORTEST)

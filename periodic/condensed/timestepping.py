@@ -91,6 +91,19 @@ class Step:
         return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
 
 
+@dataclass(frozen=True)
+class Holding:
+    """By which parts of their jumps what is stuck is held, on the mean of a step of a width; else NaN."""
+
+    width: float
+    parts: Array
+
+    def gives_way(self, before: Holding) -> bool:
+        """Whether a part exceeds 1 at the end of the step, led on from the step before."""
+        rate = (self.parts - before.parts) / (self.width + before.width)
+        return bool((np.abs(self.parts + rate * self.width) > 1).any())
+
+
 def _width(length: float) -> float:
     """The width of a step, the same where it differs in its last digits."""
     return float(f"{length:.9e}")
@@ -131,6 +144,7 @@ class Motion:
     unknowns: list[Array] = field(default_factory=list, init=False)
     sides: list[Array] = field(default_factory=list, init=False)
     events: list[Changed] = field(default_factory=list, init=False)
+    holding: Holding = field(init=False)
     _known: dict[float, Step] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
@@ -139,6 +153,7 @@ class Motion:
         self.places, self.forces = list(part.states), list(part.forces)
         self.own = np.setdiff1d(np.arange(len(self.state)), self.places)
         self.joints = joints_of(self.system)
+        self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
 
     @classmethod
@@ -180,10 +195,11 @@ class Motion:
 
     def _advance(self, begin: float, end: float) -> None:
         """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
-        before = self.z, self.state, self.unknown, self.side
+        before = self.z, self.state, self.unknown, self.side, self.holding
         self._step(end, _width(end - begin))
-        if end - begin > self.shortest and not np.array_equal(before[3], self.side):
-            self.z, self.state, self.unknown, self.side = before
+        changes = not np.array_equal(before[3], self.side) or self.holding.gives_way(before[4])
+        if end - begin > self.shortest and changes:
+            self.z, self.state, self.unknown, self.side, self.holding = before
             ends = np.linspace(begin, end, PARTS + 1)
             for first, last in pairwise(ends):
                 self._advance(float(first), float(last))
@@ -208,6 +224,7 @@ class Motion:
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
         self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
         self.state, self.unknown = x, unknown
+        self.holding = Holding(width, np.where(np.isin(np.arange(len(parts)), self._stuck[0]), parts, np.nan))
 
     def _over(self, width: float) -> Step:
         """What a step of a width does, kept."""

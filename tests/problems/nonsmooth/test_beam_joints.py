@@ -62,17 +62,18 @@ class Beam:
         force = FORCE * row(given.at["tip"], self.elements)
         return Jointed(mass, damping, stiffness, force, self.joints, scale=0.01)
 
-    def check(self, low: float, high: float) -> per.Branch:
-        """Assert that points of a branch are right to 1e-8, and that it reaches its end."""
+    def check(self, low: float, high: float, most: int | None = None) -> per.Branch:
+        """Assert that points of a branch are right to 1e-8, and that it reaches its end, or `most` points."""
         system, exact = self.compiled(), self.exact
-        branch = per.trace(system, "Omega", (low, high), tol=1e-9)
+        control = None if most is None else per.ArclengthControl(max_points=most)
+        branch = per.trace(system, "Omega", (low, high), tol=1e-9, control=control)
 
         def states(orbit: per.Orbit, tau: np.ndarray) -> np.ndarray:
             sliders = [k for k, state in enumerate(system.states) if state.name.startswith("z")]
             places = orbit.state(tau)[:, sliders] * [system.states[k].scale for k in sliders]
             return np.hstack([*per.motion(system, orbit, None, tau), places])
 
-        assert branch.stop.reason is per.Reason.BOUND
+        assert branch.stop.reason is (per.Reason.BOUND if most is None else per.Reason.MAX_POINTS)
         for point in branch[:: max(1, len(branch) // 4)]:
             verdict = judged(exact, point, states)
             assert verdict.orbit < 1e-8 and verdict.multipliers < 1e-8 and verdict.stability
@@ -115,7 +116,7 @@ def test_three_joints() -> None:
     limits = {"tip": 0.002, "1": 0.002, "2": 0.002}
     joints = [Coulomb(row(k, 3), 0.002) for k in (4, 0, 2)]
     joined = Beam(lambda at: [sym.CoulombFriction(at[k], limit) for k, limit in limits.items()], joints, 3)
-    first = joined.check(2.2, 2.20001)[0].orbit
+    first = joined.check(2.2, 2.21, 2)[0].orbit
     assert sum(bool(event.modes) for event in first.mesh.events) == 8
 
 
@@ -127,7 +128,7 @@ def test_joint_beside_a_stop(place: str, stops: int) -> None:
         lambda at: [sym.CoulombFriction(at["tip"], 0.002), sym.OneSidedSpring(at[place], 20.0, gap)],
         [Coulomb(row(TIP), 0.002), Stop(row({"tip": TIP, "1": MIDDLE}[place]), 20.0, gap)],
     )
-    first = joined.check(2.2, 2.2001)[0].orbit
+    first = joined.check(2.2, 2.21, 2)[0].orbit
     assert sum(bool(event.modes) for event in first.mesh.events) == stops
 
 
@@ -137,7 +138,7 @@ def test_held() -> None:
         lambda at: [sym.CoulombFriction(at["tip"], 0.002), sym.CoulombFriction(at["1"], 0.5)],
         [Coulomb(row(TIP), 0.002), Coulomb(row(MIDDLE), 0.5)],
     )
-    branch = joined.check(2.2, 2.2001)
+    branch = joined.check(2.2, 2.21, 2)
     for point in branch:
         assert [mode for _, mode in point.orbit.mesh.modes] == [HELD]
         assert point.peak_to_peak("1") < 1e-10
