@@ -265,7 +265,7 @@ class Discretisation(Protocol):
         """
         return self
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return an orbit with the events of its own motion, followed in time through its period.
 
         Parameters
@@ -274,6 +274,8 @@ class Discretisation(Protocol):
             The equations.
         orbit : Orbit
             An orbit, or a guess of one, whose events may not be those of its motion.
+        before : int
+            Periods through which it is followed before: what is held elsewhere afterwards has come there.
 
         Returns
         -------

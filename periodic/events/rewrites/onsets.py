@@ -26,7 +26,7 @@ from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.violations import Breach, Violation, largest, limits
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, surfaces_of
 
 AT_ONCE = 1e-7
 """Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
@@ -64,7 +64,11 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
         first = min(near, key=lambda site: _distance(own, site, orbit), default=None)
     if first is None:
         return []
-    found = [first]
+    found, guard = [first], surface_of(system, own.switch).switch
+    if dict(orbit.mesh.modes).get(guard) == HELD:  # what slips one way alone would go on and on
+        back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
+        other = (site for site in back if surface_of(system, site.switch).switch == guard)
+        near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
