@@ -75,7 +75,7 @@ class ReturnMap:
             if moved is None:
                 slope = self._slope(state, off, scale)
                 moved = self._nearer(state, off, slope, scale)
-            if moved is None and kinks < KINKS:
+            if moved is None and slope is not None and kinks < KINKS:
                 moved, kinks = self._across(state, off, slope, scale), kinks + 1
             if moved is None or slope is None:
                 break
