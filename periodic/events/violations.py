@@ -23,8 +23,10 @@ AT_LEVEL = 1e-8
 """How near to 0 what happens at another's event node is, as a part of its largest value."""
 
 NOISE = 1e-10
-"""How near to 0 a release may be on either side of it at an event node, or all along where friction beside a
-slider holds, as a part of its largest value."""
+"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
+
+AT_LIMIT = 1e-9
+"""The same of a slider between event nodes: as near as orbits are held to where something begins."""
 
 
 class Breach(Enum):
@@ -129,7 +131,7 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
         for violation in _excursions(own, k, base.side(k), largest(own, k), Breach.MODE)
     )
     # beside friction that holds, a slider stays at its limit, and leaves it as slowly as a motion from rest
-    return [v for v in each if surface.kind != Kind.SLIDER or v.depth > NOISE]
+    return [v for v in each if surface.kind != Kind.SLIDER or v.depth > AT_LIMIT]
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:

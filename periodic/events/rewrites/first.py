@@ -26,9 +26,9 @@ from periodic.events.rewrites.table import (
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
-from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
+from periodic.events.violations import AT_LIMIT, Breach, Violation, between_nodes, largest, limits
 from periodic.orbit.orbit import Orbit
-from periodic.system import System
+from periodic.system import Kind, System
 
 VANISHING = 0.5
 """What a step would leave this part of, by its tangent, may end within the step."""
@@ -95,6 +95,9 @@ def _onsets(
         if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
             continue
         part = _share(system, before, violation)
+        slider = surface_of(system, violation.switch).kind == Kind.SLIDER
+        if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LIMIT:
+            continue  # it stops at its limit there: what comes after is decided by the turn of its strain
         whole = whole_orbit(system, before, violation, part)
         site = begins(system, after, violation)
         if whole is not None:

@@ -23,7 +23,7 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.twins import leading, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
-from periodic.events.violations import Breach, Violation, largest, limits
+from periodic.events.violations import AT_LIMIT, Breach, Violation, largest, limits
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, surfaces_of
@@ -31,7 +31,7 @@ from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, surfaces_of
 AT_ONCE = 1e-7
 """Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
 
-SHORT_OF = 1e-9
+SHORT_OF = AT_LIMIT
 """How far from where something begins orbits without it are held, in the same part: rounding decides."""
 
 BESIDE = 1e-2
