@@ -48,7 +48,9 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
 
 def jumping(system: System, orbit: Orbit) -> tuple[int, ...]:
     """Return the event nodes of an orbit at which its state or its rates jump."""
-    own = {*resets_of(system), *jumps_of(system), *carrying(system)}
+    own = {*resets_of(system), *jumps_of(system), *carrying(system)} if orbit.mesh.events else set()
+    if not own:
+        return ()
     return tuple(
         i
         for i, event in enumerate(orbit.mesh.events)

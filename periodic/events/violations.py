@@ -67,7 +67,11 @@ def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> 
 
 def at_nodes(system: System, orbit: Orbit) -> list[Violation]:
     """Return the event nodes that do not pass their levels as they say."""
-    return [violation for i in range(len(orbit.phases)) for violation in _at_node(system, orbit, i)]
+    return _at_nodes(SwitchPolynomials(system, orbit))
+
+
+def _at_nodes(dense: SwitchPolynomials) -> list[Violation]:
+    return [violation for i in range(len(dense.orbit.phases)) for violation in _at_node(dense, i)]
 
 
 def refusals(system: System, orbit: Orbit) -> list[Violation]:
@@ -76,7 +80,7 @@ def refusals(system: System, orbit: Orbit) -> list[Violation]:
     if not impacts:
         return at_nodes(system, orbit)
     dense = SwitchPolynomials(system, orbit)
-    return at_nodes(system, orbit) + [v for switch in impacts for v in _through(dense, switch)]
+    return _at_nodes(dense) + [v for switch in impacts for v in _through(dense, switch)]
 
 
 def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
@@ -122,7 +126,7 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
 def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     """Where the motion slips that should be held at a surface, or the reverse."""
     assert surface.releases is not None
-    past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > NOISE]
+    past = [limit for limit in _limits(own, surface) if limit.depth > NOISE]
     if past:  # past a limit the motion turns back at once
         return past
     each = (
@@ -139,12 +143,17 @@ def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation
 
     Their depths are negative as long as it does.
     """
+    return _limits(SwitchPolynomials(system, orbit), surface)
+
+
+def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
+    system, orbit = dense.system, dense.orbit
     assert surface.releases is not None
     (up, down), guard, found = surface.releases, surface.switch, list[Violation]()
     nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
     if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
         return []
-    most = largest(SwitchPolynomials(system, orbit), up, down)
+    most = largest(dense, up, down)
     for j in nodes:
         event, start = orbit.mesh.events[j], orbit.mesh.starts[j]
         at = orbit.nodes[start : start + 1], orbit.phases[j : j + 1], orbit.parameter
@@ -160,12 +169,13 @@ def largest(dense: SwitchPolynomials, *switches: int) -> float:
     return float(np.abs(dense.knots[:, :, list(switches)]).max()) or 1.0
 
 
-def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> list[Violation]:
+def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Violation]:
     """What an event node says to happen at once to other surfaces, and does not.
 
     A joint that another's event tears off is released by the modes after it, and was held by those before.
     """
-    event, start, found = orbit.mesh.events[index], int(orbit.mesh.starts[index]), list[Violation]()
+    system, orbit, found = dense.system, dense.orbit, list[Violation]()
+    event, start = orbit.mesh.events[index], int(orbit.mesh.starts[index])
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     for k, mode in event.modes:
         surface = surface_of(system, k)
@@ -174,14 +184,15 @@ def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> lis
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
         release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
         torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
-        most = largest(SwitchPolynomials(system, orbit), release)
+        most = largest(dense, release)
         if not torn and abs(before[release]) > AT_LEVEL * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 
 
-def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
+def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
     """What is wrong at an event node."""
+    system, orbit = dense.system, dense.orbit
     event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
     surface = surface_of(system, event.switch)
 
@@ -193,7 +204,7 @@ def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
         return told(Breach.GRAZED, slope_before(system, orbit, index))
     if surface.releases is not None:
         reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
-        return reversed_there + _unforced(system, orbit, index, surface)
+        return reversed_there + _unforced(dense, index, surface)
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])

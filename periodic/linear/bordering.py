@@ -48,7 +48,8 @@ class Eliminated(Protocol):
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
     orbit is the one linearised at, residual the largest of its equations; compiled chains in C. It
-    may have `perturbed` (N, n, n+q), the steps of perturbations at fixed tau where the state jumps.
+    may have `jumps`, where the state or its rates jump, and `perturbed` (N, n, n+q), the steps of
+    perturbations at fixed tau there.
     """
 
     @property

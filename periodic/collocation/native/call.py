@@ -87,7 +87,8 @@ class Prepared(NamedTuple):
 
     def holds(self, system: System, orbit: Orbit) -> bool:
         """Whether these are the modes of an orbit that was found with them."""
-        return np.array_equal(self.side[:: orbit.mesh.scheme.ncol], sides(system, orbit))
+        own = self.side[:: orbit.mesh.scheme.ncol]
+        return own.size == 0 or np.array_equal(own, sides(system, orbit))
 
 
 def prepared(

@@ -1,7 +1,7 @@
 """Newton's iteration of small systems in one call of C (`newton.c`), where their kernels are compiled.
 
-It takes orbits on arclength constraints. Where it does not come through (a singular matrix, event nodes that
-cross) it returns None: NumPy does it all.
+It takes orbits on arclength constraints, each surface in the modes of the guess. Where it does not come
+through (a singular matrix, event nodes that cross, other modes at the end) it returns None: NumPy does all.
 """
 
 from __future__ import annotations
