@@ -148,10 +148,10 @@ class MeshMethod(Discretisation):
         own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
         return any(not group(system, orbit.mesh, switch) for switch in own)
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            motion = motions.followed(system, orbit, FOLLOWED)
+            motion = motions.followed(system, orbit, FOLLOWED, before)
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)

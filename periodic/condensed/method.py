@@ -96,9 +96,9 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         """Yield the orbit on the other mesh."""
         yield transfer(orbit, mesh, phases)
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
-        motion = followed(system, orbit)
+        motion = followed(system, orbit, before)
         return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def error(

@@ -76,7 +76,7 @@ def _settles(motion: Motion, still: float) -> bool:
     return False
 
 
-def followed(system: System, orbit: Orbit) -> Orbit | None:
+def followed(system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
     It may violate its word: that of the motion does not.
@@ -93,7 +93,8 @@ def followed(system: System, orbit: Orbit) -> Orbit | None:
         begun = orbit.nodes[k], orbit.algebraic[k, 0], response.modes, history[k], side
         motion = Motion(system, orbit.parameter, *begun, begin=float(orbit.grid.left[k]))
         motion.pace(FINE, SHORTEST)
-        motion.period()
+        for _ in range(before + 1):
+            motion.period()
         return orbit_of(motion)
     except FAILURES:
         return None

@@ -318,8 +318,8 @@ class Discretisation(Protocol):
         """
         return self
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
-        """Return a guess with the events of the motion itself, integrated in time over one period.
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
+        """Return an orbit with the events of its own motion, followed in time through its period.
 
         Parameters
         ----------
@@ -327,6 +327,8 @@ class Discretisation(Protocol):
             The equations.
         orbit : Orbit
             An orbit, or a guess of one, whose events may not be those of its motion.
+        before : int
+            Periods through which it is followed before: what is held elsewhere afterwards has come there.
 
         Returns
         -------

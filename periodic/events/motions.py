@@ -79,10 +79,13 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
 
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:
-    """What brings the others about that happen at once: an impact, what comes to rest, friction let go."""
+    """What brings the others about that happen at once: an impact, what comes to rest, what is let go.
+
+    Friction goes before sliders beside it.
+    """
     if surface.kind == Kind.IMPACT:
         return 0
-    return (3 if surface.kind == Kind.SLIDER else 2) if event.before == STUCK else 1
+    return (3 if event.before == STUCK else 1) + (surface.kind == Kind.SLIDER)
 
 
 def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
@@ -126,17 +129,22 @@ def orbit_of(
     return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin)
 
 
-def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
+def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
-    It is followed from amid its longest segment, as far from all events as can be. It may violate its word:
+    It is followed from amid its longest segment, as far from all events as can be, and through some periods
+    `before` that one. It may violate its word:
     that of the motion does not. Raises what the integration raises.
     """
     if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
     at = np.mod(amid(orbit), FORCED)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
-    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance, float(at[0]))
+    moving, begin = cast(Moving, system), float(at[0])
+    for _ in range(before):
+        path = moving.motion(state, algebraic, orbit.parameter, np.array([begin, begin + FORCED]), tolerance)
+        state, algebraic = path.state[-1], path.algebraic[-1]
+    return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin)
 
 
 def amid(orbit: Orbit) -> Array:

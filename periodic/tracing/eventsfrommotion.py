@@ -27,6 +27,10 @@ MOST_READINGS = 5
 DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
+BEFORE = (0, 3)
+"""Periods through which the motion is followed before its word is read: a joint that is held all along, and
+pulled past its limit, slips to another place, at which it is held again."""
+
 FARTHEST = 2.0
 """How far from the base it may be, in the length of the step along the tangent."""
 
@@ -49,16 +53,22 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
 
     first: length of a first step.
     """
-    problem, (low, high) = solver.problem, solver.problem.bounds
     sign = float(np.sign(base.tangent.parameter))
-    if problem.free != (problem.index,) or sign == 0:
+    if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
+    each = (_read(solver, base, first, sign, before) for before in BEFORE)
+    return next((found for found in each if found is not None), None)
+
+
+def _read(solver: Solver, base: Solution, first: float, sign: float, before: int) -> Crossed | None:
+    """The same after some periods of the motion."""
+    problem, (low, high) = solver.problem, solver.problem.bounds
     for ds in (part * first for part in DISTANCES_BEYOND):
         ahead = tangent(problem, base, ds)
         parameter = ahead.parameter.copy()
         parameter[problem.index] = float(np.clip(problem.value(ahead), low, high))
         near = ahead if in_order(ahead) else base.orbit
-        changed = solver.discretisation.reworded(problem.system, replace(near, parameter=parameter))
+        changed = solver.discretisation.reworded(problem.system, replace(near, parameter=parameter), before)
         if changed is None:
             return None
         found = worded(solver, changed, sign)

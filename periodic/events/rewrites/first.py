@@ -26,10 +26,10 @@ from periodic.events.rewrites.table import (
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
-from periodic.events.thresholds import LONGEST, VANISHING
+from periodic.events.thresholds import AT_LEVEL, LONGEST, VANISHING
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
 from periodic.orbit.orbit import Orbit
-from periodic.system import System
+from periodic.system import Kind, System
 
 ENDS_BELOW = SHORT[-1]
 """Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
@@ -92,6 +92,9 @@ def _onsets(
         if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
             continue
         part = _share(system, before, violation)
+        slider = surface_of(system, violation.switch).kind == Kind.SLIDER
+        if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
+            continue  # it stops at its limit there: what comes after is decided by the turn of its strain
         whole = whole_orbit(system, before, violation, part)
         site = begins(system, after, violation)
         if whole is not None:

@@ -59,24 +59,15 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
         first = min(near, key=lambda site: _distance(own, site, orbit), default=None)
     if first is None:
         return []
-    found = [first]
+    found, guard = [first], surface_of(system, own.switch).switch
+    if own.row is FIRST_SLIPS:  # what slips one way alone would go on and on
+        back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
+        other = (site for site in back if surface_of(system, site.switch).switch == guard)
+        near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
-    return [*found, *_back(system, orbit, found)]
-
-
-def _back(system: System, orbit: Orbit, found: list[Site]) -> list[Site]:
-    """Of what slips first the slip the other way, where it is not at once: in a period it comes back."""
-    if found[0].row is not FIRST_SLIPS:
-        return []
-    surface, missing = surface_of(system, found[0].switch), list[Site]()
-    assert surface.releases is not None
-    for switch in surface.releases:
-        if all(site.switch != switch for site in found):
-            dense = SwitchPolynomials(system, orbit)
-            missing += [min(_extrema(dense, surface, switch), key=lambda site: site.value)]
-    return missing
+    return found
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:

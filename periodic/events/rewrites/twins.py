@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.modes import mode_after, surface_of, twins
+from periodic.events.modes import mode_after, sticks, surface_of, twins
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
@@ -31,13 +31,30 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
         return _grazing(system, orbit, site, guard, both)
     if surface_of(system, guard).kind != Kind.SLIDER:
         return site
-    release, stop = site.added
+    turn = _turn(system, orbit, site.at, both)
+    if turn is None:
+        return site
+    joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))
+    release = replace(site.added[0], phase=float(orbit.phases[turn]))
+    return replace(site, added=(release,), replaced=((turn, joined),))
+
+
+def _turn(system: System, orbit: Orbit, at: Extremum, both: list[int]) -> int | None:
+    """The event node at which others stop where a strain turns: at that phase, or where friction holds it."""
     for j, event in enumerate(orbit.mesh.events):
-        if event.switch in both and apart(float(orbit.phases[j]), site.at.phase, orbit) < BESIDE_EXTREMUM:
-            joined = replace(event, modes=(*event.modes, (guard, STUCK)))
-            site = replace(site, added=(release,), replaced=((j, joined),))
-            break
-    return site
+        if event.switch not in both:
+            continue
+        if apart(float(orbit.phases[j]), at.phase, orbit) < BESIDE_EXTREMUM:
+            return j
+        release = sticks(system, orbit.mesh, event.switch, j)
+        if release is not None and surface_of(system, event.switch).kind == Kind.SLIDING:
+            length, since = (
+                float((phase - orbit.phases[j]) % orbit.mesh.period)
+                for phase in (float(orbit.phases[release]) + BESIDE_EXTREMUM, at.phase)
+            )
+            if since <= length:
+                return j
+    return None
 
 
 def leading(system: System, surface: SurfaceLike) -> SurfaceLike:
