@@ -20,6 +20,7 @@ from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.eventsfrommotion import worded
+from periodic.tracing.heldplaces import amid
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
@@ -61,7 +62,8 @@ class Start:
         Raises SpentError, which says so.
         """
         try:
-            return self._found(guess, sign)
+            first = self._found(guess, sign)
+            return amid(self.solver, guess, first, sign) if first.ok else first
         except SpentError:
             raise SpentError(f"all before a first orbit: {self._sought}; {SPENT}") from None
 
