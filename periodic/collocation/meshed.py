@@ -21,7 +21,7 @@ from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import motions, tying
-from periodic.events.modes import completed, group, of_held, of_kind
+from periodic.events.modes import completed, group, of_held, of_kind, relays
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, refusals, violations, word
@@ -108,8 +108,8 @@ class MeshMethod(Discretisation):
         return relax(system, self._tied(system, adopted))
 
     def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        held = of_held(system)
+        """A motion that sticks or a relay switches, on a mesh with event nodes there: Newton needs them."""
+        held = [*of_held(system), *relays(system)]
         if not held or any(group(system, orbit.mesh, k) for k in held):
             return orbit
         settings = (self.kinks or KinkSettings()).at(self.tolerance)

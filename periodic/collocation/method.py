@@ -25,6 +25,7 @@ from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
+from periodic.events.modes import relays
 from periodic.events.noderows import event_rows
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
@@ -163,9 +164,9 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:
-        """Return whether several joints may stick, or sliders are held: in time they find how."""
+        """Return whether several joints, sliders or relays have modes: in time they find theirs."""
         held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
-        return len(held) > 1 or Kind.SLIDER in held
+        return len(held) > 1 or Kind.SLIDER in held or bool(relays(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

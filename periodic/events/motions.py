@@ -12,7 +12,7 @@ from typing import cast
 
 import numpy as np
 
-from periodic.events.modes import twins
+from periodic.events.modes import modes_at, relays, twins
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -28,6 +28,7 @@ from periodic.system import (
     Moving,
     SurfaceLike,
     System,
+    TrajectoryLike,
     linear_of,
     surfaces_of,
 )
@@ -97,16 +98,36 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
     return surface.switch, -event.before if event.after == STUCK else event.after
 
 
+def motion_from(
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    phase: Array,
+    tolerance: float,
+    modes: Sequence[int] | None,
+) -> TrajectoryLike:
+    """Return the motion of a system from a state, its relays in given modes before it."""
+    given = state, algebraic, parameter, phase, tolerance
+    return system.motion(*given, modes) if modes and relays(system) else system.motion(*given)
+
+
 def orbit_of(
-    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    tolerance: float,
+    before: Sequence[int] | None = None,
 ) -> Orbit | None:
     """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
 
-    Raises what the integration raises.
+    before: the modes of all surfaces before it, which relays keep. Raises what the integration raises.
     """
-    if not any(surface.releases is not None for surface in surfaces_of(system)):
+    followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
+    if not followed:
         return None
-    whole = system.motion(state, algebraic, parameter, np.array([0.0, FORCED]), tolerance)
+    whole = motion_from(system, state, algebraic, parameter, np.array([0.0, FORCED]), tolerance, before)
     if not hasattr(whole, "modes"):
         return None
     whole = cast(Followed, whole)
@@ -115,7 +136,7 @@ def orbit_of(
     mesh, phases = _mesh(system, nodes)
     modes, parameter = list[tuple[int, int]](), parameter.copy()
     for index, surface in enumerate(surfaces_of(system)):
-        if surface.releases is None or changed & {surface.switch, *surface.releases}:
+        if surface not in followed or changed & {surface.switch, *(surface.releases or ())}:
             continue
         mode = whole.modes[index]
         if mode == STUCK and surface.place is not None:
@@ -124,7 +145,7 @@ def orbit_of(
             mode = HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance)
+    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, before)
 
 
 def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
@@ -136,7 +157,13 @@ def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
         return None
     at = np.zeros(1)
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
-    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance)
+    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance, _modes(system, orbit))
+
+
+def _modes(system: System, orbit: Orbit) -> list[int]:
+    """The modes of all surfaces at the beginning of a period, 0 of those that have no column."""
+    found = modes_at(system, orbit, np.zeros(1))[0]
+    return [0 if s.column is None else int(found[s.column]) for s in surfaces_of(system)]
 
 
 def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
@@ -159,6 +186,7 @@ def _on(
     algebraic: Array,
     parameter: Array,
     tolerance: float,
+    before: Sequence[int] | None,
 ) -> Orbit:
     """The motion at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
@@ -169,7 +197,7 @@ def _on(
         stages[start - 1, -1] -= ASIDE
     flat = np.mod(np.concatenate([nodes, stages.ravel()]), FORCED)
     phase, place = np.unique(np.append(flat, [0.0, FORCED]), return_inverse=True)
-    path = system.motion(state, algebraic, parameter, phase, tolerance)
+    path = motion_from(system, state, algebraic, parameter, phase, tolerance, before)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]
     first, count = len(nodes), mesh.ntst

@@ -283,6 +283,8 @@ def check_continuous(method: str, system: System) -> None:
     A jump at given phases, of a square wave, bends all motions alike. Raises ValueError.
     """
     what = "with impacts" if resets_of(system) else ""
+    if any(surface.kind == Kind.RELAY for surface in surfaces_of(system)):
+        what = what or "with relays"
     state, jumps = system.rest(system.nominal)[0], list(jumps_of(system))
     if jumps:
         phase = np.arange(4.0)

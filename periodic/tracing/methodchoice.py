@@ -17,7 +17,17 @@ from periodic.correction.problem import Problem
 from periodic.harmonic.method import HarmonicBalance
 from periodic.harmonic.split import SplitHarmonicBalance
 from periodic.orbit.scheme import Family
-from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of, slides_of
+from periodic.system import (
+    Condensable,
+    Kind,
+    System,
+    Within,
+    jumps_of,
+    linear_of,
+    resets_of,
+    slides_of,
+    surfaces_of,
+)
 
 SPLIT: tuple[tuple[type[Discretisation], type[Discretisation]], ...] = (
     (Collocation, CondensedCollocation),
@@ -97,6 +107,8 @@ def _check_events(system: System) -> None:
         raise ValueError(
             "the states at the places are reset; a structure must be compiled with condense=False for that"
         )
+    if any(surface.kind == Kind.RELAY for surface in surfaces_of(system)):
+        raise ValueError("the equations at the places have a relay; it must be compiled with condense=False")
     unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
     state, _ = system.rest(system.nominal)
     slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]

@@ -8,7 +8,7 @@ import numpy as np
 
 from periodic.condensed import settling as condensed
 from periodic.correction.outcome import FAILURES
-from periodic.events.motions import orbit_of
+from periodic.events.motions import motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
@@ -38,20 +38,20 @@ def settled(system: System, start: Orbit) -> Orbit | None:
     if not hasattr(system, "motion"):
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
-    state, algebraic = start.nodes[0], start.algebraic[0, 0]
+    state, algebraic, modes = start.nodes[0], start.algebraic[0, 0], None
     for _ in range(PERIODS):
         try:
-            path = moving.motion(state, algebraic, start.parameter, phase, TOLERANCE)
+            path = motion_from(moving, state, algebraic, start.parameter, phase, TOLERANCE, modes)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
         if _closed(path.state):
             last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
-            if (converged := orbit_of(moving, *last)) is not None:
+            if (converged := orbit_of(moving, *last, getattr(path, "modes", None))) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        state, algebraic = path.state[-1], path.algebraic[-1]
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
     return None
 
 

@@ -70,6 +70,7 @@ def surfaces(
     slides: Mapping[int, tuple[int, int]],
     sliders: Container[int] = (),
     places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
+    relays: Container[int] = (),
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -87,6 +88,8 @@ def surfaces(
         Those of elastic sliders.
     places : mapping of int to (int, tuple of float), optional
         Where they may be held: see `Surface`.
+    relays : container of int
+        Those of relays.
     """
     released = {k for pair in slides.values() for k in pair}
 
@@ -95,6 +98,8 @@ def surfaces(
             return Kind.IMPACT
         if k in sliders:
             return Kind.SLIDER
+        if k in relays:
+            return Kind.RELAY
         if k in jumps:
             return Kind.SLIDING if k in slides else Kind.JUMP
         plain = switches[k].levels == (0.0,) and switches[k].direction == 0

@@ -67,17 +67,19 @@ class Flow:
         parameter: Array,
         phase: Array,
         modes: Modes | None = None,
+        earlier: Modes | None = None,
     ) -> Trajectory:
         """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
-        modes: those with which it begins, by default as the state has them. Raises IntegrationError where the
+        modes: those with which it begins, by default as the state has them; earlier: those before it, of
+        which relays keep theirs. Raises IntegrationError where the
         integrator fails.
         """
         n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
         phase = np.asarray(phase, dtype=float)
-        if self.system.slides:
-            return self._pieced(start, parameter, phase, modes)
+        if self.system.slides or self.system.expressions.relays:
+            return self._pieced(start, parameter, phase, modes, earlier)
 
         def sweep(y: Array, along: Array) -> Array:
             found = integrated(self._cvodes(tuple(along)), y, parameter)
@@ -96,7 +98,9 @@ class Flow:
         events = switching.along(float(phase[0]), start[:n], crossed) if crossed else ()
         return Trajectory(tau, values[:, :n], values[:, n:], events, events[-1].modes if events else ())
 
-    def _pieced(self, start: Array, parameter: Array, phase: Array, modes: Modes | None = None) -> Trajectory:
+    def _pieced(
+        self, start: Array, parameter: Array, phase: Array, modes: Modes | None, earlier: Modes | None
+    ) -> Trajectory:
         """The motion from event to event, at each impact of which there are two points of one phase."""
         n = self.system.expressions.state.numel()
         switching, given = Switching(self.system, parameter, self.tolerance), ca.DM(parameter)
@@ -112,7 +116,7 @@ class Flow:
         def settle(y: Array, tau: float) -> Array:
             return self._on_constraints(y, parameter, tau)
 
-        found = Follower(switching, rates, slope, settle, n).run(start, phase, modes)
+        found = Follower(switching, rates, slope, settle, n).run(start, phase, modes, earlier)
         values = found.values
         return Trajectory(found.phase, values[:, :n], values[:, n:], found.events, found.modes)
 

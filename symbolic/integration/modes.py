@@ -1,6 +1,7 @@
 """The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
 
-A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held.
+A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held. A
+relay is on or off, PLUS or MINUS, and its guard another one in either mode.
 Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
 sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
 solved by Murty's rule of the least index, which ends where A is a P-matrix.
@@ -22,8 +23,8 @@ from symbolic.integration.cvodes import IntegrationError
 Modes = tuple[int, ...]
 """Of every surface of a system, in their order; 0 of those that have none."""
 
-HELD = (Kind.SLIDING, Kind.SLIDER)
-"""Kinds of surfaces that may be STUCK."""
+FOLLOWED = (Kind.SLIDING, Kind.SLIDER, Kind.RELAY)
+"""Kinds of surfaces whose modes the equations are told."""
 
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
@@ -102,7 +103,7 @@ class Switching:
         """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
         found = np.zeros(self.system.expressions.sided.side.numel())
         for surface, mode in zip(self.surfaces, modes, strict=True):
-            if surface.kind in HELD and surface.column is not None:
+            if surface.kind in FOLLOWED and surface.column is not None:
                 found[surface.column] = mode
         return found
 
@@ -122,15 +123,32 @@ class Switching:
         signs = np.array([guard.sign for guard in guards])
         return self._switches(modes, phase, state)[:, [guard.switch for guard in guards]] * signs
 
-    def begin(self, tau: float, state: Array) -> tuple[Array, Modes]:
-        """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
+    def begin(self, tau: float, state: Array, earlier: Modes | None = None) -> tuple[Array, Modes]:
+        """Return the modes at the beginning of a motion, and the state, on the limits of what slips.
+
+        earlier: modes before it, in which relays stay where they may.
+        """
         values = self._at((0,) * len(self.surfaces), tau, state)
-        modes = tuple(self._first(surface, values) for surface in self.surfaces)
-        return self.consistent(modes, tau, state)
+        modes = [self._first(surface, values) for surface in self.surfaces]
+        if earlier is not None:
+            kept = [k for k, surface in enumerate(self.surfaces) if surface.kind == Kind.RELAY]
+            modes = [earlier[k] if k in kept else mode for k, mode in enumerate(modes)]
+        return self.consistent(tuple(self._relayed(modes, tau, state)), tau, state)
+
+    def _relayed(self, modes: list[int], tau: float, state: Array) -> list[int]:
+        """The modes with relays switched whose threshold has been passed, one that others depend on first."""
+        found = list(modes)
+        for i, surface in enumerate(self.surfaces):
+            if (
+                surface.kind == Kind.RELAY
+                and found[i] * self._at(tuple(found), tau, state)[surface.switch] < 0
+            ):
+                found[i] = -found[i]
+        return found
 
     def _first(self, surface: Surface, values: Array) -> int:
         """The mode of a surface as its guard has it."""
-        if surface.kind in (Kind.JUMP, Kind.RELAY, Kind.MARKER):
+        if surface.kind in (Kind.JUMP, Kind.MARKER):
             return 0
         if surface.kind == Kind.IMPACT:
             return PLUS
@@ -150,12 +168,12 @@ class Switching:
             if surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
-            elif surface.kind == Kind.KINK:
+            elif surface.kind in (Kind.KINK, Kind.RELAY):
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
                 tossed |= {guard.surface} if mode == STUCK else set()
-        return self.consistent(tuple(new), tau, state, tossed)
+        return self.consistent(tuple(self._relayed(new, tau, state)), tau, state, tossed)
 
     def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
         """The modes after an impact, which may turn what slips and tear off what is held."""
@@ -167,7 +185,7 @@ class Switching:
                 found[i] = (PLUS if rate > 0 else MINUS) if slips else STUCK
             elif surface.kind == Kind.SLIDER and modes[i] != STUCK and modes[i] * rate < 0:
                 found[i] = STUCK
-        return found
+        return self._relayed(found, tau, state)
 
     def consistent(
         self, modes: Modes, tau: float, state: Array, tossed: Collection[int] = ()

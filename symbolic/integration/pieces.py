@@ -79,11 +79,13 @@ class Follower:
     _found: list[tuple[Array, Array]] = field(default_factory=list, init=False)
     _events: list[Event] = field(default_factory=list, init=False)
 
-    def run(self, start: Array, phase: Array, modes: Modes | None = None) -> Pieces:
-        """Integrate from phase[0] to all of `phase`. Raises IntegrationError."""
+    def run(
+        self, start: Array, phase: Array, modes: Modes | None = None, earlier: Modes | None = None
+    ) -> Pieces:
+        """Integrate from phase[0] to all of `phase`, in modes, or after some. Raises IntegrationError."""
         at, y = float(phase[0]), start
         if modes is None:
-            state, modes = self.switching.begin(at, y[: self.states])
+            state, modes = self.switching.begin(at, y[: self.states], earlier)
             y = self._with(y, state, at)
         self._found.append((phase[:1], y[None]))
         periods = math.ceil((phase[-1] - phase[0]) / (2 * math.pi))

@@ -18,6 +18,7 @@ from periodic.events.rewrites.table import (
     CORNER,
     GRAZING,
     IMPACT,
+    RELAY,
     REVERSAL,
     ROOT,
     SHORT,
@@ -94,6 +95,8 @@ def _onsets(
         if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
             continue
         part = _share(system, before, violation)
+        if _at_end(after, violation, ending):
+            continue
         whole = whole_orbit(system, before, violation, part)
         site = begins(system, after, violation)
         if whole is not None:
@@ -101,6 +104,15 @@ def _onsets(
         elif site is not None:
             found.append(Begins(system, site, part, shortest))
     return found
+
+
+def _at_end(after: Orbit, violation: Violation, ending: list[Ends]) -> bool:
+    """Whether a relay goes past its threshold ahead of an event node that has come to lie past a graze."""
+    if not isinstance(violation.at, Extremum):
+        return False
+    segment = int(after.mesh.segments[0][violation.at.interval])
+    following = (segment + 1) % max(len(after.phases), 1)
+    return any(end.site.row is RELAY and end.excursion.index == following for end in ending)
 
 
 def _share(system: System, before: Orbit, violation: Violation) -> float:
@@ -135,7 +147,7 @@ def _ending(
         return None
     half = now if row.gradual else VANISHING * now
     size, last = row.size_below(half), False
-    if row is IMPACT and size >= half:
+    if row.by_speed and size >= half:
         return None
     site = ends(system, before, excursion)[0]
     if row is ADDING_SLIDING:
@@ -162,6 +174,8 @@ def _name(system: System, site: Site, last: bool) -> str:
         return (
             f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
         )
+    if site.row is RELAY:
+        return f"{name} grazes the threshold at which it switches"
     if site.row is IMPACT:
         return f"the impact at {name} has no speed left"
     if site.row is REVERSAL:

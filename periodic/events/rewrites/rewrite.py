@@ -21,7 +21,7 @@ from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import SHORT_OF, at_once
 from periodic.events.rewrites.sites import Site, index_of, rewritten
-from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY, SWAP
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.violations import largest
@@ -60,6 +60,11 @@ class Begins:
         return self.site.row.touches
 
     @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
+
+    @property
     def condition(self) -> SideCondition:
         """What is 0 there."""
         return self.site.held
@@ -68,6 +73,8 @@ class Begins:
     def name(self) -> str:
         """What begins, in words."""
         surface = self.system.switches[self.site.switch].name
+        if self.site.row is RELAY:
+            return f"{surface} grazes the threshold at which it would switch"
         jump = sliding(self.system, self.site.switch)
         if jump is None or self.site.row is GRAZING_SLIDING:
             return f"{surface} is touched"
@@ -78,8 +85,8 @@ class Begins:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield orbits with what begins, small, and with what begins at once elsewhere by symmetry."""
-        sites = at_once(system, orbit, self.site)
         row = self.site.row
+        sites = [] if self.last else at_once(system, orbit, self.site)
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(orbit, chosen, size)
@@ -116,8 +123,17 @@ class Ends:
     shortest: float
     name: str
 
-    touches = False
     otherwise = None
+
+    @property
+    def touches(self) -> bool:
+        """Whether a switch just touches its level."""
+        return self.last
+
+    @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
 
     @property
     def condition(self) -> SideCondition:
@@ -126,6 +142,8 @@ class Ends:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
+        if self.last:
+            return
         for own in ends(system, orbit, self.excursion):
             sites = self._alike(system, orbit, own)
             for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:

@@ -13,9 +13,11 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    grazing of a relay     nothing             ends              clearance        speed
 
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
-joint where one is pulled most. What begins is of no
+joint where one is pulled most. Where a relay just reaches its threshold a branch ends: past it the relay
+switches, and the motion is another one. What begins is of no
 size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
 
 References
@@ -47,7 +49,8 @@ class Row:
 
     name: in the literature. touches: whether a switch just touches its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
-    gradual: whether steps shorten so much on the way that each size is looked at as it is passed.
+    gradual: whether steps shorten so much on the way that each size is looked at as it is passed. by_speed:
+    whether the size is the speed with which a level is passed. last: whether no orbits are near beyond it.
     """
 
     name: str
@@ -56,6 +59,8 @@ class Row:
     sizes: tuple[float, ...] = SHORT
     spare: tuple[float, ...] = ()
     gradual: bool = False
+    by_speed: bool = False
+    last: bool = False
 
     @property
     def least(self) -> float:
@@ -74,7 +79,7 @@ class Row:
 
 
 GRAZING = Row(name="grazing", touches=True, power=ROOT)
-IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER)
+IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER, by_speed=True)
 GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
 ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
 ADDING_ABOUT = Row(
@@ -84,4 +89,7 @@ CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, siz
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)
 CORNER = Row(name="grazing in the corner of an impact", touches=True, power=LINEAR)
+RELAY = Row(
+    name="grazing of a relay", touches=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
+)
 SWAP = Row(name="two events change places", touches=False, power=LINEAR)
