@@ -12,7 +12,8 @@ from typing import cast
 
 import numpy as np
 
-from periodic.events.modes import modes_at, relays, twins
+from periodic.events.heldalong import placed
+from periodic.events.modes import modes_at, twins
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -107,9 +108,10 @@ def motion_from(
     tolerance: float,
     modes: Sequence[int] | None,
 ) -> TrajectoryLike:
-    """Return the motion of a system from a state, its relays in given modes before it."""
+    """Return the motion of a system from a state, in given modes before it of relays and what slides."""
     given = state, algebraic, parameter, phase, tolerance
-    return system.motion(*given, modes) if modes and relays(system) else system.motion(*given)
+    keeps = any(surface.kind == Kind.RELAY or surface.alone for surface in surfaces_of(system))
+    return system.motion(*given, modes) if modes and keeps else system.motion(*given)
 
 
 def orbit_of(
@@ -122,7 +124,8 @@ def orbit_of(
 ) -> Orbit | None:
     """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
 
-    before: the modes of all surfaces before it, which relays keep. Raises what the integration raises.
+    before: the modes of all surfaces before it, which relays and sliding keep. Raises what the integration
+    raises.
     """
     followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
     if not followed:
@@ -139,10 +142,8 @@ def orbit_of(
         if surface not in followed or changed & {surface.switch, *(surface.releases or ())}:
             continue
         mode = whole.modes[index]
-        if mode == STUCK and surface.place is not None:
-            place, weights = surface.place
-            parameter[place] = float(np.dot(weights, state))
-            mode = HELD
+        if mode == STUCK and (surface.place is not None or surface.alone):
+            parameter, mode = placed(surface, parameter, state), HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
     return _on(system, mesh, phases, state, algebraic, parameter, tolerance, before)

@@ -19,7 +19,7 @@ from periodic.events.violations import Breach, between_nodes
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import STUCK, Kind, System, guards
+from periodic.system import HELD, STUCK, Kind, System, guards
 
 VANISHING = 0.1
 """Part of the bound of what matters below which a stretch of sticking is given up again."""
@@ -136,7 +136,7 @@ def _missed(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, 
     values, side = _values(system, orbit, switch)
     values = np.where((np.abs(values) < WRONG) & (side != 0), side, values)
     tied = orbit.phases[group(system, orbit.mesh, switch)]
-    points = [(t, s) for t, s, mode in zip(tau, values, side, strict=True) if mode != STUCK]
+    points = [(t, s) for t, s, mode in zip(tau, values, side, strict=True) if mode not in (STUCK, HELD)]
     found = []
     for (t, s), (later, other) in pairwise([*points, *((t + orbit.mesh.period, s) for t, s in points[:1])]):
         between = ((tied - t + WRONG) % orbit.mesh.period < later - t + 2 * WRONG).any()

@@ -91,7 +91,7 @@ class Moving(System, Protocol):
         """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
 
         algebraic (m,) is a guess of the unknowns at phase[0]; tolerance is relative and absolute. modes: of
-        all surfaces before, in which relays stay; they are given to a system that has relays alone. The
+        all surfaces before, in which relays and what slides stay; only systems with these are given them. The
         trajectory has two points of one phase at each impact, with the states before and after it. Raises
         ArithmeticError where the integration fails.
         """

@@ -64,10 +64,11 @@ def held(system: System, motion: Orbit) -> list[str]:
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
     still = values <= TOLERANCE * slopes * motion.span()
-    unknown = [s.switch for s in surfaces_of(system) if s.releases is not None and s.place is None]
+    each = [s for s in surfaces_of(system) if s.releases is not None]
+    unknown = [s.switch for s in each if s.place is None and not s.alone]
     return [system.switches[k].name for k in unknown if still[k]]
 
 
 def _closed(path: Array) -> bool:
-    """Whether a motion over a period comes back to its beginning."""
-    return bool(np.abs(path[-1] - path[0]).max() < STILL * np.ptp(path, axis=0).max())
+    """Whether a motion over a period comes back to its beginning, as far as the tolerance tells."""
+    return bool(np.abs(path[-1] - path[0]).max() < STILL * max(np.ptp(path, axis=0).max(), TOLERANCE))

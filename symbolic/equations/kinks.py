@@ -48,7 +48,8 @@ def find(assembly: Assembly) -> None:
     special = {*assembly.sliders, *assembly.relays}
     declared = [s for k, (_, s) in enumerate(assembly.switches) if k not in special]
     values = samples.values([*declared, *smooth, *candidates])
-    known, new = values[: -len(candidates)], values[-len(candidates) :]
+    first = len(values) - len(candidates)
+    known, new = values[:first], values[first:]
     for argument, found in zip(candidates, new, strict=True):
         if not constant(found) and not any(multiples(found, other) for other in known):
             known.append(found)

@@ -53,6 +53,8 @@ class Surface:
     place : (int, tuple of float), optional
         Of what may be HELD: the index of the parameter that says where, and the weights (n,) of the scaled
         states in how far it is deflected (SI).
+    alone : bool
+        Whether it may be HELD without a place, as the equations determine the motion then.
     """
 
     kind: Kind
@@ -61,6 +63,7 @@ class Surface:
     releases: tuple[int, int] | None = None
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
+    alone: bool = False
 
 
 def surfaces(
@@ -71,6 +74,7 @@ def surfaces(
     sliders: Container[int] = (),
     places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
     relays: Container[int] = (),
+    alone: Container[int] = (),
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -90,6 +94,8 @@ def surfaces(
         Where they may be held: see `Surface`.
     relays : container of int
         Those of relays.
+    alone : container of int
+        Those of sliding that may be HELD without a place.
     """
     released = {k for pair in slides.values() for k in pair}
 
@@ -113,6 +119,7 @@ def surfaces(
             slides.get(k),
             jumps.index(k) if k in jumps else None,
             (places or {}).get(k) if k in slides else None,
+            k in alone,
         )
         for k, info in enumerate(switches)
         if k not in released

@@ -72,7 +72,7 @@ class Flow:
         """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
         modes: those with which it begins, by default as the state has them; earlier: those before it, of
-        which relays keep theirs. Raises IntegrationError where the
+        which relays and what slides keep theirs. Raises IntegrationError where the
         integrator fails.
         """
         n = self.system.expressions.state.numel()

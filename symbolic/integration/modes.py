@@ -126,13 +126,13 @@ class Switching:
     def begin(self, tau: float, state: Array, earlier: Modes | None = None) -> tuple[Array, Modes]:
         """Return the modes at the beginning of a motion, and the state, on the limits of what slips.
 
-        earlier: modes before it, in which relays stay where they may.
+        earlier: modes before it, in which relays, and what slides, stay where they may.
         """
         values = self._at((0,) * len(self.surfaces), tau, state)
         modes = [self._first(surface, values) for surface in self.surfaces]
         if earlier is not None:
-            kept = [k for k, surface in enumerate(self.surfaces) if surface.kind == Kind.RELAY]
-            modes = [earlier[k] if k in kept else mode for k, mode in enumerate(modes)]
+            each = zip(self.surfaces, modes, earlier, strict=True)
+            modes = [before if _stays(surface, before) else mode for surface, mode, before in each]
         return self.consistent(tuple(self._relayed(modes, tau, state)), tau, state)
 
     def _relayed(self, modes: list[int], tau: float, state: Array) -> list[int]:
@@ -277,6 +277,11 @@ class Switching:
         struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
+
+
+def _stays(surface: Surface, before: int) -> bool:
+    """Whether a surface begins in the mode in which it was."""
+    return surface.kind == Kind.RELAY and before != 0 or surface.kind == Kind.SLIDING and before == STUCK
 
 
 def _mode(surface: Surface, values: Array, mode: int) -> int:

@@ -10,6 +10,7 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
+from symbolic.equations.surfaces import Kind
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.modes import Event, Modes
@@ -119,7 +120,7 @@ def simulate(
     knock : mapping of str to float, optional
         What is added to states (SI) at the beginning, by name; x' is the velocity dx/dt.
     start : Simulation, optional
-        Motion from whose end the new one begins; by default the system begins at rest, one with relays that
+        Motion from whose end the new one begins; by default the system begins at rest, one that jumps and
         has none where the search for it begins.
     settle : int
         Excitation periods before those that are returned.
@@ -155,7 +156,7 @@ def simulate(
     state = state + _knocked(system, parameter, {} if knock is None else knock)
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
     modes: Modes | None = None
-    earlier = start.modes if start is not None and start.modes else None
+    earlier = None if start is None else _kept(system, start.modes)
     done, largest = 0, DIVERGED * max(1.0, float(np.abs(state).max(initial=0.0)))
     try:
         for _ in counted(settle, "settling", "periods"):
@@ -186,6 +187,14 @@ def _simulation(system: CompiledSystem, parameter: Array, found: Trajectory) -> 
     )
 
 
+def _kept(system: CompiledSystem, modes: Modes) -> Modes | None:
+    """The modes of relays, in which a motion goes on whatever knocks it."""
+    if not modes:
+        return None
+    both = zip(system.surfaces, modes, strict=True)
+    return tuple(mode if surface.kind == Kind.RELAY else 0 for surface, mode in both)
+
+
 def _check_bounded(system: CompiledSystem, state: Array, largest: float, phase: float) -> None:
     """Raise IntegrationError for states that are larger than any motion at rest or knocked from it."""
     k = int(np.abs(state).argmax())
@@ -202,7 +211,7 @@ def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | Non
     try:
         rest = RestFinder(system).modes(parameter)
     except NoRestError:
-        if not system.expressions.relays:  # those have none in general
+        if not system.jumps:  # equations that jump need not have one
             raise
         return system.rest(parameter)
     return rest.state, rest.algebraic

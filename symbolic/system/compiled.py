@@ -265,9 +265,8 @@ class CompiledSystem:
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
         e = self.expressions
-        return surfaces(
-            self.switches, self.resets, self.jumps, self.slides, e.sliders, self._places, e.relays
-        )
+        own = (self.switches, self.resets, self.jumps, self.slides, e.sliders)
+        return surfaces(*own, self._places, e.relays, e.sided.alone)
 
     @property
     def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:

@@ -37,13 +37,14 @@ class Sided:
 
     slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
     positive side and on the negative one, the other jumps on their given sides; between them the motion is
-    held.
+    held. alone: those at which what is held all along is determined without a place.
     """
 
     residual: ca.SX
     side: ca.SX
     jumps: tuple[int, ...]
     slides: tuple[Slide, ...] = ()
+    alone: tuple[int, ...] = ()
 
 
 def sided(
@@ -94,8 +95,10 @@ def sided(
     columns = sorted({*jumps, *own})
     sides = {k: symbols[k] if k in jumps or k in given else ca.SX(0) for k in (*every, *given)}
     telling = slice(0 if moving is None else count, rows.numel())
-    slid, slides = sliding(packed, operations, sides, jumps, guards, telling, places or {})
-    return Sided(slid[:count], ca.vertcat(none, *[symbols[k] for k in columns]), tuple(columns), slides)
+    slid, slides, alone = sliding(packed, operations, sides, jumps, guards, telling, places or {})
+    return Sided(
+        slid[:count], ca.vertcat(none, *[symbols[k] for k in columns]), tuple(columns), slides, alone
+    )
 
 
 def _undecided(rows: ca.SX, sides: ca.SX) -> ca.SX:

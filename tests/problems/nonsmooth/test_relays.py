@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from reference.shooting import in_order
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq, minimize_scalar
 
@@ -198,6 +199,116 @@ def test_relay_that_remembers(tmp_path: Path) -> None:
         np.testing.assert_array_equal(again[1].orbit.state(phase), branch[1].orbit.state(phase))
         onward = per.trace(system, "F", (0.05, 0.3), guess=again[1].orbit, tol=1e-9)
         assert onward[-1].maximum["x"] - middle == pytest.approx(gain * onward[-1].parameter, abs=1e-9)
+
+
+GAP, STIFF, DRY, LOST = 1.0, 3.0, 0.1, 0.8
+
+
+def beside(other: str) -> sym.CompiledSystem:
+    """An oscillator that a relay pushes on as x has gone, with a stop, dry friction or a wall besides."""
+    x = sym.coordinate("x", scale=1.0)
+    more = {
+        "stop": sym.Equations(lambda x, p: {"x": -STIFF * F.fmax(x.x - GAP, 0)}, {}, coordinates=[x]),
+        "friction": sym.CoulombFriction(x, DRY),
+        "wall": sym.RigidStop(x, GAP, LOST),
+    }[other]
+    push = sym.Equations(lambda x, p: {"x": 0.3 * F.relay(x.x, 0.5, -0.5, -1)}, {}, coordinates=[x])
+    machine = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.2) + sym.HarmonicForce(x, 1.0, 0.7)
+    return sym.compile(machine + push + more)
+
+
+def followed(other: str, force: float, t: float, begin: Any, relay: int) -> tuple[Any, list[str]]:
+    """(x, dx/dtau) 2 pi later and what happened, event by event; friction is on the side of the speed."""
+    w, last, y, names = 0.7, t + 2 * np.pi, np.array(begin), []
+    slip, past = int(np.sign(y[1])), other == "stop" and y[0] > GAP
+
+    def pull(t: float, y: Any, relay: int) -> float:
+        stop = STIFF * (y[0] - GAP) if past else 0.0
+        return float(force * np.cos(t) + 0.3 * relay - y[0] - 0.2 * w * y[1] - stop)
+
+    while True:
+        now, side, start = relay, slip, t
+
+        def rates(t: float, y: Any) -> list[float]:
+            dry = DRY * side if other == "friction" else 0.0  # noqa: B023
+            stuck = other == "friction" and side == 0  # noqa: B023
+            return [y[1], 0.0 if stuck else (pull(t, y, now) - dry) / w**2]  # noqa: B023
+
+        def switches(t: float, y: Any) -> float:
+            return float(now * (y[0] + 0.5 * now))  # noqa: B023
+
+        def turns(t: float, y: Any) -> float:
+            if other != "friction":
+                return 1.0
+            if side == 0:  # noqa: B023
+                return DRY - abs(pull(t, y, now))  # noqa: B023
+            return float(side * y[1]) if t > start + 1e-6 else 1.0  # noqa: B023
+
+        def hits(t: float, y: Any) -> float:
+            return GAP - y[0] if other == "wall" and t > start + 1e-6 else 1.0  # noqa: B023
+
+        def bends(t: float, y: Any) -> float:
+            ahead = y[0] - GAP if past else GAP - y[0]  # noqa: B023
+            return float(ahead) if other == "stop" and t > start + 1e-6 else 1.0  # noqa: B023
+
+        events = [switches, turns, hits, bends]
+        for event in events:
+            event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+        tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": 0.05}
+        found = solve_ivp(rates, (t, last), y, events=events, **tight)
+        t, y = float(found.t[-1]), found.y[:, -1]
+        if found.status == 0:
+            return y, names
+        (which,) = (k for k, times in enumerate(found.t_events) if len(times))
+        names.append(events[which].__name__)
+        if which == 0:
+            relay = -relay
+        elif which == 1:
+            y[1] = 0.0
+            force_now = pull(t, y, relay)
+            slip = 0 if side and abs(force_now) < DRY else int(np.sign(force_now))
+        elif which == 2:
+            y[1] *= -LOST
+        else:
+            past = not past
+
+
+@pytest.mark.parametrize(
+    ("other", "least", "happens"),
+    [
+        ("stop", 0.5, "bends bends switches switches"),
+        ("friction", 0.55, "switches switches turns turns"),
+        ("wall", 1.5, "hits hits switches switches"),
+    ],
+)
+def test_relay_beside_others(other: str, least: float, happens: str) -> None:
+    """Assert orbits to 1e-8 and multipliers to 1e-6 by event-exact integration, and what happens."""
+    values = (least + 0.1, 1.75)
+    branch = per.trace(beside(other), "F", (least, 1.8), start=1.7, tol=1e-9, at=values)
+    points = branch.labelled(per.Label.USER)
+    assert "end of the range" in str(branch.stop) and len(points) == len(values)
+    for point in points:
+        orbit = point.orbit
+        j = int(orbit.mesh.segment_lengths(orbit.phases).argmax())
+        begin = float(orbit.phases[j] + 0.5 * orbit.mesh.segment_lengths(orbit.phases)[j])
+        relays = [
+            (phi, e.direction)
+            for e, phi in zip(orbit.mesh.events, orbit.phases, strict=True)
+            if e.switch == 0
+        ]
+        before = [mode for phi, mode in relays if phi < begin] or [mode for _, mode in relays]
+        y = orbit.state(np.array([begin]))[0]
+        later, names = followed(other, point.parameter, begin, y, before[-1])
+        np.testing.assert_allclose(later, y, atol=1e-8)
+        assert " ".join(sorted(names)) == happens
+        step = 1e-5
+
+        def moved(change: Any) -> Any:
+            return followed(other, point.parameter, begin, y + change, before[-1])[0]  # noqa: B023
+
+        columns = [(moved(u) - moved(-u)) / (2 * step) for u in np.eye(2) * step]
+        multipliers = np.linalg.eigvals(np.array(columns).T)
+        np.testing.assert_allclose(in_order(point.multipliers), in_order(multipliers), atol=1e-6)
 
 
 def test_simulated_relay() -> None:
