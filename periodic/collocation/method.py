@@ -165,8 +165,9 @@ class Collocation(MeshMethod):
 
     def settles(self, system: System) -> bool:
         """Return whether several joints, sliders or relays have modes: in time they find theirs."""
-        held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
-        return len(held) > 1 or Kind.SLIDER in held or bool(relays(system))
+        held = [surface for surface in surfaces_of(system) if surface.releases is not None]
+        several = len(held) > 1 or any(s.kind == Kind.SLIDER or s.alone for s in held)
+        return several or bool(relays(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

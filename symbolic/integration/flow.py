@@ -18,7 +18,7 @@ from symbolic.checks import finite
 from symbolic.integration.crossings import SwitchCrossings
 from symbolic.integration.cvodes import integrated, integrator, kept
 from symbolic.integration.lsoda import Rates, failure, followed
-from symbolic.integration.modes import Event, Modes, Switched, Switching
+from symbolic.integration.modes import Event, Modes, Switched, Switching, modes_along
 from symbolic.integration.pieces import Follower
 from symbolic.integration.rates import constraint_rows, explicit_rates, ode
 
@@ -121,11 +121,17 @@ class Flow:
         return Trajectory(found.phase, values[:, :n], values[:, n:], found.events, found.modes)
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
-        """Return (x', z') along a trajectory, shape (N, n+m)."""
+        """Return (x', z') along a trajectory, shape (N, n+m), in the modes that it tells."""
         values = np.concatenate([trajectory.state, trajectory.algebraic], axis=1)
-        rates, _ = self._rates
-        found = [rates(y, tau, parameter) for y, tau in zip(values, trajectory.phase, strict=True)]
-        return np.array(found).reshape(values.shape)
+        each = zip(values, trajectory.phase, strict=True)
+        if not trajectory.modes:
+            found = [self._rates[0](y, tau, parameter) for y, tau in each]
+            return np.array(found).reshape(values.shape)
+        switching = Switching(self.system, parameter, self.tolerance)
+        modes = modes_along(trajectory.phase, trajectory.events, trajectory.modes)
+        sides = [switching.side(own) for own in modes]
+        known = [(y, tau, parameter, side) for (y, tau), side in zip(each, sides, strict=True)]
+        return np.array([self._beside[0](*given) for given in known]).reshape(values.shape)
 
     def _lsoda(self, start: Array, parameter: Array, phase: Array) -> Array:
         rates, jacobian = self._rates

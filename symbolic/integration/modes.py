@@ -279,6 +279,19 @@ class Switching:
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
 
 
+def modes_along(phase: Array, events: Sequence[Event], last: Modes) -> list[Modes]:
+    """Return the modes at phases along a motion, from its events in order, and those at its end."""
+    if not events:
+        return [last] * len(phase)
+    first = list(events[0].modes)
+    for event in events:
+        if event.modes == events[0].modes and event.phase == events[0].phase:
+            first[event.surface] = event.before
+    each = [tuple(first), *(event.modes for event in events)]
+    passed = np.searchsorted([event.phase for event in events], phase, side="right")
+    return [each[k] for k in passed]
+
+
 def _stays(surface: Surface, before: int) -> bool:
     """Whether a surface begins in the mode in which it was."""
     return surface.kind == Kind.RELAY and before != 0 or surface.kind == Kind.SLIDING and before == STUCK

@@ -67,7 +67,8 @@ class Simulation:
         """Return an output or a state by name, SI, shape (N,)."""
         outputs, states = ([v.name for v in some] for some in (self.system.outputs, self.system.states))
         if name in outputs:
-            n, trajectory = len(states), Trajectory(self.phase, self.state, self.algebraic)
+            n, followed = len(states), (self.events, self.modes)
+            trajectory = Trajectory(self.phase, self.state, self.algebraic, *followed)
             rate = Flow(self.system).rates(trajectory, self.parameter)[:, :n]
             at = (rate, self.state, self.algebraic, self.phase, self.parameter)
             return self.system.output(*at)[:, outputs.index(name)]

@@ -171,6 +171,8 @@ def _name(system: System, site: Site, last: bool) -> str:
     name, jump = system.switches[site.switch].name, sliding(system, site.switch)
     if jump is not None:
         name = system.switches[jump].name
+        if last and surface_of(system, jump).alone:
+            return f"the motion slides along {name} = 0 all the time"
         return (
             f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
         )

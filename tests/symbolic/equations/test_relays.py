@@ -9,6 +9,7 @@ import numpy as np
 
 import symbolic as sym
 from symbolic.equations.surfaces import MINUS, PLUS, Kind
+from symbolic.integration.flow import Flow, Trajectory
 
 F = sym.functions
 NAMES = {"on": 0.6, "off": -0.4, "push": 2.0}
@@ -82,6 +83,22 @@ def test_relays_that_switch_each_other() -> None:
     assert [(e.surface, e.after) for e in motion.events if e.phase < 1] == [(0, PLUS), (1, PLUS)]
     np.testing.assert_allclose([e.phase for e in motion.events], 0.6, atol=1e-9)
     np.testing.assert_allclose(motion["b"][-1], 1 - np.exp(0.6 - 2 * np.pi), atol=1e-9)
+
+
+def test_rates_in_modes() -> None:
+    """Assert an acceleration between the thresholds, where the state does not say it."""
+    x = sym.coordinate("x")
+    push = sym.Equations(lambda x, p: {"x": F.relay(x.x, 0.5, -9.0, -1)}, {}, coordinates=[x])
+    system = sym.compile(sym.Mass(x, 1.0) + sym.ConstantForce(x, 0.5) + push)
+    motion = sym.simulate(system, {"omega": 2 * np.pi}, knock={"x'": 2.0}, settle=0, samples=50)
+    (switched,) = motion.events
+    index = list(system.states).index(next(s for s in system.states if s.name == "x'"))
+    found = Flow(system).rates(
+        Trajectory(motion.phase, motion.state, motion.algebraic, motion.events, motion.modes),
+        motion.parameter,
+    )[:, index]
+    expected = np.where(motion.phase > switched.phase, 1.5, -0.5) / (2 * np.pi) ** 2
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
 def test_copies_of_relays() -> None:
