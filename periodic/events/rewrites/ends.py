@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import bends, group, mode_after, surface_of
+from periodic.events.modes import group, mode_after, relays, returns, surface_of
 from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.reversals import reversals, short_of
@@ -29,6 +29,7 @@ from periodic.events.rewrites.table import (
     GRAZING_SLIDING,
     IMPACT,
     LIMIT_GRAZING,
+    RELAY,
     RELEASE_AT_IMPACT,
     REVERSAL,
     SWAP,
@@ -49,8 +50,8 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 class Excursion:
     """What may end: its row, the event node at which it begins, and its size in the row's measure.
 
-    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges. segments: those whose lengths
-    together are its size, where it is not the one that begins there.
+    unit: of the row's sizes, 1 rad or how far the switch of an impact or a relay ranges. segments: those
+    whose lengths together are its size, where it is not the one that begins there.
     """
 
     row: Row
@@ -61,27 +62,28 @@ class Excursion:
 
     def size(self, system: System, orbit: Orbit) -> float:
         """How long it lasts, or with which speed it arrives."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return speed(system, orbit, self.index)
         lengths = orbit.mesh.segment_lengths(orbit.phases)
         return float(lengths[list(self.segments or (self.index,))].sum())
 
     def held(self, size: float) -> SideCondition:
         """What keeps it as small as that, in its own unit."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return Speed(self.index, size)
         return Lengths(self.segments, size) if self.segments else Length(self.index, size)
 
 
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     """Yield all that may end on an orbit."""
-    events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
+    events, k, own = orbit.mesh.events, len(orbit.phases), returns(system)
     about = {i for reversal in reversals(system, orbit) for i in (reversal.begin, reversal.inside[-1])}
     for reversal in reversals(system, orbit):
         yield Excursion(REVERSAL, reversal.begin)
-    for i in tied(system, orbit):
+    switched = [i for i, event in enumerate(events) if event.switch in relays(system)]
+    for row, i in [*((IMPACT, i) for i in tied(system, orbit)), *((RELAY, i) for i in switched)]:
         dense = SwitchPolynomials(system, orbit)
-        yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
+        yield Excursion(row, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
     for i, first in enumerate(events):
         second = events[(i + 1) % k]
         if first.switch == second.switch in own and i not in about:
@@ -89,9 +91,9 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
         both = only_slips(system, orbit, i)
         if both and both[0].index == i:
             yield Excursion(FIRST_SLIPS, i, segments=tuple(j for slip in both for j in slip.segments))
-        row = _held(system, orbit, i)
-        if row is not None and not both:
-            yield Excursion(row, i)
+        between = _held(system, orbit, i)
+        if between is not None and not both:
+            yield Excursion(between, i)
         inner = slip_about(system, orbit, i)
         if inner and not both:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
@@ -112,6 +114,9 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
         return last_impact(system, orbit, excursion.index)
     if excursion.row is FIRST_SLIPS:
         return _first_slips(system, orbit, excursion.index)
+    if excursion.row is RELAY:
+        i = excursion.index
+        return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
