@@ -15,6 +15,7 @@ from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CROSSING_SLIDING,
+    FIRST_DEPARTURES,
     FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
@@ -108,7 +109,7 @@ def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
 def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
     """The row of a slip of what is held."""
     if held_all_along(orbit.mesh, surface):
-        return FIRST_SLIPS
+        return FIRST_DEPARTURES if surface.place is None else FIRST_SLIPS
     return LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
 
 

@@ -13,6 +13,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     the same about w       w, in 0             (0 +) w (+ 0)     limit            length
     first slips            0 all along         (0 +)(+ 0) and    clearance        length
                                                (0 -)(- 0)
+    first departures       0 all along         (0 +)(+ 0)        clearance        length
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
@@ -100,6 +101,9 @@ ADDING_ABOUT = Row(
 )
 FIRST_SLIPS = Row(
     name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
+)
+FIRST_DEPARTURES = Row(
+    name="adding-sliding of what slides all along", touches=False, power=ROOT, sizes=FLAT, gradual=True
 )
 LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
