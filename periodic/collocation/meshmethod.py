@@ -20,8 +20,9 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.events import motions
-from periodic.events.modes import completed, group, of_held, of_kind
+from periodic.events import motions, tying
+from periodic.events.modes import completed, group, of_held, of_kind, relays
+from periodic.events.relays import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, refusals, violations, word
@@ -31,6 +32,7 @@ from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.refinement.equidistribution import redistribute
 from periodic.system import Kind, System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
@@ -105,7 +107,7 @@ class MeshMethod(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
-        near = self._worded(system, replace(near, parameter=parameter, equilibrium=False))
+        near = self._tied(system, self._worded(system, replace(near, parameter=parameter, equilibrium=False)))
         old = near.mesh
         mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
         return relax(system, transfer(near, mesh, near.phases))
@@ -120,6 +122,16 @@ class MeshMethod(Discretisation):
             return motions.followed(system, orbit, FOLLOWED) or orbit
         except FAILURES:
             return orbit
+
+    def _tied(self, system: System, orbit: Orbit) -> Orbit:
+        """A motion in which a relay switches, with event nodes where it does, as the orbit has it."""
+        own = [k for k in relays(system) if not group(system, orbit.mesh, k)]
+        if not any(switched(system, orbit, k) for k in own):
+            return orbit
+        settings = (self.kinks or KinkSettings()).at(self.tolerance)
+        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
+        mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
+        return transfer(orbit, mesh, phases)
 
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""

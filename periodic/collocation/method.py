@@ -25,7 +25,7 @@ from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
-from periodic.events.modes import of_held
+from periodic.events.modes import of_held, relays
 from periodic.events.noderows import event_rows
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
@@ -164,8 +164,8 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:
-        """Return whether anything may be held: in time it finds how."""
-        return bool(of_held(system))
+        """Return whether anything may be held, or a relay switch: in time they find how."""
+        return bool(of_held(system) or relays(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""

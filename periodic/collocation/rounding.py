@@ -65,6 +65,7 @@ def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
 
 def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:
     """The fastest rate of the fundamental matrices (1/rad)."""
-    before = spectrum.fundamental[:-1]
+    size = np.linalg.norm(spectrum.fundamental[:-1], axis=(1, 2))
     change = np.linalg.norm(np.diff(spectrum.fundamental, axis=0), axis=(1, 2))
-    return float((change / (orbit.grid.width * np.linalg.norm(before, axis=(1, 2)))).max())
+    left = size > 0  # of one state nothing is left where it slides
+    return float((change[left] / (orbit.grid.width * size)[left]).max(initial=0.0))

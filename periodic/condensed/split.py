@@ -13,7 +13,7 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.meanequilibrium import resting
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family
-from periodic.system import System, jumps_of, linear_of, resets_of, slides_of
+from periodic.system import Kind, System, jumps_of, linear_of, resets_of, slides_of, surfaces_of
 
 
 class SplitMethod:
@@ -62,6 +62,8 @@ def _check_events(system: System) -> None:
         raise ValueError(
             "the states at the places are reset; a structure must be compiled with condense=False for that"
         )
+    if any(surface.kind == Kind.RELAY for surface in surfaces_of(system)):
+        raise ValueError("the equations at the places have a relay; it must be compiled with condense=False")
     unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
     state, _ = system.rest(system.nominal)
     slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]

@@ -17,7 +17,7 @@ from periodic.events.rates import before
 from periodic.events.thresholds import AT_LEVEL
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
+from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,9 @@ def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Si
     after = orbit.nodes[orbit.mesh.starts[index]][None]
     states = np.concatenate([orbit.stages.reshape(-1, x.shape[1]), x, after])
     tau = np.concatenate([orbit.stage_phases.ravel(), phase, phase])
-    values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
+    modes = sides(system, orbit)[interval]  # those before the impact
+    values = guards(system, states, tau, orbit.parameter, np.repeat(modes[None], len(tau), axis=0))
+    values = values[:, surface.switch]
     values = values / (float(np.abs(values).max()) or 1.0)
     early, late = float(values[-2]), float(values[-1])
     mode = 0 if surface.column is None else int(sides(system, orbit)[interval, surface.column])
@@ -79,7 +81,7 @@ def _thrown(system: System, orbit: Orbit, switch: int, index: int) -> bool:
 
 def others(system: System, event: EventNode) -> list[SurfaceLike]:
     """Return the surfaces that an impact may take to their other sides."""
-    bent = (Kind.KINK, Kind.JUMP, Kind.SLIDING, Kind.SLIDER)
+    bent = (Kind.KINK, Kind.JUMP, Kind.SLIDING, Kind.SLIDER, Kind.RELAY)
     return [s for s in surfaces_of(system) if s.kind in bent and s.switch != event.switch]
 
 

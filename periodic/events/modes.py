@@ -22,12 +22,15 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import (
     HELD,
+    MINUS,
+    PLUS,
     STUCK,
     Jumping,
     Kind,
     LinearisationLike,
     SurfaceLike,
     System,
+    guards,
     surfaces_of,
 )
 
@@ -52,6 +55,11 @@ def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
 
 def bends(system: System) -> list[int]:
     """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
+    return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP, Kind.RELAY)]
+
+
+def returns(system: System) -> list[int]:
+    """Return those past whose level an excursion may be as short as it likes: all but relays."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
 
 
@@ -68,6 +76,11 @@ def twins(system: System, switch: int) -> list[int]:
     values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
     same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
     return [switch, *same]
+
+
+def relays(system: System) -> list[int]:
+    """Return the guards of relays: in either mode another function."""
+    return [surface.switch for surface in of_kind(system, Kind.RELAY)]
 
 
 def of_held(system: System) -> list[int]:
@@ -166,9 +179,22 @@ def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
     if surface.releases is not None:
         return 0
     states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
+    if surface.kind == Kind.RELAY:
+        return _relayed(system, states, tau, orbit.parameter, surface)
     values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
     side = 1 if values.max() > -values.min() else -1
     return side if (side * values).min() > -SHALLOW * np.abs(values).max() else 0
+
+
+def _relayed(system: System, states: Array, tau: Array, parameter: Array, surface: SurfaceLike) -> int:
+    """The mode of a relay that never switches: on where it has been above the upper threshold."""
+    columns = sum(other.column is not None for other in surfaces_of(system))
+    side = np.zeros((len(tau), columns))
+    values = dict[int, Array]()
+    for mode in (MINUS, PLUS):
+        side[:, cast(int, surface.column)] = mode
+        values[mode] = guards(system, states, tau, parameter, side)[:, surface.switch]
+    return PLUS if values[MINUS].max() > 0 and values[PLUS].min() > 0 else MINUS
 
 
 def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, ...]:
@@ -187,12 +213,12 @@ def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, .
 
 
 def inconsistency(system: System, events: Sequence[EventNode]) -> str:
-    """Return where event nodes are no word of what is held and released; '' where they are one.
+    """Return where event nodes are no word of what is held and released, or a relay; '' where they are one.
 
     Each transition of a surface begins in the mode in which the one before ended.
     """
     for surface in surfaces_of(system):
-        if surface.releases is None:
+        if surface.releases is None and surface.kind != Kind.RELAY:
             continue
         own = [(e, cast(int, mode_after(surface, e))) for e in events if mode_after(surface, e) is not None]
         for (_, before), (event, after) in zip(own[-1:] + own[:-1], own, strict=True):

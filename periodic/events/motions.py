@@ -12,7 +12,9 @@ from typing import cast
 
 import numpy as np
 
-from periodic.events.modes import twins
+from periodic.events.heldalong import placed
+from periodic.events.modes import sides, twins
+from periodic.events.relays import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.thresholds import SAME_PHASE
@@ -30,6 +32,7 @@ from periodic.system import (
     Moving,
     SurfaceLike,
     System,
+    TrajectoryLike,
     surfaces_of,
 )
 
@@ -97,18 +100,41 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
     return surface.switch, -event.before if event.after == STUCK else event.after
 
 
+def motion_from(
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    phase: Array,
+    tolerance: float,
+    modes: Sequence[int] | None,
+) -> TrajectoryLike:
+    """Return the motion of a system from a state, in given modes before it of relays and what slides."""
+    given = state, algebraic, parameter, phase, tolerance
+    keeps = any(surface.kind == Kind.RELAY or surface.alone for surface in surfaces_of(system))
+    return system.motion(*given, modes) if modes and keeps else system.motion(*given)
+
+
 def orbit_of(
-    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float, begin: float = 0.0
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    tolerance: float,
+    begin: float = 0.0,
+    before: Sequence[int] | None = None,
 ) -> Orbit | None:
     """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
 
-    begin: the phase of the state.
+    begin: the phase of the state; before: the modes of all surfaces before it, which relays and sliding keep.
 
     Raises what the integration raises.
     """
-    if not any(surface.releases is not None for surface in surfaces_of(system)):
+    followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
+    if not followed:
         return None
-    whole = system.motion(state, algebraic, parameter, np.array([begin, begin + FORCED]), tolerance)
+    ends = np.array([begin, begin + FORCED])
+    whole = motion_from(system, state, algebraic, parameter, ends, tolerance, before)
     if not hasattr(whole, "modes"):
         return None
     whole = cast(Followed, whole)
@@ -117,34 +143,41 @@ def orbit_of(
     mesh, phases = _mesh(system, nodes)
     modes, parameter = list[tuple[int, int]](), parameter.copy()
     for index, surface in enumerate(surfaces_of(system)):
-        if surface.releases is None or changed & {surface.switch, *surface.releases}:
+        if surface not in followed or changed & {surface.switch, *(surface.releases or ())}:
             continue
         mode = whole.modes[index]
-        if mode == STUCK and surface.place is not None:
-            place, weights = surface.place
-            parameter[place] = float(np.dot(weights, state))
-            mode = HELD
+        if mode == STUCK and (surface.place is not None or surface.alone):
+            parameter, mode = placed(surface, parameter, state[None]), HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin)
+    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin, before)
 
 
 def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
     It is followed from amid its longest segment, as far from all events as can be, and through some periods
-    `before` that one. It may violate its word:
-    that of the motion does not. Raises what the integration raises.
+    `before` that one. It may violate its word: that of the motion does not. Raises what the integration raises.
     """
     if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
     at = np.mod(amid(orbit), FORCED)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
-    moving, begin = cast(Moving, system), float(at[0])
+    moving, begin, modes = cast(Moving, system), float(at[0]), _modes(system, orbit, at)
     for _ in range(before):
-        path = moving.motion(state, algebraic, orbit.parameter, np.array([begin, begin + FORCED]), tolerance)
+        ends = np.array([begin, begin + FORCED])
+        path = motion_from(moving, state, algebraic, orbit.parameter, ends, tolerance, modes)
         state, algebraic = path.state[-1], path.algebraic[-1]
-    return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin)
+        modes = list(cast(Followed, path).modes) if hasattr(path, "modes") else modes
+    return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin, modes)
+
+
+def _modes(system: System, orbit: Orbit, at: Array) -> list[int]:
+    """The modes of all surfaces at a phase (1,), 0 of those that have no column."""
+    found = sides(system, orbit)[orbit.locate(at)[0][0]]
+    relays = {s.switch: mode_at(system, orbit, s, at) for s in surfaces_of(system) if s.kind == Kind.RELAY}
+    own = [0 if s.column is None else int(found[s.column]) for s in surfaces_of(system)]
+    return [relays.get(s.switch, mode) for s, mode in zip(surfaces_of(system), own, strict=True)]
 
 
 def amid(orbit: Orbit) -> Array:
@@ -177,6 +210,7 @@ def _on(
     parameter: Array,
     tolerance: float,
     begin: float,
+    before: Sequence[int] | None,
 ) -> Orbit:
     """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
@@ -187,7 +221,7 @@ def _on(
         stages[start - 1, -1] -= SAME_PHASE
     flat = begin + np.mod(np.concatenate([nodes, stages.ravel()]) - begin, FORCED)
     phase, place = np.unique(np.append(flat, [begin, begin + FORCED]), return_inverse=True)
-    path = system.motion(state, algebraic, parameter, phase, tolerance)
+    path = motion_from(system, state, algebraic, parameter, phase, tolerance, before)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]
     first, count = len(nodes), mesh.ntst

@@ -113,7 +113,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Speed:
-    """Side condition: the switch of an impact arrives at its level with a given |ds/dtau|."""
+    """Side condition: the switch of an impact, or a relay, arrives at its level with a given |ds/dtau|."""
 
     index: int
     speed: float
@@ -123,13 +123,15 @@ class Speed:
         interval, x, phase = before(orbit, self.index)
         event, rate = orbit.mesh.events[self.index], rate_before(orbit, self.index)[None]
         points = Points(np.array([interval]), np.ones(1), phase, rate, x, np.zeros((1, 0)))
+        modes = modes_in(system, orbit, interval)
         ends = [
-            system.switch_gradient(x + step * rate, phase + step, orbit.parameter) for step in (STEP, -STEP)
+            guards_gradient(system, x + step * rate, phase + step, orbit.parameter, modes)
+            for step in (STEP, -STEP)
         ]
         by_state, by_phase, by_parameter = (
             (ahead - back)[:, event.switch] / (2 * STEP) for ahead, back in zip(*ends, strict=True)
         )
-        slope = system.switch_gradient(x, phase, orbit.parameter)[0][:, event.switch]
+        slope = guards_gradient(system, x, phase, orbit.parameter, modes)[0][:, event.switch]
         slopes = Slopes(slope, by_state, np.zeros((1, 0)), by_phase, by_parameter[0, list(free)])
         row = gathered(system, orbit, points, slopes, free).scaled(event.direction)
         return Row(speed(system, orbit, self.index) - self.speed, row.nodes, row.outer, row.stages)

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.events.impactmodes import thrown
-from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
+from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -174,12 +174,14 @@ class SwitchPolynomials:
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
         """Side of a switch in each interval by the modes of its surface, `otherwise` without event nodes.
 
-        Of a switch with impacts it is the side that they lead back to. Where the motion is held at a surface
-        its guard has none, 0, and elsewhere those of the releases have none.
+        Of a switch with impacts it is the side that they lead back to, of a relay its mode. Where the motion
+        is held at a surface its guard has none, 0, and elsewhere those of the releases have none.
         """
         mesh, surface = self.orbit.mesh, surface_of(self.system, switch)
         if surface.releases is not None:
             return self._held(switch, surface, otherwise)
+        if surface.kind == Kind.RELAY and surface.column is not None:
+            return self.modes[:, surface.column].astype(int)
         if surface.kind == Kind.IMPACT:
             return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
@@ -297,7 +299,7 @@ class SwitchPolynomials:
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
-        """Return all minima of side * s, its impacts left out, of a sliding jump where it is on that side."""
+        """Return all minima of side * s, its impacts left out, of sliding and relays where on that side."""
         along = self.along(switch, everywhere=True)
         points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
         value = side * along.value[points]
@@ -310,7 +312,7 @@ class SwitchPolynomials:
                 if e.switch == switch
             ]
             low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
-        if sliding(self.system, switch) is not None:
+        if sliding(self.system, switch) is not None or switch in relays(self.system):
             at_node = np.isin(along.interval[low], self._ends(switch)) & (along.theta[low] == 0.0)
             there = self.expected(switch, side)[along.interval[low]] == side
             low = low[there & ~at_node]

@@ -16,7 +16,8 @@ import scipy
 from periodic.checks import at_least_0, number
 from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
-from periodic.events.modes import bends, surface_of
+from periodic.events.modes import bends, relays, surface_of
+from periodic.events.relays import switched
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode
@@ -123,7 +124,8 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
-        new = [Crossing(*crossing_at, 0.0) for crossing_at in dense.crossings(k)]
+        passages = switched(system, orbit, k) if k in relays(system) else dense.crossings(k)
+        new = [Crossing(*passage, 0.0) for passage in passages]
         found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME_PHASE for f in found)]
     return found
 
@@ -167,8 +169,9 @@ def _tied(orbit: Orbit, values: Array) -> None:
 
 
 def _elsewhere(system: System) -> set[int]:
-    """The switches whose event nodes are those of impacts and of what is held."""
-    special = [s for s in surfaces_of(system) if s.kind == Kind.IMPACT or s.releases is not None]
+    """The switches whose event nodes are those of impacts, of relays and of what is held."""
+    kinds = (Kind.IMPACT, Kind.RELAY)
+    special = [s for s in surfaces_of(system) if s.kind in kinds or s.releases is not None]
     return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
 
 

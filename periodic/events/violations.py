@@ -27,9 +27,10 @@ from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, surf
 class Breach(Enum):
     """How an orbit violates its word.
 
-    REVERSED: an event node passes its level the other way. GRAZED: an impact has no speed. HELD: both sides
-    of a jump lead back to it. THROUGH: the orbit goes where an impact would be. EXCURSION: a switch passes
-    its level without an event node. MODE: the motion is held where it should not be, or the reverse.
+    REVERSED: an event node passes its level the other way. GRAZED: an impact or a relay has no speed. HELD:
+    both sides of a jump lead back to it, or a relay has no band. THROUGH: the orbit goes where an impact
+    would be. EXCURSION: a switch passes its level without an event node. MODE: the motion is held where it
+    should not be, or the reverse.
     """
 
     REVERSED = auto()
@@ -93,7 +94,7 @@ def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) 
         if surface.kind == Kind.IMPACT:
             found += _excursions(own, surface.switch, -system.switches[surface.switch].direction, 1.0)
             found += _through(own, surface.switch)
-        elif surface.kind in (Kind.KINK, Kind.JUMP):
+        elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
             found += _excursions(own, surface.switch, base.side(surface.switch), 1.0)
         elif surface.releases is not None:
             found += _held(own, base, surface)
@@ -244,8 +245,9 @@ def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
         ahead = slope * event.direction
         return [] if ahead > 0 else [Violation(breach, event.switch, index, event.direction, -ahead)]
 
-    if surface.kind == Kind.IMPACT:
-        return reported(Breach.GRAZED, slope_before(system, orbit, index))
+    if surface.kind in (Kind.IMPACT, Kind.RELAY):
+        band = reported(Breach.HELD, _beyond(system, orbit, index)) if surface.kind == Kind.RELAY else []
+        return reported(Breach.GRAZED, slope_before(system, orbit, index)) + band
     if surface.releases is not None:
         reversed_there = reported(Breach.REVERSED, slope_before(system, orbit, index))
         return reversed_there + _unforced(dense, index, surface)
@@ -253,6 +255,13 @@ def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])
     return reported(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+
+
+def _beyond(system: System, orbit: Orbit, index: int) -> float:
+    """A relay's guard just after its event node: between its thresholds, if they are in order."""
+    start = int(orbit.mesh.starts[index])
+    at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
+    return float(guards(system, *at, modes_in(system, orbit, start))[0, orbit.mesh.events[index].switch])
 
 
 def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -13,7 +14,7 @@ from periodic.orbit.layout import Layout, Quantity, layout_of
 from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
 from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import System, index_of, resets_of
+from periodic.system import Kind, System, index_of, resets_of, surfaces_of
 
 PER_PERIOD = 96
 """Equal intervals in each period of the excitation, used where they resolve the samples."""
@@ -36,6 +37,7 @@ def sampled(
     *,
     times: ArrayLike | None = None,
     system: System | None = None,
+    modes: Sequence[int] = (),
 ) -> Orbit:
     """Return the orbit through samples of a settled motion: a guess for `trace`.
 
@@ -58,7 +60,10 @@ def sampled(
     times : array_like, optional
         In the place of phases: times t in s, tau = Omega t.
     system : System, optional
-        What names and times refer to.
+        What names, times and modes refer to.
+    modes : sequence of int, optional
+        Those of the system's surfaces, as a simulation has them at its end: relays that do not switch stay in
+        theirs. By default such a relay is off where the samples have not been above its upper threshold.
 
     Returns
     -------
@@ -75,6 +80,8 @@ def sampled(
     by_name = any(isinstance(given, Mapping) for given in (state, algebraic, parameter))
     if system is None and (by_name or times is not None):
         raise ValueError("samples by name and times are those of a system; it must be given, system=")
+    if len(modes) and (system is None or len(modes) != len(surfaces_of(system))):
+        raise ValueError(f"modes are {tuple(modes)}; they must be one for each surface of a given system")
     values = _parameters(system, parameter)
     layout = None if system is None else layout_of(system)
     tau = np.asarray(phase if times is None else times, dtype=float)
@@ -96,7 +103,15 @@ def sampled(
         orbit = _through_impacts(system, tau, periods, x, z, values)
     else:
         orbit = _through(tau, periods, x, z, values)
+    if system is not None and len(modes):
+        orbit = replace(orbit, mesh=replace(orbit.mesh, modes=_of_relays(system, modes)))
     return orbit if layout is None else orbit.expressed_in(layout, "the sampled orbit")
+
+
+def _of_relays(system: System, modes: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    """The modes of relays as meshes have them, by their guards."""
+    both = zip(surfaces_of(system), modes, strict=True)
+    return tuple((surface.switch, mode) for surface, mode in both if surface.kind == Kind.RELAY)
 
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:

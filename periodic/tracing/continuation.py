@@ -382,6 +382,8 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
+        elif at.change.last:
+            self.stop = Stop.small_step(f"{at.change.name}, beyond which the motion is another one")
         elif (at.change.strict or at.change.final) and self._reread(at.end):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import cast
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
-from periodic.events.motions import orbit_of
+from periodic.events.motions import motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
@@ -51,32 +51,40 @@ def _integrated(system: System, start: Orbit) -> Orbit | None:
     if not hasattr(system, "motion"):
         return None
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
-    state, algebraic = start.nodes[0], start.algebraic[0, 0]
+    state, algebraic, modes = start.nodes[0], start.algebraic[0, 0], None
     for count in range(PERIODS):
         try:
             found = None
             if count in TRANSIENTS:
-                found = _fixed(moving, state, algebraic, start.parameter, phase)
+                found = _fixed(moving, state, algebraic, start.parameter, phase, modes)
             state = state if found is None else found
-            path = moving.motion(state, algebraic, start.parameter, phase, Accuracy.STANDARD)
+            given = state, algebraic, start.parameter, phase, Accuracy.STANDARD
+            path = motion_from(moving, *given, modes)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
         if found is not None or _closed(path.state):
             last = path.state[-1], path.algebraic[-1], start.parameter, Accuracy.STANDARD
-            if (converged := orbit_of(moving, *last)) is not None:
+            if (converged := orbit_of(moving, *last, before=getattr(path, "modes", None))) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        state, algebraic = path.state[-1], path.algebraic[-1]
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
     return None
 
 
-def _fixed(moving: Moving, state: Array, algebraic: Array, parameter: Array, phase: Array) -> Array | None:
+def _fixed(
+    moving: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    phase: Array,
+    modes: Sequence[int] | None,
+) -> Array | None:
     """The beginning of an orbit near a motion, if Newton's method finds one."""
 
     def follow(begin: Array) -> Array:
-        return moving.motion(begin, algebraic, parameter, phase, Accuracy.STANDARD).state
+        return motion_from(moving, begin, algebraic, parameter, phase, Accuracy.STANDARD, modes).state
 
     try:
         return ReturnMap(follow, STILL / 2, NEAR).fixed(state)
@@ -93,10 +101,11 @@ def held(system: System, motion: Orbit) -> list[str]:
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
     still = values <= Accuracy.STANDARD * slopes * motion.span()
-    unknown = [s.switch for s in surfaces_of(system) if s.releases is not None and s.place is None]
+    each = [s for s in surfaces_of(system) if s.releases is not None]
+    unknown = [s.switch for s in each if s.place is None and not s.alone]
     return [system.switches[k].name for k in unknown if still[k]]
 
 
 def _closed(path: Array) -> bool:
-    """Whether a motion over a period comes back to its beginning."""
-    return bool(np.abs(path[-1] - path[0]).max() < STILL * np.ptp(path, axis=0).max())
+    """Whether a motion over a period comes back to its beginning, as far as the tolerance tells."""
+    return bool(np.abs(path[-1] - path[0]).max() < STILL * max(np.ptp(path, axis=0).max(), Accuracy.STANDARD))

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import casadi as ca
 
@@ -37,20 +38,44 @@ def find(assembly: Assembly) -> None:
     forces = [motion.force for motion in assembly.motions.values()]
     rows = ca.vertcat(ca.SX(0, 1), *forces, *assembly.differential_rows, *assembly.algebraic_rows)
     candidates = switching(rows, _traits(assembly))
-    if not candidates:
+    if not candidates and not assembly.relays:
         return
     assembly.with_frequency(assembly.omega)  # an omega of its own is a parameter like any other
     samples = Samples(Packed(assembly))
+    _check_relays(assembly, samples)
     usable = _hashes(_moving(assembly)) | _hashes(_fixed(assembly))
     smooth = [s for s in assembly.smooth if _hashes(ca.symvar(s)) <= usable]
-    declared = [s for k, (_, s) in enumerate(assembly.switches) if k not in assembly.sliders]
+    special = {*assembly.sliders, *assembly.relays}
+    declared = [s for k, (_, s) in enumerate(assembly.switches) if k not in special]
     values = samples.values([*declared, *smooth, *candidates])
-    known, new = values[: -len(candidates)], values[-len(candidates) :]
+    first = len(values) - len(candidates)
+    known, new = values[:first], values[first:]
     for argument, found in zip(candidates, new, strict=True):
         if not constant(found) and not any(multiples(found, other) for other in known):
             known.append(found)
             name = _unused(_written(assembly, argument), [info.name for info, _ in assembly.switches])
             assembly.switches.append((SwitchInfo(name, 0), argument / samples.size(argument)))
+
+
+def _check_relays(assembly: Assembly, samples: Samples) -> None:
+    """Name relays by what they compare, and scale them. Raises ValueError for what is no relay."""
+    usable = _hashes(_moving(assembly)) | _hashes(_fixed(assembly))
+    for k, relay in assembly.relays.items():
+        text = _written(assembly, relay.over)
+        if _hashes(ca.symvar(ca.vertcat(relay.over, relay.under))) - usable:
+            raise ValueError(
+                f"the relay at {text} = 0 depends on rates or unknowns; it must compare functions of states, "
+                f"phase and parameters"
+            )
+        over, under = samples.values([relay.over, relay.under])
+        if constant(over):
+            raise ValueError(f"the relay at {text} = 0 never switches; it must compare what moves")
+        if not (over[0] < under[0]).all():
+            raise ValueError(f"off of the relay at {text} = 0 is not less than on; it must be")
+        size = samples.size(relay.over)
+        assembly.relays[k] = replace(relay, over=relay.over / size, under=relay.under / size)
+        name = _unused(f"relay at {text}", [info.name for info, _ in assembly.switches])
+        assembly.switches[k] = SwitchInfo(name, 0), relay.over / size
 
 
 def _moving(assembly: Assembly) -> list[ca.SX]:
@@ -61,6 +86,7 @@ def _moving(assembly: Assembly) -> list[ca.SX]:
 
 def _fixed(assembly: Assembly) -> list[ca.SX]:
     numbers = [n.parameter.symbol for n in assembly.numbers.taken]
+    numbers += [relay.symbol for relay in assembly.relays.values()]  # it jumps at an event of its own
     return [*numbers, assembly.omega, assembly.excitation.pace]
 
 

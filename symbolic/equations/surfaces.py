@@ -53,6 +53,8 @@ class Surface:
     place : (int, tuple of float), optional
         Of what may be HELD: the index of the parameter that says where, and the weights (n,) of the scaled
         states in how far it is deflected (SI).
+    alone : bool
+        Whether it may be HELD without a place, as the equations determine the motion then.
     """
 
     kind: Kind
@@ -61,6 +63,7 @@ class Surface:
     releases: tuple[int, int] | None = None
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
+    alone: bool = False
 
 
 def surfaces(
@@ -70,6 +73,8 @@ def surfaces(
     slides: Mapping[int, tuple[int, int]],
     sliders: Container[int] = (),
     places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
+    relays: Container[int] = (),
+    alone: Container[int] = (),
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -87,6 +92,10 @@ def surfaces(
         Those of elastic sliders.
     places : mapping of int to (int, tuple of float), optional
         Where they may be held: see `Surface`.
+    relays : container of int
+        Those of relays.
+    alone : container of int
+        Those of sliding that may be HELD without a place.
     """
     released = {k for pair in slides.values() for k in pair}
 
@@ -95,6 +104,8 @@ def surfaces(
             return Kind.IMPACT
         if k in sliders:
             return Kind.SLIDER
+        if k in relays:
+            return Kind.RELAY
         if k in jumps:
             return Kind.SLIDING if k in slides else Kind.JUMP
         plain = switches[k].levels == (0.0,) and switches[k].direction == 0
@@ -108,6 +119,7 @@ def surfaces(
             slides.get(k),
             jumps.index(k) if k in jumps else None,
             (places or {}).get(k) if k in slides else None,
+            k in alone,
         )
         for k, info in enumerate(switches)
         if k not in released

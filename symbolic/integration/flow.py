@@ -9,7 +9,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import finite
 from symbolic.integration.follower import Follower
-from symbolic.integration.modes import Event, Modes, Switched, Switching
+from symbolic.integration.modes import Event, Modes, Switched, Switching, modes_along
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,12 @@ class Flow:
         parameter: Array,
         phase: Array,
         modes: Modes | None = None,
+        earlier: Modes | None = None,
     ) -> Trajectory:
         """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
-        modes: those with which it begins, by default as the state has them. Raises IntegrationError where the
-        integrators fail.
+        modes: those with which it begins, by default as the state has them; earlier: those before it, of
+        which relays and what slides keep theirs. Raises IntegrationError where the integrators fail.
         """
         n, phase = self.system.expressions.state.numel(), np.asarray(phase, dtype=float)
         switching, field = Switching(self.system, parameter, self.tolerance), self.system.field
@@ -66,12 +67,18 @@ class Flow:
             settle,
             n,
         )
-        found = follower.run(settle(np.concatenate([state, algebraic]), float(phase[0])), phase, modes)
+        start = settle(np.concatenate([state, algebraic]), float(phase[0]))
+        found = follower.run(start, phase, modes, earlier)
         tau, values = found.with_impacts(phase)
         return Trajectory(tau, values[:, :n], values[:, n:], found.events, found.modes)
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
-        """Return (x', z') along a trajectory, shape (N, n+m)."""
+        """Return (x', z') along a trajectory, shape (N, n+m), in the modes that it tells."""
         values = np.concatenate([trajectory.state, trajectory.algebraic], axis=1)
-        sides = np.zeros(self.system.expressions.sided.side.numel())
-        return self.system.field.along(values, trajectory.phase, np.concatenate([parameter, sides]))
+        switching, count = Switching(self.system, parameter, self.tolerance), len(values)
+        modes = [(0,) * len(self.system.surfaces)] * count  # the state decides
+        if trajectory.modes:
+            modes = modes_along(trajectory.phase, trajectory.events, trajectory.modes)
+        sides = np.array([switching.side(own) for own in modes]).reshape(count, -1)
+        given = np.column_stack([np.repeat(parameter[None], count, axis=0), sides])
+        return self.system.field.along(values, trajectory.phase, given.T)

@@ -108,14 +108,17 @@ class Follower:
     _passages: list[Passage] = field(default_factory=list, init=False)
     _events: list[Event] = field(default_factory=list, init=False)
 
-    def run(self, start: Array, phase: Array, modes: Modes | None = None) -> Followed:
+    def run(
+        self, start: Array, phase: Array, modes: Modes | None = None, earlier: Modes | None = None
+    ) -> Followed:
         """Integrate from phase[0] to all of `phase`, which rises. Raises IntegrationError.
 
-        modes: those to begin with, by default as the state has them.
+        modes: those to begin with, by default as the state has them; earlier: those before, of which relays
+        and what slides keep theirs.
         """
         y = start
         if modes is None:
-            state, modes = self.switching.begin(float(phase[0]), y[: self.states])
+            state, modes = self.switching.begin(float(phase[0]), y[: self.states], earlier)
             y = self._with(y, state, float(phase[0]))
         self._most = MOST_EVENTS * math.ceil((phase[-1] - phase[0]) / PERIOD)
         self._enter(modes)

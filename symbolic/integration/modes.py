@@ -1,6 +1,7 @@
 """The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
 
-A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held.
+A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held. A
+relay is on or off, PLUS or MINUS, and its guard another one in either mode.
 Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
 sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
 solved by Murty's rule of the least index, which ends where A is a P-matrix.
@@ -117,11 +118,28 @@ class Switching:
                 found.append(Guard(i, surface.switch, mode))
         return found
 
-    def begin(self, tau: float, state: Array) -> tuple[Array, Modes]:
-        """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
+    def begin(self, tau: float, state: Array, earlier: Modes | None = None) -> tuple[Array, Modes]:
+        """Return the modes at the beginning of a motion, and the state, on the limits of what slips.
+
+        earlier: modes before it, in which relays, and what slides, stay where they may.
+        """
         values = self._at((0,) * len(self.surfaces), tau, state)
-        modes = tuple(self._first(surface, values) for surface in self.surfaces)
-        return self.consistent(modes, tau, state)
+        modes = [self._first(surface, values) for surface in self.surfaces]
+        if earlier is not None:
+            each = zip(self.surfaces, modes, earlier, strict=True)
+            modes = [before if _stays(surface, before) else mode for surface, mode, before in each]
+        return self.consistent(tuple(self._relayed(modes, tau, state)), tau, state)
+
+    def _relayed(self, modes: list[int], tau: float, state: Array) -> list[int]:
+        """The modes with relays switched whose threshold has been passed, one that others depend on first."""
+        found = list(modes)
+        for i, surface in enumerate(self.surfaces):
+            if (
+                surface.kind == Kind.RELAY
+                and found[i] * self._at(tuple(found), tau, state)[surface.switch] < 0
+            ):
+                found[i] = -found[i]
+        return found
 
     def _first(self, surface: Surface, values: Array) -> int:
         """The mode of a surface as its guard has it."""
@@ -149,12 +167,12 @@ class Switching:
             if surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
-            elif surface.kind in (Kind.KINK, Kind.JUMP):
+            elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
                 tossed |= {guard.surface} if mode == STUCK else set()
-        return self.consistent(tuple(new), tau, state, tossed)
+        return self.consistent(tuple(self._relayed(new, tau, state)), tau, state, tossed)
 
     def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
         """The modes after an impact, which may turn what slips and tear off what is held."""
@@ -166,7 +184,7 @@ class Switching:
                 found[i] = (PLUS if rate > 0 else MINUS) if slips else STUCK
             elif surface.kind == Kind.SLIDER and modes[i] != STUCK and modes[i] * rate < 0:
                 found[i] = STUCK
-        return found
+        return self._relayed(found, tau, state)
 
     def consistent(
         self, modes: Modes, tau: float, state: Array, tossed: Collection[int] = ()
@@ -234,6 +252,26 @@ class Switching:
         struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
+
+
+def modes_along(phase: Array, events: Sequence[Event], last: Modes) -> list[Modes]:
+    """Return the modes at phases along a motion, from its events in order, and those at its end."""
+    if not events:
+        return [last] * len(phase)
+    first = list(events[0].modes)
+    for event in events:
+        if event.modes == events[0].modes and event.phase == events[0].phase:
+            first[event.surface] = event.before
+    each = [tuple(first), *(event.modes for event in events)]
+    at = [event.phase for event in events]
+    passed = np.searchsorted(at, phase, side="right")
+    struck = np.append(np.diff(phase) == 0, False)  # of an impact's two points the first is before it
+    return [each[k] for k in np.where(struck, np.searchsorted(at, phase), passed)]
+
+
+def _stays(surface: Surface, before: int) -> bool:
+    """Whether a surface begins in the mode in which it was."""
+    return surface.kind == Kind.RELAY and before != 0 or surface.kind == Kind.SLIDING and before == STUCK
 
 
 def _mode(surface: Surface, values: Array, mode: int) -> int:

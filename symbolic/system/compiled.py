@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -268,7 +268,8 @@ class CompiledSystem:
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
         e = self.expressions
-        return surfaces(self.switches, self.resets, self.jumps, self.slides, e.sliders, self._places)
+        own = (self.switches, self.resets, self.jumps, self.slides, e.sliders)
+        return surfaces(*own, self._places, e.relays, e.sided.alone)
 
     @property
     def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:
@@ -395,10 +396,17 @@ class CompiledSystem:
         return self._flow.run(state, algebraic, parameter, phase, free, tolerance)
 
     def motion(
-        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        tolerance: float,
+        modes: Sequence[int] | None = None,
     ) -> Trajectory:
         """Integrate, through impacts too: see `periodic.system.Moving`. Raises ArithmeticError."""
-        return Flow(self, tolerance).run(state, algebraic, parameter, phase)
+        earlier = None if modes is None else tuple(modes)
+        return Flow(self, tolerance).run(state, algebraic, parameter, phase, earlier=earlier)
 
     @cached_property
     def field(self) -> VectorField:

@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import bends, group, mode_after, surface_of
+from periodic.events.modes import group, mode_after, relays, returns, surface_of
 from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.reversals import reversals, short_of
@@ -24,11 +24,13 @@ from periodic.events.rewrites.table import (
     CAUGHT,
     CORNER,
     CROSSING_SLIDING,
+    FIRST_DEPARTURES,
     FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
     LIMIT_GRAZING,
+    RELAY,
     RELEASE_AT_IMPACT,
     REVERSAL,
     SWAP,
@@ -38,7 +40,7 @@ from periodic.events.rewrites.table import (
 from periodic.events.rewrites.together import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
-from periodic.events.thresholds import SHALLOW
+from periodic.events.thresholds import BESIDE_EXTREMUM, SHALLOW
 from periodic.events.violations import largest
 from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
@@ -49,8 +51,8 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 class Excursion:
     """What may end: its row, the event node at which it begins, and its size in the row's measure.
 
-    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges. segments: those whose lengths
-    together are its size, where it is not the one that begins there.
+    unit: of the row's sizes, 1 rad or how far the switch of an impact or a relay ranges. segments: those
+    whose lengths together are its size, where it is not the one that begins there.
     """
 
     row: Row
@@ -61,37 +63,39 @@ class Excursion:
 
     def size(self, system: System, orbit: Orbit) -> float:
         """How long it lasts, or with which speed it arrives."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return speed(system, orbit, self.index)
         lengths = orbit.mesh.segment_lengths(orbit.phases)
         return float(lengths[list(self.segments or (self.index,))].sum())
 
     def held(self, size: float) -> SideCondition:
         """What keeps it as small as that, in its own unit."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return Speed(self.index, size)
         return Lengths(self.segments, size) if self.segments else Length(self.index, size)
 
 
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     """Yield all that may end on an orbit."""
-    events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
+    events, k, own = orbit.mesh.events, len(orbit.phases), returns(system)
     about = {i for reversal in reversals(system, orbit) for i in (reversal.begin, reversal.inside[-1])}
     for reversal in reversals(system, orbit):
         yield Excursion(REVERSAL, reversal.begin)
-    for i in tied(system, orbit):
+    switched = [i for i, event in enumerate(events) if event.switch in relays(system)]
+    for row, i in [*((IMPACT, i) for i in tied(system, orbit)), *((RELAY, i) for i in switched)]:
         dense = SwitchPolynomials(system, orbit)
-        yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
+        yield Excursion(row, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
     for i, first in enumerate(events):
         second = events[(i + 1) % k]
         if first.switch == second.switch in own and i not in about:
             yield Excursion(GRAZING, i)
         both = only_slips(system, orbit, i)
         if both and both[0].index == i:
-            yield Excursion(FIRST_SLIPS, i, segments=tuple(j for slip in both for j in slip.segments))
-        row = _held(system, orbit, i)
-        if row is not None and not both:
-            yield Excursion(row, i)
+            row = FIRST_DEPARTURES if surface_of(system, events[i].switch).place is None else FIRST_SLIPS
+            yield Excursion(row, i, segments=tuple(j for slip in both for j in slip.segments))
+        between = _held(system, orbit, i)
+        if between is not None and not both:
+            yield Excursion(between, i)
         inner = slip_about(system, orbit, i)
         if inner and not both:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
@@ -110,8 +114,11 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
     """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
-    if excursion.row is FIRST_SLIPS:
-        return _first_slips(system, orbit, excursion.index)
+    if excursion.row in (FIRST_SLIPS, FIRST_DEPARTURES):
+        return _first_slips(system, orbit, excursion.row, excursion.index)
+    if excursion.row is RELAY:
+        i = excursion.index
+        return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
@@ -190,17 +197,23 @@ def _about(system: System, orbit: Orbit, begin: int) -> Site:
 
 
 def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:
-    """Return the slips of a joint, there and back, if it has no others and one of both begins at an event."""
+    """Return all slips of a joint if they end at once, and one of them begins at an event; else [].
+
+    From its place a joint goes there and back. What slides all along has none: its slips are alike.
+    """
     surface = surface_of(system, orbit.mesh.events[begin].switch)
-    if surface.releases is None or surface.place is None:
+    if surface.releases is None or (surface.place is None and not surface.alone):
         return []
     own = group(system, orbit.mesh, surface.switch)
     begun = [i for i in own if mode_after(surface, orbit.mesh.events[i]) != STUCK]
     ways = {orbit.mesh.events[i].direction for i in begun}
-    if begin not in begun or len(own) != 4 or ways != {1, -1}:
+    if begin not in begun or len(own) != 2 * len(begun) or len(ways) != len(begun):
         return []
     found = [slip for slip in (_slip(system, orbit, i) for i in begun) if slip is not None]
-    return found if len(found) == 2 else []
+    sizes = [slip.size(system, orbit) for slip in found]
+    alike = bool(found) and np.ptp(sizes) < BESIDE_EXTREMUM * max(sizes)
+    at_once = alike if surface.place is None else len(begun) == 2
+    return found if len(found) == len(begun) and at_once else []
 
 
 def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
@@ -212,12 +225,12 @@ def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
     return Excursion(ADDING_ABOUT, begin, segments=(begin, inner[-1])) if inner else None
 
 
-def _first_slips(system: System, orbit: Orbit, begin: int) -> list[Site]:
+def _first_slips(system: System, orbit: Orbit, row: Row, begin: int) -> list[Site]:
     """The only slips of a joint, without which it is held all along and touches where one was."""
     each = [_end(system, orbit, slip.row, slip.index) for slip in only_slips(system, orbit, begin)]
     removed = tuple(j for site in each for j in site.removed)
     replaced = tuple(pair for site in each for pair in site.replaced)
-    return [replace(site, row=FIRST_SLIPS, removed=removed, replaced=replaced) for site in each]
+    return [replace(site, row=row, removed=removed, replaced=replaced) for site in each]
 
 
 def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:

@@ -19,6 +19,7 @@ from periodic.events.rewrites.table import (
     GRAZING,
     IMPACT,
     LIMIT_GRAZING,
+    RELAY,
     REVERSAL,
     ROOT,
     SHORT,
@@ -95,6 +96,8 @@ def _onsets(
         slider = surface_of(system, violation.switch).kind == Kind.SLIDER
         if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
             continue  # it stops at its limit there: what comes after is decided by the turn of its strain
+        if _at_end(after, violation, ending):
+            continue
         whole = whole_orbit(system, before, violation, part)
         site = begins(system, after, violation)
         if whole is not None:
@@ -102,6 +105,15 @@ def _onsets(
         elif site is not None:
             found.append(Begins(system, site, part, shortest))
     return found
+
+
+def _at_end(after: Orbit, violation: Violation, ending: list[Ends]) -> bool:
+    """Whether a relay goes past its threshold ahead of an event node that has come to lie past a graze."""
+    if not isinstance(violation.at, Extremum):
+        return False
+    segment = int(after.mesh.segments[0][violation.at.interval])
+    following = (segment + 1) % max(len(after.phases), 1)
+    return any(end.site.row is RELAY and end.excursion.index == following for end in ending)
 
 
 def _share(system: System, before: Orbit, violation: Violation) -> float:
@@ -138,7 +150,7 @@ def _ending(
         return None
     half = now if row.gradual else VANISHING * now
     size, last = row.size_below(half), False
-    if row is IMPACT and size >= half:
+    if row.by_speed and size >= half:
         return None
     site = ends(system, before, excursion)[0]
     if row in (ADDING_SLIDING, LIMIT_GRAZING):
@@ -162,9 +174,13 @@ def _name(system: System, site: Site, last: bool) -> str:
     name, jump = system.switches[site.switch].name, sliding(system, site.switch)
     if jump is not None:
         name = system.switches[jump].name
+        if last and surface_of(system, jump).alone:
+            return f"the motion slides along {name} = 0 all the time"
         return (
             f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
         )
+    if site.row is RELAY:
+        return f"{name} grazes the threshold at which it switches"
     if site.row is IMPACT:
         return f"the impact at {name} has no speed left"
     if site.row is REVERSAL:

@@ -15,11 +15,13 @@ from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CROSSING_SLIDING,
+    FIRST_DEPARTURES,
     FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
     LIMIT_GRAZING,
+    RELAY,
     SWITCHING_SLIDING,
     Row,
 )
@@ -88,6 +90,8 @@ def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
         return GRAZING.name
     if surface.kind == Kind.IMPACT:
         return IMPACT.name
+    if surface.kind == Kind.RELAY:
+        return RELAY.name
     if surface.releases is not None:
         return (GRAZING_SLIDING if switch == surface.switch else _slip(orbit, surface)).name
     return ""
@@ -96,7 +100,7 @@ def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
 def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
     """The row of a slip of what is held."""
     if held_all_along(orbit.mesh, surface):
-        return FIRST_SLIPS
+        return FIRST_DEPARTURES if surface.place is None else FIRST_SLIPS
     return LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
 
 
@@ -104,7 +108,8 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     """The extrema of a switch on the sides that it is on."""
     sides = dense.expected(switch, dense.side(switch))
     most = largest(dense, switch)
-    nodes = group(dense.system, dense.orbit.mesh, switch) if surface.releases is not None else []
+    tied = surface.releases is not None or surface.kind == Kind.RELAY
+    nodes = group(dense.system, dense.orbit.mesh, switch) if tied else []
     own = dense.orbit.phases[nodes]
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
@@ -119,6 +124,8 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     k = at.switch
     if surface.kind == Kind.IMPACT:
         return first_impact(system, orbit, at, side, value)
+    if surface.kind == Kind.RELAY:
+        return Site(RELAY, k, at, Clearance(k, side, at.phase), value)
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:

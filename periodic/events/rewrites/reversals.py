@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.modes import bends, group, of_held, sliding, sticks
+from periodic.events.modes import group, of_held, returns, sliding, sticks
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL
 from periodic.orbit.orbit import Orbit
@@ -29,7 +29,7 @@ class Reversal:
 
 def reversals(system: System, orbit: Orbit) -> list[Reversal]:
     """Return the excursions of an orbit that turn back at an event node of another switch."""
-    events, own, found = orbit.mesh.events, bends(system), list[Reversal]()
+    events, own, found = orbit.mesh.events, returns(system), list[Reversal]()
     if len(events) < 3:
         return []
     for i, first in enumerate(events):

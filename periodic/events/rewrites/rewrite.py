@@ -21,7 +21,7 @@ from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import at_once
 from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
-from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
 from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
@@ -56,6 +56,11 @@ class Begins:
         return self.site.row.touches
 
     @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
+
+    @property
     def condition(self) -> SideCondition:
         """What is 0 there."""
         return self.site.held
@@ -64,6 +69,8 @@ class Begins:
     def name(self) -> str:
         """What begins, in words."""
         surface = self.system.switches[self.site.switch].name
+        if self.site.row is RELAY:
+            return f"{surface} grazes the threshold at which it would switch"
         jump = sliding(self.system, self.site.switch)
         if jump is None or self.site.row is GRAZING_SLIDING:
             return f"{surface} is touched"
@@ -74,8 +81,8 @@ class Begins:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield orbits with what begins, small, and with what begins at once elsewhere by symmetry."""
-        sites = at_once(system, orbit, self.site)
         row = self.site.row
+        sites = [] if self.last else at_once(system, orbit, self.site)
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(system, orbit, chosen, size)
@@ -112,8 +119,17 @@ class Ends:
     shortest: float
     name: str
 
-    touches = False
     otherwise = None
+
+    @property
+    def touches(self) -> bool:
+        """Whether a switch just touches its level."""
+        return self.last
+
+    @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
 
     @property
     def condition(self) -> SideCondition:
@@ -122,6 +138,8 @@ class Ends:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
+        if self.last:
+            return
         for own in ends(system, orbit, self.excursion):
             sites = self._alike(system, orbit, own)
             for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:

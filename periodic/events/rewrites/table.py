@@ -13,9 +13,11 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     the same about w       w, in 0             (0 +) w (+ 0)     limit            length
     first slips            0 all along         (0 +)(+ 0) and    clearance        length
                                                (0 -)(- 0)
+    first departures       0 all along         (0 +)(+ 0)        clearance        length
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    grazing of a relay     nothing             ends              clearance        speed
     corner before impact   I from a            (a b) I from b    limit            length
     corner after impact    I to b              I to a, (a b)     limit            length
     release at an impact   I from 0            (0 b) I from b    limit            length
@@ -27,7 +29,8 @@ briefly, and so the multipliers jump, which they do not where friction slips.
 I is an impact that throws the guard of another surface, as that of friction against a belt: it takes it
 from a mode to a mode. Where the guard is 0 just before or after it the orbit passes the corner of both.
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
-joint where one is pulled most. What begins is of no
+joint where one is pulled most. Where a relay just reaches its threshold a branch ends: past it the relay
+switches, and the motion is another one. What begins is of no
 size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
 
 References
@@ -60,7 +63,8 @@ class Row:
 
     name: in the literature. touches: whether a switch just touches its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
-    gradual: whether steps shorten so much on the way that each size is looked at as it is passed.
+    gradual: whether steps shorten so much on the way that each size is looked at as it is passed. by_speed:
+    whether the size is the speed with which a level is passed. last: whether no orbits are near beyond it.
     """
 
     name: str
@@ -69,6 +73,8 @@ class Row:
     sizes: tuple[float, ...] = SHORT
     spare: tuple[float, ...] = ()
     gradual: bool = False
+    by_speed: bool = False
+    last: bool = False
 
     @property
     def least(self) -> float:
@@ -87,7 +93,7 @@ class Row:
 
 
 GRAZING = Row(name="grazing", touches=True, power=ROOT)
-IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER)
+IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER, by_speed=True)
 GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
 ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
 ADDING_ABOUT = Row(
@@ -95,6 +101,9 @@ ADDING_ABOUT = Row(
 )
 FIRST_SLIPS = Row(
     name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
+)
+FIRST_DEPARTURES = Row(
+    name="adding-sliding of what slides all along", touches=False, power=ROOT, sizes=FLAT, gradual=True
 )
 LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
@@ -109,4 +118,7 @@ AFTER_IMPACT = Row(
 )
 RELEASE_AT_IMPACT = Row(name="release at an impact", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 CAUGHT = Row(name="caught after an impact", touches=False, power=LINEAR)
+RELAY = Row(
+    name="grazing of a relay", touches=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
+)
 SWAP = Row(name="two events change places", touches=False, power=LINEAR)
