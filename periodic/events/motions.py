@@ -157,7 +157,9 @@ def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) ->
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
     It is followed from amid its longest segment, as far from all events as can be, and through some periods
-    `before` that one. It may violate its word: that of the motion does not. Raises what the integration raises.
+    `before` that one. It may violate its word: that of the motion does not.
+
+    Raises what the integration raises.
     """
     if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
