@@ -52,9 +52,10 @@ def carrying(system: System) -> list[int]:
 
 
 def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
-    switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
-    interval, x, phase = before(orbit, index)
-    after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, orbit.parameter)
+    k, (interval, x, phase) = len(orbit.phases), before(orbit, index)
+    after, by_state, by_phase, by_parameter = mapped(
+        system, orbit.mesh.events[index], x, phase, orbit.parameter
+    )
     by_outer = np.zeros((x.shape[1], k + len(free)))
     by_outer[:, index] = by_phase[0]
     by_outer[:, k:] = by_parameter[0][:, list(free)]

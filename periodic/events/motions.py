@@ -35,6 +35,9 @@ from periodic.system import (
 PER_PERIOD, LEAST = 60, 4
 """Intervals in a period, and in the shortest segment."""
 
+FOLLOWED = 1e-8
+"""Tolerance with which motions are followed in time for their events."""
+
 SAME = 1e-9
 """Events that lie so near to each other (rad) are one."""
 
@@ -77,7 +80,7 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
     """The event node of what happens at once, the first of which brings the others about."""
     surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
     for event in each:
-        if surfaces[event.surface].kind != Kind.IMPACT and (event is not first or event.after == STUCK):
+        if event.after == STUCK or (surfaces[event.surface].kind != Kind.IMPACT and event is not first):
             modes.append((surfaces[event.surface].switch, event.after))
     switch, direction = _passage(system, surface, first)
     return EventNode(switch, direction, modes=tuple(modes))
@@ -85,11 +88,16 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:
     """What brings the others about that happen at once: an impact, then what comes to rest."""
-    return 0 if surface.kind == Kind.IMPACT else 2 if event.before == STUCK else 1
+    if event.before == STUCK:
+        return 2
+    return 0 if surface.kind == Kind.IMPACT else 1
 
 
 def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
     """The switch that passes its level at an event, and the direction."""
+    if surface.kind == Kind.IMPACT and event.before == STUCK:
+        assert surface.leaves is not None
+        return surface.leaves, 1
     if surface.kind == Kind.IMPACT:
         return surface.switch, system.switches[surface.switch].direction
     if event.before == STUCK and surface.releases is not None:
@@ -104,7 +112,7 @@ def orbit_of(
 
     Raises what the integration raises.
     """
-    if not any(surface.releases is not None for surface in surfaces_of(system)):
+    if not any(s.releases is not None or s.leaves is not None for s in surfaces_of(system)):
         return None
     whole = system.motion(state, algebraic, parameter, np.array([0.0, FORCED]), tolerance)
     if not hasattr(whole, "modes"):

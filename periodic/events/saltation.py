@@ -19,10 +19,11 @@ import numpy as np
 from periodic.events.modes import modes_in, sides
 from periodic.events.rates import before, rate_at, rate_before
 from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, guards_gradient, resets_of
+from periodic.system import STUCK, Resetting, System, guards_gradient, resets_of
 
 STEP = 1e-3
 """Step of differences in each argument, as a part of its size: they are of the fourth order."""
@@ -39,7 +40,8 @@ def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
 
     It raises numpy.linalg.LinAlgError where there are no rates, and where the switch is at rest.
     """
-    switch, start = orbit.mesh.events[index].switch, orbit.mesh.starts[index]
+    event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
+    switch = event.switch
     interval, side, unknown = before(orbit, index)[0], sides(system, orbit), orbit.algebraic
     arriving = rate_before(orbit, index), unknown[interval, -1]
     leaving = orbit.node_rates[start], unknown[start, 0]
@@ -47,7 +49,7 @@ def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -
 
     def matrix(x: Array, phase: Array, parameter: Array) -> Array:
         at = replace(orbit, parameter=parameter)
-        after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, parameter)
+        after, by_state, by_phase, by_parameter = mapped(system, event, x, phase, parameter)
         old = rate_at(system, at, x, *arriving, phase, side[interval])
         new = rate_at(system, at, after, *leaving, phase, side[start])
         slopes_of = guards_gradient(system, x, phase, parameter, side[interval : interval + 1])
@@ -128,12 +130,30 @@ def at_fixed_phase(
 
 
 def mapped(
-    system: System, switch: int, x: Array, phase: Array, parameter: Array
+    system: System, event: EventNode, x: Array, phase: Array, parameter: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """x+ with its derivatives in state, phase and parameters; x- itself where only the equations jump."""
+    """x+ with its derivatives in state, phase and parameters; x- itself where only the equations jump.
+
+    Of an impact after which it rests on the wall x+ is where x-, r(x-), r(r(x-)), ... tend to: the speed
+    falls to -e times itself each time, so that it is x- + (r(x-) - x-)/(1 + e), whatever e is.
+    """
+    switch = event.switch
     if switch not in resets_of(system):
         n = x.shape[1]
         return x, np.eye(n)[None], np.zeros((1, n)), np.zeros((1, n, len(parameter)))
     resetting = cast(Resetting, system)
     after = resetting.reset(switch, x, phase, parameter)
+    if (switch, STUCK) in event.modes:
+        share, by_state = 1 / (1 + bounce(system, switch, x, phase, parameter)[1]), np.eye(x.shape[1])
+        slope, *_ = resetting.reset_gradient(switch, x, phase, parameter)
+        fixed = x + share * (after - x), by_state + share * (slope - by_state)
+        return *fixed, np.zeros_like(x), np.zeros((1, x.shape[1], len(parameter)))
     return after, *resetting.reset_gradient(switch, x, phase, parameter)
+
+
+def bounce(system: System, switch: int, x: Array, phase: Array, parameter: Array) -> tuple[Array, float]:
+    """Return r(x-) and the part e of its speed that an impact leaves, by that which the next one would."""
+    resetting = cast(Resetting, system)
+    after = resetting.reset(switch, x, phase, parameter)
+    first, second = (after - x)[0], (resetting.reset(switch, after, phase, parameter) - after)[0]
+    return after, -float(first @ second) / (float(first @ first) or 1.0)

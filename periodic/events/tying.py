@@ -174,7 +174,8 @@ def _tied(orbit: Orbit, values: Array) -> None:
 def _elsewhere(system: System) -> set[int]:
     """The switches whose event nodes are those of impacts and of what is held."""
     special = [s for s in surfaces_of(system) if s.kind == Kind.IMPACT or s.releases is not None]
-    return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
+    found = {k for s in special for k in (s.switch, s.leaves, *(s.releases or ()))}
+    return {k for k in found if k is not None}
 
 
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
@@ -198,7 +199,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *_leaving(system, orbit), *sticking.passages(system, orbit, LEAST))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
@@ -211,6 +212,13 @@ def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float
         event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
         found.append((event, float(orbit.phases[i]), abs(impacts.slope_before(system, orbit, i))))
     return found
+
+
+def _leaving(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """Event, phase and slope of where an orbit leaves a wall on which it rests."""
+    leaves = {surface.leaves for surface in surfaces_of(system)}
+    both = zip(orbit.mesh.events, orbit.phases, strict=True)
+    return [(event, float(phase), 1.0) for event, phase in both if event.switch in leaves]
 
 
 def _phase(crossing: Crossing) -> float:

@@ -94,6 +94,9 @@ def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) 
         if surface.kind == Kind.IMPACT:
             found += _excursions(own, surface.switch, -system.switches[surface.switch].direction, 1.0)
             found += _through(own, surface.switch)
+            if surface.leaves is not None:
+                most = largest(own, surface.leaves)
+                found += _excursions(own, surface.leaves, -1, most, Breach.MODE)
         elif surface.kind in (Kind.KINK, Kind.JUMP):
             found += _excursions(own, surface.switch, base.side(surface.switch), 1.0)
         elif surface.releases is not None:

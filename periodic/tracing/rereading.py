@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.identity import distance
+from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -54,6 +55,8 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         return None
     for ds in (part * first for part in AHEAD):
         ahead = tangent(problem, base, ds)
+        if not in_order(ahead):  # events meet on the way: then the motion is followed from where they do not
+            ahead = replace(base.orbit, parameter=ahead.parameter)
         value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
         parameter[problem.index] = value
@@ -63,7 +66,7 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):
+        if distance(problem, ahead, found.orbit) > FARTHEST * max(distance(problem, base.orbit, ahead), ds):
             continue
         if found.tangent.parameter * sign > 0:
             apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)

@@ -8,7 +8,7 @@ import numpy as np
 
 from periodic.condensed import settling as condensed
 from periodic.correction.outcome import FAILURES
-from periodic.events.motions import orbit_of
+from periodic.events.motions import FOLLOWED, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
@@ -47,7 +47,7 @@ def settled(system: System, start: Orbit) -> Orbit | None:
         if not np.isfinite(path.state).all():
             return None
         if _closed(path.state):
-            last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
+            last = path.state[-1], path.algebraic[-1], start.parameter, FOLLOWED
             if (converged := orbit_of(moving, *last)) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)

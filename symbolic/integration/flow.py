@@ -15,8 +15,9 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import finite
+from symbolic.equations.surfaces import STUCK
 from symbolic.integration.crossings import SwitchCrossings
-from symbolic.integration.cvodes import integrated, integrator, kept
+from symbolic.integration.cvodes import IntegrationError, integrated, integrator, kept
 from symbolic.integration.lsoda import Rates, failure, followed
 from symbolic.integration.modes import Event, Modes, Switched, Switching
 from symbolic.integration.pieces import Follower
@@ -32,6 +33,10 @@ class Followed(Switched, Protocol):
     def kinks(self) -> Sequence[int]: ...
     @property
     def slides(self) -> dict[int, tuple[int, int]]: ...
+
+
+class RestsError(IntegrationError):
+    """Impacts without number: a motion comes to rest on a wall, and is to be followed from event to event."""
 
 
 @dataclass(frozen=True)
@@ -73,11 +78,19 @@ class Flow:
         modes: those with which it begins, by default as the state has them. Raises IntegrationError where the
         integrator fails.
         """
-        n = self.system.expressions.state.numel()
         start = self._on_constraints(np.concatenate([state, algebraic]), parameter, float(phase[0]))
         phase = np.asarray(phase, dtype=float)
-        if self.system.slides:
+        if self.system.slides or STUCK in (modes or ()):
             return self._pieced(start, parameter, phase, modes)
+        try:
+            return self._through(start, parameter, phase)
+        except RestsError:
+            return self._pieced(start, parameter, phase, modes)
+
+    def _through(self, start: Array, parameter: Array, phase: Array) -> Trajectory:
+        """The motion through kinks and impacts. Raises RestsError where it comes to rest on a wall."""
+        n = self.system.expressions.state.numel()
+        switching = Switching(self.system, parameter, self.tolerance)
 
         def sweep(y: Array, along: Array) -> Array:
             found = integrated(self._cvodes(tuple(along)), y, parameter)
@@ -86,13 +99,14 @@ class Flow:
 
         def reset(k: int, tau: float, y: Array) -> Array:
             after = self.system.reset(k, y[None, :n], np.array([tau]), parameter)[0]
+            if switching.rests(k, tau, after):
+                raise RestsError(f"it comes to rest on a wall at tau = {tau:.6g}", tau)
             return self._on_constraints(np.append(after, y[n:]), parameter, tau)
 
         given = reset if self.system.resets else None
         found = self._crossings.follow(sweep, start, phase, parameter, given)
         tau, values = found.with_impacts(phase)
         crossed = [(p.switch, p.before, p.rate) for p in found.crossings]
-        switching = Switching(self.system, parameter, self.tolerance)
         events = switching.along(float(phase[0]), start[:n], crossed) if crossed else ()
         return Trajectory(tau, values[:, :n], values[:, n:], events, events[-1].modes if events else ())
 

@@ -25,6 +25,9 @@ Modes = tuple[int, ...]
 HELD = (Kind.SLIDING, Kind.SLIDER)
 """Kinds of surfaces that may be STUCK."""
 
+LOW = 0.1
+"""Height of a bounce, in tolerances, that is none."""
+
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
 
@@ -102,9 +105,14 @@ class Switching:
         """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
         found = np.zeros(self.system.expressions.sided.side.numel())
         for surface, mode in zip(self.surfaces, modes, strict=True):
-            if surface.kind in HELD and surface.column is not None:
+            if surface.column is not None and (surface.kind in HELD or self._rests(surface, mode)):
                 found[surface.column] = mode
         return found
+
+    @staticmethod
+    def _rests(surface: Surface, mode: int) -> bool:
+        """Whether something is at rest on a wall."""
+        return surface.kind == Kind.IMPACT and mode == STUCK
 
     def guards(self, modes: Modes) -> list[Guard]:
         """Return what is positive in some modes."""
@@ -113,6 +121,8 @@ class Switching:
             if mode == STUCK and surface.releases is not None:
                 up, down = surface.releases
                 found += [Guard(i, up, -1), Guard(i, down, 1)]
+            elif mode == STUCK and surface.leaves is not None:
+                found.append(Guard(i, surface.leaves, -1))
             elif mode:
                 found.append(Guard(i, surface.switch, mode))
         return found
@@ -126,6 +136,8 @@ class Switching:
         """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
         values = self._at((0,) * len(self.surfaces), tau, state)
         modes = tuple(self._first(surface, values) for surface in self.surfaces)
+        lying = (self._settles(surface, values, tau, state) for surface in self.surfaces)
+        modes = tuple(STUCK if lies else mode for mode, lies in zip(modes, lying, strict=True))
         return self.consistent(modes, tau, state)
 
     def _first(self, surface: Surface, values: Array) -> int:
@@ -147,15 +159,34 @@ class Switching:
         new, tossed = list(modes), set()
         for guard in fallen:
             surface, mode = self.surfaces[guard.surface], modes[guard.surface]
-            if surface.kind == Kind.IMPACT:
+            if surface.kind == Kind.IMPACT and mode == STUCK:
+                new[guard.surface] = PLUS
+            elif surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
+                if self._settles(surface, self._at(tuple(new), tau, state), tau, state):
+                    new[guard.surface] = STUCK
             elif surface.kind == Kind.KINK:
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
                 tossed |= {guard.surface} if mode == STUCK else set()
         return self.consistent(tuple(new), tau, state, tossed)
+
+    def rests(self, switch: int, tau: float, state: Array) -> bool:
+        """Return whether what has just struck a wall, by its switch, comes to rest there."""
+        surface = next(each for each in self.surfaces if each.switch == switch)
+        values = self._at((0,) * len(self.surfaces), tau, state)
+        return self._settles(surface, values, tau, state)
+
+    def _settles(self, surface: Surface, values: Array, tau: float, state: Array) -> bool:
+        """Whether what is on a wall bounces no higher than is nothing: it rests, if it is pressed to it."""
+        if surface.leaves is None or values[surface.leaves] >= 0:
+            return False
+        own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+        slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+        height = (slope[own.position] * state[own.velocity]) ** 2 / (-2 * values[surface.leaves])
+        return bool(abs(values[surface.switch]) + height <= LOW * self.tolerance)
 
     def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
         """The modes after an impact, which may turn what slips and tear off what is held."""
@@ -205,7 +236,7 @@ class Switching:
 
     def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
         """The nearest state at which what sticks is at rest, and what is carried at its limit."""
-        rows = []
+        rows, state = [], self._laid(modes, tau, state)
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.kind == Kind.SLIDING and mode == STUCK:
                 rows.append(surface.switch)
@@ -222,6 +253,17 @@ class Switching:
                     own = gradient[row, held.place]
                     gradient[row], gradient[row, held.place] = 0.0, own
         return np.asarray(state - np.linalg.pinv(gradient) @ value)
+
+    def _laid(self, modes: Modes, tau: float, state: Array) -> Array:
+        """The state with what rests on walls just on them, without speed."""
+        state = state.copy()
+        for surface, mode in zip(self.surfaces, modes, strict=True):
+            if self._rests(surface, mode):
+                own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+                slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+                state[own.position] -= self._at(modes, tau, state)[surface.switch] / slope[own.position]
+                state[own.velocity] = 0.0
+        return state
 
     def _at(self, modes: Modes, tau: float, state: Array) -> Array:
         return self._switches(modes, np.array([tau]), state[None])[0]
@@ -254,9 +296,14 @@ class Switching:
             found.append(Event(i, after if impact else -after, after, phase, modes))
         return tuple(found)
 
+    def struck(self, guard: Guard) -> bool:
+        """Whether what has fallen to 0 is an impact."""
+        surface = self.surfaces[guard.surface]
+        return surface.kind == Kind.IMPACT and guard.switch == surface.switch
+
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
         """Return what has happened to the surfaces: changes of mode, and impacts."""
-        struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
+        struck = {guard.surface for guard in fallen if self.struck(guard)}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
 

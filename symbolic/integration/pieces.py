@@ -108,7 +108,7 @@ class Follower:
         """What an event makes of a motion."""
         state, after = self.switching.passed(fallen, modes, at, y[: self.states])
         found, events = self._with(y, state, at), self.switching.events(modes, after, fallen, at)
-        if any(event.before == event.after for event in events):
+        if any(self.switching.struck(guard) for guard in fallen):
             self._found.append((np.array([at, at]), np.array([y, found])))
         self._events += events
         return found, after
