@@ -149,7 +149,7 @@ def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation
     (up, down), guard, found = surface.releases, surface.switch, _about_impacts(system, orbit, surface)
     nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
     if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
-        return []
+        return found
     most = largest(SwitchPolynomials(system, orbit), up, down)
     for j in nodes:
         event, start = orbit.mesh.events[j], orbit.mesh.starts[j]
@@ -185,7 +185,7 @@ def _beside_impact(
     """What keeps the mode of a surface in the interval before or after an impact, at its end there."""
     assert surface.column is not None
     dense, phase = SwitchPolynomials(system, orbit), orbit.phases[node : node + 1]
-    mode = int(dense.modes[interval, surface.column])
+    mode = int(dense.modes[interval, surface.column]) or dense.side(surface.switch)
     values = guards(system, state, phase, orbit.parameter, modes_in(system, orbit, interval))[0]
     return [
         Violation(Breach.MODE, k, node, side, -side * float(values[k]) / largest(dense, k), arriving)

@@ -24,6 +24,9 @@ AFTER = BeltWall(c=0.1, v=0.95, f=0.16, gap=1.9, e=0.5, below=True)
 BEFORE = BeltWall(c=0.1, v=0.15, f=0.5, gap=0.4, e=0.7)
 """It arrives at the wall with the belt's speed, and is let go by it just before an impact, or at it."""
 
+ALONE = BeltWall(c=0.145, v=0.834, f=0.238, gap=0.376, e=0.643, below=True)
+"""Its friction turns just after an impact and nowhere else, and then not at all: it has no event nodes."""
+
 CAUGHT = BeltWall(c=0.17, v=0.5, f=0.43, gap=0.56, e=0.43, below=True)
 """It rebounds with the belt's speed, and is caught from either side."""
 
@@ -82,6 +85,7 @@ def test_orbits_and_multipliers(branch: per.Branch) -> None:
     ("machine", "bounds", "words"),
     [
         (BEFORE, (0.8, 1.8), ["+-M", "+M", "+M+0-M", "+M+0M"]),
+        (ALONE, (0.52, 0.75), ["P-M", "MM"]),
         (CAUGHT, (1.2, 1.8), ["M+-", "M0+-", "P0+-", "P0+0-"]),
     ],
 )
