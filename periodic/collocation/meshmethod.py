@@ -36,9 +36,6 @@ from periodic.system import Kind, System
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
 
-FOLLOWED = 1e-8
-"""Tolerance with which motions are followed in time for their events."""
-
 WRONG = {
     Breach.GRAZED: Outcome.GRAZING,
     Breach.THROUGH: Outcome.THROUGH_STOP,
@@ -117,7 +114,7 @@ class MeshMethod(Discretisation):
         if not held or any(group(system, mesh, k) or k in dict(mesh.modes) for k in held):
             return orbit
         try:
-            return motions.followed(system, orbit, FOLLOWED) or orbit
+            return motions.followed(system, orbit, motions.FOLLOWED) or orbit
         except FAILURES:
             return orbit
 
@@ -151,7 +148,7 @@ class MeshMethod(Discretisation):
     def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            motion = motions.followed(system, orbit, FOLLOWED)
+            motion = motions.followed(system, orbit, motions.FOLLOWED)
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)

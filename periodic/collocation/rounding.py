@@ -67,4 +67,6 @@ def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:
     """The fastest rate of the fundamental matrices (1/rad)."""
     before = spectrum.fundamental[:-1]
     change = np.linalg.norm(np.diff(spectrum.fundamental, axis=0), axis=(1, 2))
-    return float((change / (orbit.grid.width * np.linalg.norm(before, axis=(1, 2)))).max())
+    size = np.linalg.norm(before, axis=(1, 2))
+    known = size > 0  # nothing is left of perturbations beyond a rest on a wall
+    return float((change[known] / (orbit.grid.width[known] * size[known])).max(initial=0.0))

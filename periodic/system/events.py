@@ -44,6 +44,7 @@ class SurfaceLike(Protocol):
     STUCK is held where up < 0 < down, goes on as PLUS where up rises to 0, as MINUS where down falls to 0.
     column: its column in the `side` of `Jumping`, None of a surface that is in none. place: of what may be
     HELD the index of the parameter that says where, and the weights (n,) of states in its deflection (SI).
+    leaves: of an impact on whose wall the motion may rest, STUCK, the switch at whose rise to 0 it leaves.
     """
 
     @property
@@ -58,6 +59,8 @@ class SurfaceLike(Protocol):
     def column(self) -> int | None: ...
     @property
     def place(self) -> tuple[int, tuple[float, ...]] | None: ...
+    @property
+    def leaves(self) -> int | None: ...
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,7 @@ class Surface:
     releases: tuple[int, int] | None = None
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
+    leaves: int | None = None
 
 
 class EventLike(Protocol):

@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.jumps.resting import Resting, walls, with_walls
 from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
@@ -49,6 +50,7 @@ class Expressions:
     switches: ca.SX
     guards: ca.SX
     sliders: dict[int, Held]
+    resting: dict[int, Resting]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -74,10 +76,12 @@ def expressed(assembly: Assembly) -> Expressions:
     switches = packed.scaled([expression for _, expression in assembly.switches])
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
     at = {k: packed.scaled([place]) for k, (_, place) in assembly.places_held.items()}
-    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders), at)
+    free = walls(assembly)
+    beside = sided(packed, residual, switches, resets, telling, (*assembly.sliders, *free), at)
     guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
     first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
     beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
+    beside, guards, resting = with_walls(packed, free, beside, guards)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -98,6 +102,7 @@ def expressed(assembly: Assembly) -> Expressions:
         switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
         guards=guards,
         sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
+        resting=resting,
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

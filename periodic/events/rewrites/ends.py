@@ -80,6 +80,8 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     for reversal in reversals(system, orbit):
         yield Excursion(REVERSAL, reversal.begin)
     for i in tied(system, orbit):
+        if (events[i].switch, STUCK) in events[i].modes:
+            continue
         dense = SwitchPolynomials(system, orbit)
         yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
     for i, first in enumerate(events):
