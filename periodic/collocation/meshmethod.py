@@ -38,9 +38,6 @@ from periodic.system import Kind, System
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
 
-FOLLOWED = 1e-8
-"""Tolerance with which motions are followed in time for their events."""
-
 WRONG = {
     Breach.GRAZED: Outcome.GRAZING,
     Breach.THROUGH: Outcome.THROUGH_STOP,
@@ -119,7 +116,7 @@ class MeshMethod(Discretisation):
         if not held or any(group(system, mesh, k) or k in dict(mesh.modes) for k in held):
             return orbit
         try:
-            return motions.followed(system, orbit, FOLLOWED) or orbit
+            return motions.followed(system, orbit, motions.FOLLOWED) or orbit
         except FAILURES:
             return orbit
 
@@ -163,7 +160,7 @@ class MeshMethod(Discretisation):
     def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            motion = motions.followed(system, orbit, FOLLOWED, before)
+            motion = motions.followed(system, orbit, motions.FOLLOWED, before)
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)

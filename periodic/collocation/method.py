@@ -27,6 +27,7 @@ from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
 from periodic.events.modes import of_held, relays
 from periodic.events.noderows import event_rows
+from periodic.events.resting import neglected
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -157,7 +158,7 @@ class Collocation(MeshMethod):
         error = found.error
         if error is UNKNOWN:
             return error
-        missing = self._misheld(system, orbit, error)
+        missing = max(self._misheld(system, orbit, error), neglected(system, orbit))
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
         unresolved = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unresolved, missing, rounding)

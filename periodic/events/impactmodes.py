@@ -87,7 +87,8 @@ def others(system: System, event: EventNode) -> list[SurfaceLike]:
 
 def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, int], ...]:
     """Return the modes that an impact of an orbit brings about, as its event node has them."""
-    event, found = orbit.mesh.events[index], list[tuple[int, int]]()
+    event = orbit.mesh.events[index]
+    found = [pair for pair in event.modes if pair == (event.switch, STUCK)]  # what comes to rest on the wall
     for surface in others(system, event):
         stated, own = mode_after(surface, event), beside(system, orbit, index, surface)
         if stated == STUCK and abs(own.after) <= AT_LEVEL:

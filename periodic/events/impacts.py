@@ -34,8 +34,8 @@ def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
         return []
     carried = Saltations(system, orbit, own, free)
     interval, x, phase = all_before(orbit, own)
-    switches = [orbit.mesh.events[i].switch for i in own]
-    after, by_state, by_phase, by_parameter = mapped(system, switches, x, phase, orbit.parameter)
+    events = [orbit.mesh.events[i] for i in own]
+    after, by_state, by_phase, by_parameter = mapped(system, events, x, phase, orbit.parameter)
     k, found = len(orbit.phases), list[Jump]()
     for place, index in enumerate(own):
         by_outer = np.zeros((x.shape[1], k + len(free)))

@@ -45,7 +45,7 @@ _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Arra
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
     """Return the surface that a switch is the guard or a release of."""
-    return next(s for s in surfaces_of(system) if switch == s.switch or switch in (s.releases or ()))
+    return next(s for s in surfaces_of(system) if switch in (s.switch, s.leaves, *(s.releases or ())))
 
 
 def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
@@ -113,8 +113,10 @@ def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
     own = dict(event.modes).get(surface.switch)
     if own is not None:
         return own
+    if surface.kind == Kind.IMPACT:
+        return event.direction if event.switch == surface.leaves else None
     passes = event.switch == surface.switch or event.switch in (surface.releases or ())
-    return event.direction if passes and surface.kind != Kind.IMPACT else None
+    return event.direction if passes else None
 
 
 def held_all_along(mesh: Mesh, surface: SurfaceLike) -> bool:
@@ -171,7 +173,7 @@ def _along(mesh: Mesh, surface: SurfaceLike) -> Array:
     found = np.full(mesh.ntst, np.nan if whole is None else whole, dtype=float)
     for j, mode in changes:
         found[j:] = mode
-    return found
+    return found if surface.kind != Kind.IMPACT else np.where(found == STUCK, STUCK, 0.0)
 
 
 def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:

@@ -13,11 +13,13 @@ from typing import cast
 import numpy as np
 
 from periodic.events.heldalong import placed
-from periodic.events.modes import sides, twins
+from periodic.events.modes import of_kind, sides, twins
 from periodic.events.relays import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
-from periodic.events.thresholds import SAME_PHASE
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, SAME_PHASE
+from periodic.events.violations import largest
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
 from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
@@ -38,6 +40,9 @@ from periodic.system import (
 
 PER_PERIOD = 60
 """Intervals in a period of the guess."""
+
+FOLLOWED = 1e-8
+"""Tolerance with which motions are followed in time for their events."""
 
 APART = 1e-5
 """How far from each other (rad) events are put that are one in time, but do not bring each other about."""
@@ -75,7 +80,7 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
     """The event node of what happens at once, the first of which brings the others about."""
     surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
     for event in each:
-        if surfaces[event.surface].kind != Kind.IMPACT and (event is not first or event.after == STUCK):
+        if event.after == STUCK or (surfaces[event.surface].kind != Kind.IMPACT and event is not first):
             modes.append((surfaces[event.surface].switch, event.after))
     switch, direction = _passage(system, surface, first)
     return EventNode(switch, direction, modes=tuple(modes))
@@ -86,13 +91,16 @@ def _rank(surface: SurfaceLike, event: Happened) -> int:
 
     Friction goes before sliders beside it.
     """
-    if surface.kind == Kind.IMPACT:
+    if surface.kind == Kind.IMPACT and event.before != STUCK:
         return 0
     return (3 if event.before == STUCK else 1) + (surface.kind == Kind.SLIDER)
 
 
 def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
     """The switch that passes its level at an event, and the direction."""
+    if surface.kind == Kind.IMPACT and event.before == STUCK:
+        assert surface.leaves is not None
+        return surface.leaves, 1
     if surface.kind == Kind.IMPACT:
         return surface.switch, system.switches[surface.switch].direction
     if event.before == STUCK and surface.releases is not None:
@@ -131,7 +139,7 @@ def orbit_of(
     Raises what the integration raises.
     """
     followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
-    if not followed:
+    if not followed and all(surface.leaves is None for surface in surfaces_of(system)):
         return None
     ends = np.array([begin, begin + FORCED])
     whole = motion_from(system, state, algebraic, parameter, ends, tolerance, before)
@@ -156,14 +164,14 @@ def orbit_of(
 def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
-    It is followed from amid its longest segment, as far from all events as can be, and through some periods
-    `before` that one. It may violate its word: that of the motion does not.
+    It is followed from amid the longest segment in which it is not behind a wall, as far from all events as
+    can be, and through some periods `before` that one. It may violate its word: that of the motion does not.
 
     Raises what the integration raises.
     """
     if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
-    at = np.mod(amid(orbit), FORCED)[None]
+    at = _begin(system, orbit)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
     moving, begin, modes = cast(Moving, system), float(at[0]), _modes(system, orbit, at)
     for _ in range(before):
@@ -182,13 +190,23 @@ def _modes(system: System, orbit: Orbit, at: Array) -> list[int]:
     return [relays.get(s.switch, mode) for s, mode in zip(surfaces_of(system), own, strict=True)]
 
 
+def _begin(system: System, orbit: Orbit) -> Array:
+    """The phase amid the longest segment in which an orbit is not behind a wall; of all if it is in each."""
+    at, walls = np.mod(amid(orbit), FORCED), of_kind(system, Kind.IMPACT)
+    ahead = np.ones(len(at), dtype=bool)
+    for k in (wall.switch for wall in walls):
+        own = -system.switches[k].direction * system.switch(orbit.state(at), at, orbit.parameter)[:, k]
+        ahead &= own >= -AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
+    return np.asarray(at[ahead.argmax()])
+
+
 def amid(orbit: Orbit) -> Array:
-    """Return the phase in the middle of the longest segment; 0 where there are none."""
+    """Return the phases amid the segments, the longest first; 0 where there are none."""
     if not orbit.mesh.events:
-        return np.array(0.0)
+        return np.zeros(1)
     lengths = orbit.mesh.segment_lengths(orbit.phases)
-    longest = int(np.argmax(lengths))
-    return np.array(orbit.phases[longest] + lengths[longest] / 2)
+    order = np.argsort(-lengths, kind="stable")
+    return np.asarray((orbit.phases + lengths / 2)[order])
 
 
 def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:

@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 from periodic.events.modes import modes_in, sides
 from periodic.events.rates import all_before, before, rate_before, rates_at
 from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, guards_gradient, resets_of
+from periodic.system import STUCK, Resetting, System, guards_gradient, resets_of
 from periodic.system.precision import difference_step
 
 STEP = difference_step(order=4)
@@ -59,8 +60,9 @@ class Saltations:
         """
         system, orbit, side = self.system, self.orbit, self._modes
         interval, start = self._intervals
-        switch, each = self._switches, np.arange(len(phase))
-        after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, parameter)
+        events, each = [orbit.mesh.events[i] for i in self.indices], np.arange(len(phase))
+        switch = [event.switch for event in events]
+        after, by_state, by_phase, by_parameter = mapped(system, events, x, phase, parameter)
         arriving = orbit.knot_rates[interval], orbit.algebraic[interval, -1]
         ends = orbit.mesh.scheme.end @ arriving[0]
         old = rates_at(system, parameter, x, ends, arriving[1], phase, side[interval])
@@ -80,10 +82,6 @@ class Saltations:
     def _intervals(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
         start = self.orbit.mesh.starts[list(self.indices)].astype(np.int_)
         return (start - 1) % self.orbit.mesh.ntst, start
-
-    @cached_property
-    def _switches(self) -> list[int]:
-        return [self.orbit.mesh.events[i].switch for i in self.indices]
 
     @cached_property
     def _modes(self) -> Array:
@@ -154,15 +152,35 @@ def at_fixed_phase(
 
 
 def mapped(
-    system: System, switches: Sequence[int], x: Array, phase: Array, parameter: Array
+    system: System, events: Sequence[EventNode], x: Array, phase: Array, parameter: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """x+ (K, n), its derivatives in state, phase and parameters; x- itself where only the equations jump."""
+    """x+ (K, n), its derivatives in state, phase and parameters; x- itself where only the equations jump.
+
+    Of an impact after which it rests on the wall x+ is where x-, r(x-), r(r(x-)), ... tend to: the speed
+    falls to -e times itself each time, so that it is x- + (r(x-) - x-)/(1 + e), whatever e is.
+    """
     count, n = x.shape
     after, by_state = x.copy(), np.tile(np.eye(n), (count, 1, 1))
     by_phase, by_parameter = np.zeros((count, n)), np.zeros((count, n, len(parameter)))
-    for switch in {*switches} & {*resets_of(system)}:
-        own, resetting = np.array(switches) == switch, cast(Resetting, system)
+    switches, resets = np.array([event.switch for event in events]), {*resets_of(system)}
+    for switch in {*switches.tolist()} & resets:
+        own, resetting = switches == switch, cast(Resetting, system)
         after[own] = resetting.reset(switch, x[own], phase[own], parameter)
         slopes = resetting.reset_gradient(switch, x[own], phase[own], parameter)
         by_state[own], by_phase[own], by_parameter[own] = slopes
+    for i, event in enumerate(events):
+        if event.switch not in resets or (event.switch, STUCK) not in event.modes:
+            continue
+        share = 1 / (1 + bounce(system, event.switch, x[i], phase[i], parameter)[1])
+        after[i] = x[i] + share * (after[i] - x[i])
+        by_state[i] = np.eye(n) + share * (by_state[i] - np.eye(n))
+        by_phase[i], by_parameter[i] = 0.0, 0.0
     return after, by_state, by_phase, by_parameter
+
+
+def bounce(system: System, switch: int, x: Array, phase: float, parameter: Array) -> tuple[Array, float]:
+    """Return r(x-) (n,) and the part e of its speed that an impact leaves, by what the next one would."""
+    resetting, at = cast(Resetting, system), np.array([phase])
+    after = resetting.reset(switch, x[None], at, parameter)[0]
+    first, second = after - x, resetting.reset(switch, after[None], at, parameter)[0] - after
+    return after, -float(first @ second) / (float(first @ first) or 1.0)

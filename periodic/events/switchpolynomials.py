@@ -182,6 +182,8 @@ class SwitchPolynomials:
             return self._held(switch, surface, otherwise)
         if surface.kind == Kind.RELAY and surface.column is not None:
             return self.modes[:, surface.column].astype(int)
+        if surface.kind == Kind.IMPACT and switch == surface.leaves:
+            return np.where(self._resting(surface), -1, 0)
         if surface.kind == Kind.IMPACT:
             return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
@@ -189,6 +191,12 @@ class SwitchPolynomials:
         for start, direction in own:
             sides[start:] = direction
         return sides
+
+    def _resting(self, surface: SurfaceLike) -> NDArray[np.bool_]:
+        """In which intervals something rests on a wall."""
+        if surface.column is None:
+            return np.zeros(self.orbit.mesh.ntst, dtype=bool)
+        return self.modes[:, surface.column] == STUCK
 
     def _held(self, switch: int, surface: SurfaceLike, otherwise: int) -> NDArray[np.int_]:
         assert surface.releases is not None and surface.column is not None
@@ -259,6 +267,14 @@ class SwitchPolynomials:
 
     def _ends(self, switch: int) -> list[int]:
         """The intervals at whose begin a switch has an event node, or one of the jump that it belongs to."""
+        surface = surface_of(self.system, switch)
+        if surface.leaves is not None:
+            left = [
+                j
+                for j, e in enumerate(self.orbit.mesh.events)
+                if e.switch in (surface.switch, surface.leaves)
+            ]
+            return [int(self.orbit.mesh.starts[j]) for j in left]
         jump = sliding(self.system, switch)
         if jump is None:
             return list(self._tied(switch))
@@ -312,11 +328,18 @@ class SwitchPolynomials:
                 if e.switch == switch
             ]
             low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
+            low = low[~self._at_rest(along.interval[low], along.theta[low], switch)]
         if sliding(self.system, switch) is not None or switch in relays(self.system):
             at_node = np.isin(along.interval[low], self._ends(switch)) & (along.theta[low] == 0.0)
             there = self.expected(switch, side)[along.interval[low]] == side
             low = low[there & ~at_node]
         return [along.extremum(switch, int(i)) for i in low]
+
+    def _at_rest(self, interval: NDArray[np.int_], theta: Array, switch: int) -> NDArray[np.bool_]:
+        """Which places are at rest on a wall, or where something leaves it."""
+        resting = self._resting(surface_of(self.system, switch))
+        left = resting[interval - 1] & (theta == 0.0)
+        return np.asarray(resting[interval] | left)
 
 
 def _wrapped(phase: float, period: float) -> float:

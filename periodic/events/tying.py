@@ -172,7 +172,8 @@ def _elsewhere(system: System) -> set[int]:
     """The switches whose event nodes are those of impacts, of relays and of what is held."""
     kinds = (Kind.IMPACT, Kind.RELAY)
     special = [s for s in surfaces_of(system) if s.kind in kinds or s.releases is not None]
-    return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
+    found = {k for s in special for k in (s.switch, s.leaves, *(s.releases or ()))}
+    return {k for k in found if k is not None}
 
 
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
@@ -212,9 +213,16 @@ def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float
 
 
 def _held(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
-    """The event nodes of an orbit at which what is held is stopped, released or passed, as they are."""
-    both = zip(orbit.mesh.events, orbit.phases, strict=True)
-    return [(e, float(tau), 1.0) for e, tau in both if surface_of(system, e.switch).releases is not None]
+    """The event nodes of an orbit at which what is held is stopped, released or passed, as they are.
+
+    And those at which what rests on a wall leaves it.
+    """
+    found = []
+    for event, phase in zip(orbit.mesh.events, orbit.phases, strict=True):
+        surface = surface_of(system, event.switch)
+        if surface.releases is not None or event.switch == surface.leaves:
+            found.append((event, float(phase), 1.0))
+    return found
 
 
 def _phase(crossing: Crossing) -> float:

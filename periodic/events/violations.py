@@ -94,6 +94,9 @@ def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) 
         if surface.kind == Kind.IMPACT:
             found += _excursions(own, surface.switch, -system.switches[surface.switch].direction, 1.0)
             found += _through(own, surface.switch)
+            if surface.leaves is not None:
+                most = largest(own, surface.leaves)
+                found += _excursions(own, surface.leaves, -1, most, Breach.MODE)
         elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
             found += _excursions(own, surface.switch, base.side(surface.switch), 1.0)
         elif surface.releases is not None:
@@ -153,7 +156,7 @@ def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     (up, down), guard, found = surface.releases, surface.switch, _about_impacts(system, orbit, surface)
     nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
     if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
-        return []
+        return found
     most = largest(dense, up, down)
     for j in nodes:
         event, start = orbit.mesh.events[j], orbit.mesh.starts[j]
@@ -189,7 +192,7 @@ def _beside_impact(
     """What keeps the mode of a surface in the interval before or after an impact, at its end there."""
     assert surface.column is not None
     dense, phase = SwitchPolynomials(system, orbit), orbit.phases[node : node + 1]
-    mode = int(dense.modes[interval, surface.column])
+    mode = int(dense.modes[interval, surface.column]) or dense.side(surface.switch)
     values = guards(system, state, phase, orbit.parameter, modes_in(system, orbit, interval))[0]
     return [
         Violation(Breach.MODE, k, node, side, -side * float(values[k]) / largest(dense, k), arriving)

@@ -45,6 +45,7 @@ class SurfaceLike(Protocol):
     column: its column in the `side` of `Jumping`, None of a surface that is in none. place: of what may be
     HELD the index of the parameter that says where, and the weights (n,) of states in its deflection (SI).
     alone: whether it may be HELD without one, as the equations determine the motion then.
+    leaves: of an impact on whose wall the motion may rest, STUCK, the switch at whose rise to 0 it leaves.
     """
 
     @property
@@ -61,6 +62,8 @@ class SurfaceLike(Protocol):
     def place(self) -> tuple[int, tuple[float, ...]] | None: ...
     @property
     def alone(self) -> bool: ...
+    @property
+    def leaves(self) -> int | None: ...
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,7 @@ class Surface:
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
     alone: bool = False
+    leaves: int | None = None
 
 
 class EventLike(Protocol):

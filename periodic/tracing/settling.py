@@ -10,7 +10,7 @@ import numpy as np
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
-from periodic.events.motions import motion_from, orbit_of
+from periodic.events.motions import FOLLOWED, motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
@@ -65,7 +65,7 @@ def _integrated(system: System, start: Orbit) -> Orbit | None:
         if not np.isfinite(path.state).all():
             return None
         if found is not None or _closed(path.state):
-            last = path.state[-1], path.algebraic[-1], start.parameter, Accuracy.STANDARD
+            last = path.state[-1], path.algebraic[-1], start.parameter, FOLLOWED
             if (converged := orbit_of(moving, *last, before=getattr(path, "modes", None))) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)

@@ -82,7 +82,7 @@ class Start:
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
-            return self._at_fold(guess, sign, first)
+            return self._read(guess, sign) or self._at_fold(guess, sign, first)
         others = self._other_guesses(guess)
         if slips:
             last = worded(solver, first.orbit, sign)
@@ -111,6 +111,12 @@ class Start:
             if orbit is not None and (last := worded(self.solver, orbit, sign)).ok:
                 return last
         return first
+
+    def _read(self, guess: Orbit, sign: float) -> Solution | None:
+        """The orbit near a guess with the word of its own motion; None where there is none."""
+        changed = self.solver.discretisation.reworded(self.solver.problem.system, guess)
+        found = None if changed is None else worded(self.solver, changed, sign)
+        return found if found is not None and found.ok else None
 
     def why_not(self, outcome: Outcome, parameter: Array) -> str:
         """Say why there is no first orbit at parameters (p,), what was tried, and what else there is."""

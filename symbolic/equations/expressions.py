@@ -18,6 +18,7 @@ import numpy as np
 
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.jumps.relays import decided, in_modes, with_relays
+from symbolic.equations.jumps.resting import Resting, walls, with_walls
 from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
@@ -51,6 +52,7 @@ class Expressions:
     guards: ca.SX
     sliders: dict[int, Held]
     relays: tuple[int, ...]
+    resting: dict[int, Resting]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -78,11 +80,13 @@ def expressed(assembly: Assembly) -> Expressions:
     _check_relays(assembly, outputs)
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
     at = {k: packed.scaled([place]) for k, (_, place) in assembly.places_held.items()}
-    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders), at, modes)
+    free = walls(assembly)
+    beside = sided(packed, residual, switches, resets, telling, (*assembly.sliders, *free), at, modes)
     own = with_relays(packed, assembly.relays, switches, modes, in_modes(switches, switches, modes))
     guards = ca.vertcat(own, *(s for _, *both in beside.slides for s in both))
     first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
     beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
+    beside, guards, resting = with_walls(packed, free, beside, guards)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
@@ -106,6 +110,7 @@ def expressed(assembly: Assembly) -> Expressions:
         guards=guards,
         sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
         relays=tuple(assembly.relays),
+        resting=resting,
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()

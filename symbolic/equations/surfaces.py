@@ -55,6 +55,9 @@ class Surface:
         states in how far it is deflected (SI).
     alone : bool
         Whether it may be HELD without a place, as the equations determine the motion then.
+    leaves : int, optional
+        Of an impact on which the motion may come to rest: the index of the switch that is negative as long as
+        it is pressed to it, and at whose rise to 0 it leaves.
     """
 
     kind: Kind
@@ -64,6 +67,7 @@ class Surface:
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
     alone: bool = False
+    leaves: int | None = None
 
 
 def surfaces(
@@ -75,6 +79,7 @@ def surfaces(
     places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
     relays: Container[int] = (),
     alone: Container[int] = (),
+    leaves: Mapping[int, int] | None = None,
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -96,8 +101,10 @@ def surfaces(
         Those of relays.
     alone : container of int
         Those of sliding that may be HELD without a place.
+    leaves : mapping of int to int, optional
+        Of walls, the switches at which what rests on them leaves.
     """
-    released = {k for pair in slides.values() for k in pair}
+    released = {k for pair in slides.values() for k in pair} | set((leaves or {}).values())
 
     def kind(k: int) -> Kind:
         if k in resets:
@@ -120,6 +127,7 @@ def surfaces(
             jumps.index(k) if k in jumps else None,
             (places or {}).get(k) if k in slides else None,
             k in alone,
+            (leaves or {}).get(k),
         )
         for k, info in enumerate(switches)
         if k not in released

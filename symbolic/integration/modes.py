@@ -1,7 +1,8 @@
 """The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
 
-A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held. A
-relay is on or off, PLUS or MINUS, and its guard another one in either mode.
+A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held,
+what rests on a wall after bounces without number. A relay is on or off, PLUS or MINUS, and its guard another
+one in either mode.
 Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
 sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
 solved by Murty's rule of the least index, which ends where A is a P-matrix.
@@ -23,6 +24,9 @@ from symbolic.integration.field import VectorField
 
 Modes = tuple[int, ...]
 """Of every surface of a system, in their order; 0 of those that have none."""
+
+LOW = 0.1
+"""Height of a bounce, in tolerances, that is none."""
 
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
@@ -107,6 +111,11 @@ class Switching:
                 found[surface.column] = mode
         return found
 
+    @staticmethod
+    def _rests(surface: Surface, mode: int) -> bool:
+        """Whether something is at rest on a wall."""
+        return surface.kind == Kind.IMPACT and mode == STUCK
+
     def guards(self, modes: Modes) -> list[Guard]:
         """Return what is positive in some modes."""
         found = []
@@ -114,6 +123,8 @@ class Switching:
             if mode == STUCK and surface.releases is not None:
                 up, down = surface.releases
                 found += [Guard(i, up, -1), Guard(i, down, 1)]
+            elif mode == STUCK and surface.leaves is not None:
+                found.append(Guard(i, surface.leaves, -1))
             elif mode:
                 found.append(Guard(i, surface.switch, mode))
         return found
@@ -128,6 +139,8 @@ class Switching:
         if earlier is not None:
             each = zip(self.surfaces, modes, earlier, strict=True)
             modes = [before if _stays(surface, before) else mode for surface, mode, before in each]
+        lying = (self._settles(surface, values, tau, state) for surface in self.surfaces)
+        modes = [STUCK if lies else mode for mode, lies in zip(modes, lying, strict=True)]
         return self.consistent(tuple(self._relayed(modes, tau, state)), tau, state)
 
     def _relayed(self, modes: list[int], tau: float, state: Array) -> list[int]:
@@ -157,22 +170,38 @@ class Switching:
 
     def maps(self, fallen: Sequence[Guard]) -> bool:
         """Return whether an event at which some guards have fallen to 0 is an impact, or more than one."""
-        return any(self.surfaces[guard.surface].kind == Kind.IMPACT for guard in fallen)
+        return any(self.struck(guard) for guard in fallen)
 
     def passed(self, fallen: Sequence[Guard], modes: Modes, tau: float, state: Array) -> tuple[Array, Modes]:
         """Return state and modes after an event at which some guards have fallen to 0."""
         new, tossed = list(modes), set()
         for guard in fallen:
             surface, mode = self.surfaces[guard.surface], modes[guard.surface]
-            if surface.kind == Kind.IMPACT:
+            if surface.kind == Kind.IMPACT and mode == STUCK:
+                new[guard.surface] = PLUS
+            elif surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
+                if self._settles(surface, self._at(tuple(new), tau, state), tau, state):
+                    new[guard.surface] = STUCK
             elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
                 tossed |= {guard.surface} if mode == STUCK else set()
         return self.consistent(tuple(self._relayed(new, tau, state)), tau, state, tossed)
+
+    def _settles(self, surface: Surface, values: Array, tau: float, state: Array) -> bool:
+        """Whether what is on a wall bounces no higher than is nothing: it rests, if it is pressed to it.
+
+        What is behind the wall, as by the error of a guess, is laid on it where it does not come out again.
+        """
+        if surface.leaves is None or values[surface.leaves] >= 0:
+            return False
+        own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+        slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+        height = (slope[own.position] * state[own.velocity]) ** 2 / (-2 * values[surface.leaves])
+        return bool(values[surface.switch] + height <= LOW * self.tolerance)
 
     def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
         """The modes after an impact, which may turn what slips and tear off what is held."""
@@ -222,7 +251,7 @@ class Switching:
 
     def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
         """The nearest state at which what sticks is at rest, and what is carried at its limit."""
-        rows = []
+        rows, state = [], self._laid(modes, tau, state)
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.kind == Kind.SLIDING and mode == STUCK:
                 rows.append(surface.switch)
@@ -240,6 +269,17 @@ class Switching:
                     gradient[row], gradient[row, held.place] = 0.0, own
         return np.asarray(state - np.linalg.pinv(gradient) @ value)
 
+    def _laid(self, modes: Modes, tau: float, state: Array) -> Array:
+        """The state with what rests on walls just on them, without speed."""
+        state = state.copy()
+        for surface, mode in zip(self.surfaces, modes, strict=True):
+            if self._rests(surface, mode):
+                own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+                slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+                state[own.position] -= self._at(modes, tau, state)[surface.switch] / slope[own.position]
+                state[own.velocity] = 0.0
+        return state
+
     def _at(self, modes: Modes, tau: float, state: Array) -> Array:
         return self._switches(modes, np.array([tau]), state[None])[0]
 
@@ -247,9 +287,14 @@ class Switching:
         side = np.repeat(self.side(modes)[None], len(phase), axis=0)
         return self.system.switch(state, phase, self.parameter, side)
 
+    def struck(self, guard: Guard) -> bool:
+        """Whether what has fallen to 0 is an impact."""
+        surface = self.surfaces[guard.surface]
+        return surface.kind == Kind.IMPACT and guard.switch == surface.switch
+
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
         """Return what has happened to the surfaces: changes of mode, and impacts."""
-        struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
+        struck = {guard.surface for guard in fallen if self.struck(guard)}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
 

@@ -155,7 +155,9 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
 def _releases(assembly: Assembly, expressions: Expressions) -> list[SwitchInfo]:
     """The switches at which motions stop sliding along jumps."""
     names = [assembly.switches[k][0].name for k, *_ in expressions.sided.slides]
-    return [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
+    found = [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
+    walls = [assembly.switches[k][0].name for k in expressions.resting]
+    return [*found, *(SwitchInfo(f"{name}: leaves", 1) for name in walls)]
 
 
 def _held(assembly: Assembly) -> tuple[Held, ...]:

@@ -259,7 +259,7 @@ class CompiledSystem:
     def slides(self) -> dict[int, tuple[int, int]]:
         """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""
         switches = [k for k, *_ in self.expressions.sided.slides]
-        first = len(self.switches) - 2 * len(switches)
+        first = len(self.switches) - 2 * len(switches) - len(self.expressions.resting)
         found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
         found |= {k: held.releases for k, held in self.expressions.sliders.items()}
         return dict(sorted(found.items()))
@@ -269,7 +269,8 @@ class CompiledSystem:
         """What happens where the switches vanish; each of them belongs to one surface."""
         e = self.expressions
         own = (self.switches, self.resets, self.jumps, self.slides, e.sliders)
-        return surfaces(*own, self._places, e.relays, e.sided.alone)
+        leaves = {k: resting.leaves for k, resting in e.resting.items()}
+        return surfaces(*own, self._places, e.relays, e.sided.alone, leaves)
 
     @property
     def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:

@@ -82,7 +82,8 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     for reversal in reversals(system, orbit):
         yield Excursion(REVERSAL, reversal.begin)
     switched = [i for i, event in enumerate(events) if event.switch in relays(system)]
-    for row, i in [*((IMPACT, i) for i in tied(system, orbit)), *((RELAY, i) for i in switched)]:
+    struck = [i for i in tied(system, orbit) if (events[i].switch, STUCK) not in events[i].modes]
+    for row, i in [*((IMPACT, i) for i in struck), *((RELAY, i) for i in switched)]:
         dense = SwitchPolynomials(system, orbit)
         yield Excursion(row, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
     for i, first in enumerate(events):

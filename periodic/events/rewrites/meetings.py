@@ -82,7 +82,8 @@ def leading(impact: EventNode, surface: SurfaceLike, earlier: int, later: int) -
 
 def _mode_before(system: System, orbit: Orbit, surface: SurfaceLike, node: int) -> int:
     assert surface.column is not None
-    return int(sides(system, orbit)[before(orbit, node)[0], surface.column])
+    mode = int(sides(system, orbit)[before(orbit, node)[0], surface.column])
+    return mode or SwitchPolynomials(system, orbit).side(surface.switch)
 
 
 def begun(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site | None:
