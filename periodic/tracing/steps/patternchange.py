@@ -159,7 +159,11 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
-        if apart <= max(FARTHEST_BEYOND, ACROSS * at.ds) and problem.low <= new.value <= problem.high:
+        swaps = not (at.change.touches or way.touches)  # beside what touches a fold may be near
+        if (
+            apart <= (max(FARTHEST_BEYOND, ACROSS * at.ds) if swaps else FARTHEST_BEYOND)
+            and problem.low <= new.value <= problem.high
+        ):
             return Crossed(new, apart, way.touches)
     return None
 

@@ -90,9 +90,10 @@ def lost_contact() -> Orbit:
 
 
 def brief_contact() -> Orbit:
-    """An orbit just beyond a touch, of whose excursion the constraint takes the length."""
+    """An orbit just beyond a touch, of whose excursion the constraint takes the length, a milliradian or more."""
     orbits = [p.orbit for p in per.trace(compiled("stop"), "Omega", (0.7, 1.8)) if len(p.orbit.phases)]
-    return min(orbits, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())
+    brief = [orbit for orbit in orbits if orbit.mesh.segment_lengths(orbit.phases).min() > 5e-4]
+    return min(brief, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())
 
 
 def sticking() -> Orbit:
