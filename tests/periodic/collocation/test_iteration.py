@@ -90,7 +90,7 @@ def lost_contact() -> Orbit:
 
 
 def brief_contact() -> Orbit:
-    """An orbit just beyond a touch, of whose excursion the constraint takes the length, a milliradian or more."""
+    """An orbit just beyond a touch, of whose excursion, a milliradian, the constraint takes the length."""
     orbits = [p.orbit for p in per.trace(compiled("stop"), "Omega", (0.7, 1.8)) if len(p.orbit.phases)]
     brief = [orbit for orbit in orbits if orbit.mesh.segment_lengths(orbit.phases).min() > 5e-4]
     return min(brief, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())
