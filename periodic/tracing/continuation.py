@@ -36,10 +36,6 @@ from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
-RELENTING = 2
-"""Rejected steps after which each is shortened by a higher power than the one before: orbits on a mesh may
-exist for so short a way only, as beside a grazing, that there would be dozens."""
-
 NEARLY = 1e-2
 """Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
 not resolve, or towards a change that no special point accounts for."""
@@ -279,7 +275,7 @@ class Continuation:
         worded: whether that is so at once where an orbit is met that violates its word, which may be read.
         """
         assert self.state is not None
-        self.stop, self._unread, tried_before = None, False, 0
+        self.stop, self._unread = None, False
         ds, begin, origin = self.state.ds, self.state.begun.value, base
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
@@ -301,8 +297,7 @@ class Continuation:
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change)
             except RejectedError as rejected:
-                tried_before += 1
-                longest = ds = ds * rejected.shorter ** max(1, tried_before - RELENTING)
+                longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
                 self._unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min

@@ -14,7 +14,6 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
-from periodic.refinement.adaptation import MOST_MESHES
 from periodic.system.precision import CONVERGED
 
 FARTHEST_AHEAD = 1.2
@@ -29,6 +28,9 @@ FARTHEST_BEYOND = 0.02
 ACROSS = 2.0
 """... or in the last step, in which what ends has become half as large at least: beyond, two events that have
 changed places are as far apart again."""
+
+MESHES_BEYOND = 4
+"""How often the mesh of the orbit beyond a change is made anew."""
 
 CHANGES_IN_A_STEP = 8
 """Most changes of the pattern that are tried as the first one in a step."""
@@ -173,7 +175,7 @@ def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solu
 
     Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
     """
-    for _ in range(MOST_MESHES):
+    for _ in range(MESHES_BEYOND):
         if not found.ok or found.error.curable <= solver.tolerance.orbit:
             break
         mesh = found.refinement.refined()
