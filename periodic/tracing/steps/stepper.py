@@ -113,8 +113,7 @@ class Stepper:
         furthest = 0.0
         for ratio in bound_ratios(base, new, length, control, solver.tolerance.orbit):
             if not ratio.size <= 1:
-                part = min(length / ds, 1.0)  # a shorter step would end at the change again
-                raise RejectedError(ratio.why, part * control.shorter(ratio.size))
+                raise RejectedError(ratio.why, control.shorter(ratio.size))
             furthest = max(furthest, ratio.ahead)
         if new.orbit.equilibrium:
             self._check_middle(base, new, length)
