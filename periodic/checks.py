@@ -1,4 +1,4 @@
-"""What users give, refused in one sentence that names the field, the value and what is allowed."""
+"""Checks of what users give: one sentence names the field, the value and what is allowed."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 
 class UnknownNameError(KeyError):
-    """A name that is none of those there are; a sentence says which."""
+    """A name that does not exist; the sentence lists those that do."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 class ByName(dict[str, float]):
-    """Numbers by name; for another name the error says which there are.
+    """Numbers by name; for another name the error lists the names.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class ByName(dict[str, float]):
 
 
 def number(name: str, value: Any) -> float:
-    """Return a real number, not finite ones included. Raises ValueError for what is none."""
+    """Return a real number, infinities and NaN included. Raises ValueError for what is none."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         raise ValueError(f"{name} is {value!r}; it must be a number")
     return float(value)

@@ -43,9 +43,9 @@ from .parts.rotors.internal import InternalDamping
 from .parts.rotors.rub import Rub
 from .parts.rotors.unbalance import Unbalance
 from .parts.structure import Structure
+from .scenes.compiling import scene
 from .scenes.errors import InputError
 from .scenes.laws import register_contact_law
-from .scenes.loading import scene
 from .scenes.model.catalogue import register_part
 from .scenes.names import scene_names
 from .structures.beam import beam

@@ -14,6 +14,8 @@ from typing import Any, TypeVar
 import casadi as ca
 import numpy as np
 
+from symbolic import relays
+
 __all__ = [
     "acos",
     "asin",
@@ -31,6 +33,7 @@ __all__ = [
     "if_else",
     "interp",
     "log",
+    "relay",
     "sign",
     "sin",
     "sinh",
@@ -229,6 +232,37 @@ def tan(x: Any) -> Any:
 @elementary(ca.tanh, np.tanh)
 def tanh(x: Any) -> Any:
     """Return the hyperbolic tangent of x, a smooth sign."""
+
+
+def relay(u: Any, on: Any, off: Any, low: Any = 0.0, high: Any = 1.0) -> Any:
+    """Return `high` from where u has risen through `on`, and `low` from where it has fallen through `off`.
+
+    Between the thresholds a relay keeps what it is; a motion that begins there begins with `low`. Where it
+    switches is an event of the motion. A thermostat heats what has become colder than `off` until it is
+    warmer than `on`: low=1, high=0.
+
+    Parameters
+    ----------
+    u : expression
+        What is compared, a function of states, phase and parameters.
+    on, off : expression or float
+        The upper and the lower threshold, off < on.
+    low, high : expression or float
+        The values below and above.
+
+    Returns
+    -------
+    expression
+        Its value. It is one of a model at work: a relay is called in equations, not of numbers.
+
+    Raises
+    ------
+    ValueError
+        Outside of a model's equations, and for what is no expression or number.
+    """
+    symbol = relays.symbol_of(u, on, off)
+    below, above = relays.expression("low", low), relays.expression("high", high)
+    return below + (above - below) * (1 + symbol) / 2
 
 
 def interp(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:

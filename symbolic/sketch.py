@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import casadi as ca
 
-APART = 2.7
+BETWEEN_BODIES = 2.7
 """Distance between the drawings of bodies that are drawn beside each other."""
 
 BODY = 0.6
@@ -141,7 +141,7 @@ class Sketch:
         found: list[Mapping[str, Any]] = []
         for shape in (*shapes, *blocks):
             group = (shape.structure,) if shape.structure else tuple(q.name for q in shape.of)
-            shift = places.setdefault(group, APART * len(places))
+            shift = places.setdefault(group, BETWEEN_BODIES * len(places))
             plain = {
                 "kind": shape.kind,
                 "of": [q.name for q in shape.of],

@@ -5,15 +5,15 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Sequence
 
-MANY = 12
+MOST_LISTED = 12
 """Most names that a list gives, and most rows of a table that is not folded up."""
 
 
 def listed(names: Iterable[str]) -> str:
     """Return names in one line; of more than MANY the first and their number."""
     known = list(names)
-    shown = ", ".join(known[:MANY]) or "none"
-    return shown if len(known) <= MANY else f"{shown}, ... ({len(known)})"
+    shown = ", ".join(known[:MOST_LISTED]) or "none"
+    return shown if len(known) <= MOST_LISTED else f"{shown}, ... ({len(known)})"
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> str:
@@ -26,5 +26,5 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = "
         for row in rows
     )
     inner = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-    opened = " open" if len(rows) <= MANY else ""
+    opened = " open" if len(rows) <= MOST_LISTED else ""
     return f"<details{opened}><summary>{html.escape(title)} ({len(rows)})</summary>{inner}</details>"

@@ -20,7 +20,7 @@ from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
-NEARER = (1 / 8, 1 / 64, 1 / 256, 1 / 512)
+BRACKETS = (1 / 8, 1 / 64, 1 / 256, 1 / 512)
 """Distance from the crossing at which orbits are solved for in each round, as parts of the interval."""
 
 
@@ -33,7 +33,7 @@ def crossing(
     """
     known = {end: within.at(end).once(test.value) for end in ends}
     place, length = _root(known, *ends), ends[1] - ends[0]
-    for part in NEARER:
+    for part in BRACKETS:
         sides = place - part * length, place + part * length
         try:
             known |= {side: within.at(side, nearest=True).once(test.value) for side in sides}

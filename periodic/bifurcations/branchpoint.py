@@ -21,11 +21,11 @@ def branching(solution: Solution) -> float:
     return product_test(spectrum.nontrivial, 1) if spectrum.known else 0.0
 
 
-def touches(turn: Solution, base: Solution, new: Solution) -> bool:
-    """Whether a multiplier comes to 1 at a turn between two orbits and goes back, as far as can be told."""
+def touches(fold: Solution, base: Solution, new: Solution) -> bool:
+    """Whether a multiplier comes to 1 at a fold between two orbits and goes back, as far as can be told."""
     values = [branching(end) for end in (base, new)]
-    if turn.problem.trivial > 1:  # no other multiplier passes 1 at a turn
-        return abs(branching(turn)) < TOUCHED * min(map(abs, values))
+    if fold.problem.trivial > 1:  # no other multiplier passes 1 at a fold
+        return abs(branching(fold)) < TOUCHED * min(map(abs, values))
     if values[0] * values[1] < 0:
         return False
     return all(np.abs(end.spectrum.nontrivial - 1).min(initial=np.inf) > noise(end) for end in (base, new))

@@ -1,36 +1,36 @@
-"""LP: folds (limit points, saddle-nodes), where the branch turns: d parameter / d arclength = 0."""
+"""LP: folds (limit points, saddle-nodes), where the parameter reverses: d parameter / d arclength = 0."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.testfunction import LEFT, TestFunction
+from periodic.bifurcations.testfunction import PARABOLA_LEFT, TestFunction
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import size_of
 
-VERTICAL = 1e-10
+LEAST_SLOPE = 1e-10
 """Slopes smaller than this, in ranges of the parameter, are rounding."""
 
 
-STEEP = 1e-5
-"""Slopes smaller than this, in ranges of the parameter, are those of a turn or of a vertical stretch."""
+VERTICAL = 1e-5
+"""Slopes smaller than this, in ranges of the parameter, are those of a fold or of a vertical branch."""
 
-REACH = 0.005
-"""A turn in a vertical stretch is one if the parameter changes by more than its error in a step as long."""
+FOLD_ARCLENGTH = 0.005
+"""On a vertical branch a fold is one if the parameter changes by more than its error over this arclength."""
 
 
 def slope(solution: Solution) -> float:
     """d parameter / d arclength; 0 where the branch is vertical."""
     found = solution.tangent.parameter
-    return found if abs(found) > VERTICAL * solution.problem.scale else 0.0
+    return found if abs(found) > LEAST_SLOPE * solution.problem.scale else 0.0
 
 
-def turns_twice(base: Solution, new: Solution) -> bool:
-    """Whether the parameter may turn and turn back within a step.
+def has_two_folds(base: Solution, new: Solution) -> bool:
+    """Whether the parameter may reverse twice within a step.
 
-    Its slope is about a parabola of the way, of which the values at the ends and the mean are known.
+    Its slope is about a parabola in the arclength, of which the end values and the mean are known.
     """
     way = difference(base.problem, base.orbit, new.orbit)
     mean = way.parameter / base.tangent.dot(
@@ -38,32 +38,32 @@ def turns_twice(base: Solution, new: Solution) -> bool:
     )
     ends = np.array([base.tangent.parameter, new.tangent.parameter])
     sign = np.sign(ends[0])
-    return bool(sign * (1.5 * mean - ends.mean() / 2) < LEFT * np.abs(ends).min())
+    return bool(sign * (1.5 * mean - ends.mean() / 2) < PARABOLA_LEFT * np.abs(ends).min())
 
 
 def moves(base: Solution, new: Solution) -> float:
-    """Return what the parameter changes by between two solutions beyond what it is known to (SI).
+    """Return by how much the parameter changes between two solutions, less its error (SI).
 
-    Where the branch is vertical, as in a canard explosion, that is its error across the branch.
+    The error is that across the branch where it is vertical, as in a canard explosion.
     """
     return max(abs(new.value - base.value) - _blur(base, new), 0.0)
 
 
-def turns(base: Solution, new: Solution, ds: float) -> bool:
-    """Whether a slope that changes sign within a step is more than an error of the parameter along it.
+def has_fold(base: Solution, new: Solution, ds: float) -> bool:
+    """Whether a change of sign of the slope within a step is a fold, or error of the parameter.
 
-    It is if the arc rises above its chord by more than that.
+    It is a fold if the arc rises above its chord by more than that error.
     """
     bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
-    return bend * max(ds, REACH) ** 2 / 8 > _blur(base, new)
+    return bend * max(ds, FOLD_ARCLENGTH) ** 2 / 8 > _blur(base, new)
 
 
 def _blur(base: Solution, new: Solution) -> float:
     scale = base.problem.scale
-    if max(abs(end.tangent.parameter) for end in (base, new)) > STEEP * scale:
-        return VERTICAL * scale
+    if max(abs(end.tangent.parameter) for end in (base, new)) > VERTICAL * scale:
+        return LEAST_SLOPE * scale
     return max(end.error.blur(end.value, scale) for end in (base, new))
 
 
-FOLD = TestFunction(label=Label.FOLD, value=slope, twice=turns_twice)
-"""Its parameter is second order in its place; those of the others are first order."""
+FOLD = TestFunction(label=Label.FOLD, value=slope, twice=has_two_folds)
+"""The error of its parameter is of second order in that of its place; of other points of first order."""

@@ -28,7 +28,7 @@ NTST = 24
 ON_AXIS = 1e-4
 """Largest real part of a pair that counts as imaginary, as a part of its modulus."""
 
-NEARER = (1.0, 0.25, 1 / 16)
+FIRST_LENGTHS = (1.0, 0.25, 1 / 16)
 """Where the first orbit is looked for, in units of FIRST_DISTANCE."""
 
 
@@ -183,7 +183,7 @@ def _oscillation(
     origin = constant(uniform(Scheme(), NTST), orbit.nodes[0], orbit.algebraic[0, 0], values, orbit.layout)
     direction = _linear(system, at_rest, origin)
     last: SwitchError | None = None
-    for length in [FIRST_DISTANCE * part for part in NEARER] if distance is None else [distance]:
+    for length in [FIRST_DISTANCE * part for part in FIRST_LENGTHS] if distance is None else [distance]:
         try:
             return switched(system, origin, direction, parameter, determined, length)
         except SwitchError as error:

@@ -1,8 +1,8 @@
 """The ledger of a branch: what changes from point to point, and the labelled points that account for it.
 
 Between two points whose stability is known the number of unstable multipliers changes by as many as the
-labelled points between them let pass, and the parameter turns where one of them says so. What they do not
-account for has been passed unseen.
+labelled points between them stand for, and the parameter reverses at folds alone. Changes that they do not
+account for are points that were missed.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from itertools import pairwise
 import numpy as np
 
 from periodic.bifurcations.doubling import known as known_spectrum
-from periodic.bifurcations.fold import STEEP
+from periodic.bifurcations.fold import VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
 
 CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
@@ -95,10 +95,10 @@ class Entry:
     def _outside(growth: np.ndarray, noise: float) -> set[int]:
         return set(range(int((growth > noise).sum()), int((growth >= -noise).sum()) + 1))
 
-    def after(self, before: set[int], turns: bool = False) -> set[int]:
+    def after(self, before: set[int], folds: bool = False) -> set[int]:
         """How many may lie outside after the point, of those that may before it; none is a contradiction.
 
-        turns: whether the parameter turns from the point before it to the one after it.
+        folds: whether the parameter reverses between the point before it and the one after it.
         """
         if self.label is Label.END:  # a branch that was begun at a special point may change there
             return self.unstable if before & self.unstable else set()
@@ -111,7 +111,7 @@ class Entry:
             return {n + side * crossing for n in before for side in (-1, 1)}
         few = self.beside
         more = {count + crossing for count in few}
-        stay = self.label is Label.BRANCH and (turns or abs(self.slope) <= STEEP)  # mu touches 1
+        stay = self.label is Label.BRANCH and (folds or abs(self.slope) <= VERTICAL)  # mu touches 1
         up, down = {n + crossing for n in before & few}, {n - crossing for n in before & more}
         return up | down | (before & (few | more) if stay else set())
 
@@ -126,7 +126,7 @@ def growth(multipliers: Complex, equilibrium: bool) -> np.ndarray:
 
 def noise(error: ErrorEstimate, multipliers: Complex) -> float:
     """Return what log |mu| near 0 is known to."""
-    return CONSERVED * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDING
+    return ERRORS_FROM_ONE * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDED_ONE
 
 
 def entry(solution: Solution, label: Label) -> Entry:
@@ -157,24 +157,24 @@ class Gap:
         return f"between {self.begin:.10g} and {self.end:.10g} {self.why}"
 
 
-def gaps(entries: Sequence[Entry], turns: bool = True) -> list[Gap]:
+def gaps(entries: Sequence[Entry], folds: bool = True) -> list[Gap]:
     """Return what is not accounted for between the points of a branch, in order along it.
 
-    turns: whether turns of the parameter have labels there, as folds of a branch have. One that is named at a
+    folds: whether folds in the parameter have labels there, as folds of a branch have. One that is named at a
     grazing may lie just before it.
     """
-    entries, found = _on_touches(entries), []
+    entries, found = _with_grazings(entries), []
     folded = {entry.value for entry in entries if entry.grazing and entry.label is Label.FOLD}
-    both = zip(pairwise(entries), pairwise(counts(entries)), _turning(entries)[1:], strict=True)
-    for (last, entry), (before, after), turning in both:
-        if not entry.after(before, turning):
+    both = zip(pairwise(entries), pairwise(counts(entries)), _folding(entries)[1:], strict=True)
+    for (last, entry), (before, after), folding in both:
+        if not entry.after(before, folding):
             found.append(Gap(last.value, entry.value, _passed(before, after, entry.label)))
-        elif turns and entry.value not in folded and _turned(last, entry):
+        elif folds and entry.value not in folded and _reversed(last, entry):
             found.append(Gap(last.value, entry.value, "the parameter turns without a labelled point"))
     return found
 
 
-def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
+def _with_grazings(entries: Sequence[Entry]) -> list[Entry]:
     """The entries, those at a grazing marked so: a GR, and what is named right after it at the same orbit."""
     found: list[Entry] = []
     for entry in entries:
@@ -186,25 +186,25 @@ def _on_touches(entries: Sequence[Entry]) -> list[Entry]:
 
 def counts(entries: Sequence[Entry]) -> list[set[int]]:
     """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
-    entries = _on_touches(entries)
+    entries = _with_grazings(entries)
     found = [entry.after(set(range(len(entry.growth) + 1))) for entry in entries[:1]]
-    for entry, turning in zip(entries[1:], _turning(entries)[1:], strict=True):
-        found.append(entry.after(found[-1], turning) or entry.unstable)
+    for entry, folding in zip(entries[1:], _folding(entries)[1:], strict=True):
+        found.append(entry.after(found[-1], folding) or entry.unstable)
     return found
 
 
-def _turning(entries: Sequence[Entry]) -> list[bool]:
+def _folding(entries: Sequence[Entry]) -> list[bool]:
     """Whether the parameter goes one way at the point before each and the other way at the one after it."""
     slopes = [entry.slope for entry in entries]
     inner = [before * after < 0 for before, after in zip(slopes, slopes[2:], strict=False)]
     return [False, *inner, False][: len(slopes)]
 
 
-def _turned(last: Entry, entry: Entry) -> bool:
+def _reversed(last: Entry, entry: Entry) -> bool:
     """Whether the parameter does not go from one point to the next as it does at both."""
     moved = entry.value - last.value
     way = [moved] if abs(moved) > max(last.blur, entry.blur) else []
-    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > STEEP]
+    way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > VERTICAL]
     return len({bool(direction > 0) for direction in way}) > 1
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.bifurcations.fold import VERTICAL
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
@@ -17,14 +18,11 @@ from periodic.orbit.scheme import Array
 
 Complex = NDArray[np.complex128]
 
-CONSERVED = 1e-12
+NO_DAMPING = 1e-12
 """Sums of two eigenvalues this small, in parts of the largest one, are 0: energy is conserved."""
 
-LIGHT = 0.1
+LIGHTLY_DAMPED = 0.1
 """Damping ratio below which a pair may cross the imaginary axis and come back within a step."""
-
-VERTICAL = 1e-5
-"""A branch of smaller slope, in ranges of the parameter, turns."""
 
 
 def hopf(solution: Solution) -> float:
@@ -36,7 +34,7 @@ def balance(found: Complex) -> float:
     """prod over i < j of (lambda_i + lambda_j) / (|lambda_i| + |lambda_j|); 0 where energy is conserved."""
     first, second = np.triu_indices(len(found), 1)
     sums = found[first] + found[second]
-    if (np.abs(sums) <= CONSERVED * np.abs(found).max(initial=0.0)).any():
+    if (np.abs(sums) <= NO_DAMPING * np.abs(found).max(initial=0.0)).any():
         return 0.0
     return float(np.prod(sums / (np.abs(found[first]) + np.abs(found[second]))).real)
 
@@ -55,7 +53,7 @@ def _crosses_twice(base: Solution, new: Solution) -> bool:
     for a in before if len(after) else ():
         b = after[np.abs(after - a).argmin()]
         real = min(abs(a.real), abs(b.real))
-        if real < max(LIGHT * abs(a), abs(a - b)):
+        if real < max(LIGHTLY_DAMPED * abs(a), abs(a - b)):
             return True
     return False
 
@@ -96,9 +94,9 @@ def _on_its_way(solution: Solution) -> bool:
     return abs(solution.tangent.parameter) > VERTICAL * solution.problem.scale
 
 
-def crosses(turn: Solution, base: Solution, new: Solution) -> bool:
+def crosses(fold: Solution, base: Solution, new: Solution) -> bool:
     """Whether two branches cross where one of them turns."""
-    return branching(base) * branching(new) < 0 and is_crossed(turn)
+    return branching(base) * branching(new) < 0 and is_crossed(fold)
 
 
 def is_crossed(solution: Solution) -> bool:

@@ -20,15 +20,12 @@ from periodic.equilibrium.linearise import linearise
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.mesh import Mesh
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
 FIRST_DISTANCE = 0.02
 """Distance of the first orbit of the new branch from the old one, in peak-to-peak values of the orbit."""
-
-NO_SIZE = 1e-6
-"""Orbits that are smaller than this (scaled) stay at rest; states of order one then tell how far that is."""
 
 
 class SwitchError(ArithmeticError):
@@ -122,15 +119,15 @@ def branched(
     """
     orbit = as_read_by(system, orbit)
     if orbit.equilibrium:
-        across = _across(system, orbit, index_of(system, parameter), leaving)
-        return switched(system, orbit, across, parameter, determined or {}, distance)
+        other_tangent = _other_tangent(system, orbit, index_of(system, parameter), leaving)
+        return switched(system, orbit, other_tangent, parameter, determined or {}, distance)
     autonomous = any(c.trivial for c in (determined or {}).values())
     orbit = orbit.collocated()
     direction = away(system, orbit, 1, autonomous)
     return switched(system, orbit, direction, parameter, determined or {}, distance)
 
 
-def _across(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Increment:
+def _other_tangent(system: System, orbit: Orbit, index: int, leaving: Orbit | None) -> Increment:
     """The tangent of the other branch of equilibria at a branch point."""
     found = tangents(system, orbit, index)
     if not found:
@@ -186,7 +183,7 @@ def switched(
     """
     free = tuple(index_of(system, name) for name in (parameter, *determined))
     size = origin.span()
-    length = FIRST_DISTANCE * (size if size > NO_SIZE else 1.0) if distance is None else distance
+    length = FIRST_DISTANCE * (size if size > LEAST_SPAN else 1.0) if distance is None else distance
     parameters = np.append(direction.parameter, np.zeros(len(determined)))
     unit = 1 / float(np.sqrt(direction.dot(direction, origin, 1.0)))
     direction = replace(direction, parameters=parameters).scaled(unit)
@@ -242,8 +239,8 @@ def away(system: System, orbit: Orbit, multiplier: int, autonomous: bool) -> Inc
     if autonomous and multiplier == 1:  # across the flow
         flow = np.zeros_like(orbit.nodes)
         flow[0] = orbit.node_rates[0]
-        across = closed.functional(Row(0.0, flow, np.zeros(len(orbit.phases))))
-        matrix = np.concatenate([matrix, across[None] / np.linalg.norm(across)])
+        other_tangent = closed.functional(Row(0.0, flow, np.zeros(len(orbit.phases))))
+        matrix = np.concatenate([matrix, other_tangent[None] / np.linalg.norm(other_tangent)])
     found = closed.tangent(np.linalg.svd(matrix)[2][-1])
     still = np.zeros(len(orbit.phases))
     return Increment(found.nodes, found.stages, found.algebraic, still, np.zeros(1), found.nodes)

@@ -17,8 +17,8 @@ from periodic.correction.solution import Solution
 PRECISION = 1e-10
 """Error to which a place along the branch is located, in steps."""
 
-LEFT = 0.5
-"""A function whose parabola keeps this part of the least value at the ends does not change sign in a step."""
+PARABOLA_LEFT = 0.5
+"""A function does not change sign in a step if its parabola keeps this part of the least end value."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,17 +36,17 @@ class TestFunction:
     genuine : callable
         Whether the zero found is of that kind.
     twice : callable
-        Whether the function may change sign twice between two solutions at which it has the same.
+        Whether the function may change sign twice between two solutions at which its signs are equal.
     dips : callable
-        Places, as parts of the step, where it may do so, and its values there if it does not; by default
-        where a parabola would touch 0.
+        Places, as parts of the step, between which it may do so, and the values expected there if it does
+        not; by default where a parabola would touch 0.
     local : callable, optional
-        A function of the same sign that is to be followed there, smooth about a change of sign.
+        A function of the same sign to be used near a zero, as it is smooth there.
     sharp : callable, optional
-        The same function without the threshold below which `value` is set to 0: a certain change of sign is
-        located by it.
+        The same function without the threshold below which `value` is set to 0; it locates a change of sign
+        that is certain.
     touches : callable
-        Whether a turn of the branch, between a base and a new solution, is of that kind.
+        Whether a fold of the branch, between a base and a new solution, is of that kind.
     singular : bool
         Whether branches cross where it vanishes, so that the equations are singular there.
     name : str
@@ -61,18 +61,18 @@ class TestFunction:
     dips: Callable[[Solution, Solution], list[tuple[float, float]]] = lambda base, new: []
     local: Callable[[Solution], float] | None = None
     sharp: Callable[[Solution], float] | None = None
-    touches: Callable[[Solution, Solution, Solution], bool] = lambda turn, base, new: False
+    touches: Callable[[Solution, Solution, Solution], bool] = lambda fold, base, new: False
     singular: bool = False
     name: str = ""
 
     @property
     def key(self) -> str:
-        """What tells it from others along a branch."""
+        """Its name among the test functions of a branch."""
         return f"{self.label} {self.name}"
 
     @property
     def placed(self) -> Callable[[Solution], float]:
-        """The function whose zero is sought within a change of sign."""
+        """The function whose zero is located."""
         return self.sharp or self.value
 
     def margin(self, solution: Solution) -> float:
@@ -101,7 +101,7 @@ class Course:
     """The margins at the solution before the base of a step, at a distance `gone`.
 
     A parabola through the values there and at both ends of the step tells how near to 0 a function comes in
-    between, also where it is the same at both ends.
+    between, also where it has the same sign at both ends.
 
     Parameters
     ----------
@@ -125,4 +125,4 @@ class Course:
         bend = (rise - (begin - before) / self.gone) / (ds + self.gone)
         place = (ds - rise / bend) / 2 if bend > 0 else math.inf
         least = begin + place * (rise + bend * (place - ds)) if 0 < place < ds else math.inf
-        return least < LEFT * min(begin, end)
+        return least < PARABOLA_LEFT * min(begin, end)

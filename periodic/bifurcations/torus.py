@@ -11,16 +11,14 @@ from periodic.bifurcations.doubling import known
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.stability.multipliers import CONSERVED, ROUNDING, Complex
+from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
 from periodic.stability.winding import meetings
-
-LARGE = 1e300
-"""Multipliers' products are at most this."""
+from periodic.system.precision import LARGEST
 
 
 def noise(solution: Solution) -> float:
     """What multipliers cannot be told apart by."""
-    return CONSERVED * solution.error.multiplier + ROUNDING
+    return ERRORS_FROM_ONE * solution.error.multiplier + ROUNDED_ONE
 
 
 def torus(solution: Solution) -> float:
@@ -45,14 +43,14 @@ def _both(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def _products(found: Complex) -> Complex:
-    """The products of all pairs, those beyond LARGE given as that."""
+    """The products of all pairs, those beyond LARGEST given as that."""
     first, second = _both(len(found))
     sizes = np.abs(found)
-    if sizes.max(initial=0.0) <= np.sqrt(LARGE):
+    if sizes.max(initial=0.0) <= np.sqrt(LARGEST):
         return np.asarray(found[first] * found[second])
     known = np.maximum(sizes, np.finfo(float).tiny)
     logarithms, phases = np.log(known), found / known
-    both = np.minimum(logarithms[first] + logarithms[second], np.log(LARGE))
+    both = np.minimum(logarithms[first] + logarithms[second], np.log(LARGEST))
     return np.asarray(phases[first] * phases[second] * np.exp(both))
 
 

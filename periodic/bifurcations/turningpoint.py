@@ -1,7 +1,7 @@
-"""Turning points of a branch by their kinds: folds, and other special points at which branches turn as well.
+"""Turning points of a branch by their kinds: folds, and other special points where the parameter reverses.
 
-A branch of doubled orbits turns where it meets the orbits that it came from, at their PD, and one of lopsided
-orbits where it leaves a symmetric branch: from there these are branch points (BP).
+A branch of doubled orbits reverses where it meets the orbits that it came from, at their PD, and one of
+lopsided orbits where it leaves a symmetric branch: from there these are branch points (BP).
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ MERGED = 0.05
 """Largest distance of the orbit at a pitchfork from its shifted copies, as a part of that at the step's
 ends."""
 
-BESIDE = 1e-3
-"""Distance from a turn, as a part of the step, at which its multipliers are looked at on either side, and
-beyond which another special point is not the turn itself."""
+BESIDE_FOLD = 1e-3
+"""Distance from a fold, as a part of the step, at which the multipliers on either side are compared, and
+beyond which another special point is not the fold itself."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class Found:
         return self.label is Label.HOPF and not self.solution.orbit.equilibrium
 
 
-def named(within: WithinStep, turn: Found, new: Solution, ds: float) -> Found:
-    """Return a turn of the branch by its name.
+def named(within: WithinStep, fold: Found, new: Solution, ds: float) -> Found:
+    """Return a fold of the branch with the label that it has among special points.
 
     BP where its orbit has a smaller period than those at the step's ends: it equals its copy one or more
     excitation periods later, and the branch beyond consists of such copies of the same orbits. HB where an
@@ -53,34 +53,34 @@ def named(within: WithinStep, turn: Found, new: Solution, ds: float) -> Found:
     """
     base, problem = within.base, within.solver.problem
     if codim2.picked(problem) is not None:
-        return replace(turn, label=codim2.turn(turn.solution, base, new))
-    if shrinks(turn.solution, base, new):
-        return replace(turn, label=Label.HOPF)
-    apart = [from_itself(solution) for solution in (turn.solution, base, new)]
+        return replace(fold, label=codim2.fold_on_curve(fold.solution, base, new))
+    if shrinks(fold.solution, base, new):
+        return replace(fold, label=Label.HOPF)
+    apart = [from_itself(solution) for solution in (fold.solution, base, new)]
     if apart[0] < MERGED * max(apart[1:]) < np.inf:
-        return replace(turn, label=Label.BRANCH)
+        return replace(fold, label=Label.BRANCH)
     decides = new.discretisation.stability
     tests = (*codim2.TESTS[decides], *codim2.BESIDE_FOLDS[decides])
-    labels = [test.label for test in tests if test.touches(turn.solution, base, new)]
-    if labels and codim2.BESIDE_FOLDS[decides] and problem.trivial < 2 and _passes(within, turn, ds):
+    labels = [test.label for test in tests if test.touches(fold.solution, base, new)]
+    if labels and codim2.BESIDE_FOLDS[decides] and problem.trivial < 2 and _passes(within, fold, ds):
         raise RejectedError("the branch turns beside a branch point")
-    return replace(turn, label=labels[0]) if labels else turn
+    return replace(fold, label=labels[0]) if labels else fold
 
 
-def _passes(within: WithinStep, turn: Found, ds: float) -> bool:
-    """Whether a multiplier passes 1 at a turn, seen from just before it and just after."""
-    before, after = (branching(within.at(turn.distance + side * BESIDE * ds)) for side in (-1, 1))
+def _passes(within: WithinStep, fold: Found, ds: float) -> bool:
+    """Whether a multiplier passes 1 at a fold, by the orbits just before and just after it."""
+    before, after = (branching(within.at(fold.distance + side * BESIDE_FOLD * ds)) for side in (-1, 1))
     return before * after < 0
 
 
-def shrinks(turn: Solution, *ends: Solution) -> bool:
-    """Whether autonomous orbits shrink to an equilibrium at a turn of their branch."""
-    return turn.problem.autonomous and turn.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
+def shrinks(fold: Solution, *ends: Solution) -> bool:
+    """Whether autonomous orbits shrink to an equilibrium at a fold of their branch."""
+    return fold.problem.autonomous and fold.orbit.span() < MERGED * min(end.orbit.span() for end in ends)
 
 
-def is_one(point: Found, turn: Found, ds: float) -> bool:
-    """Whether a special point is the turn of the branch, which has its name already."""
-    return point.label is turn.label and abs(point.distance - turn.distance) < BESIDE * ds
+def is_one(point: Found, fold: Found, ds: float) -> bool:
+    """Whether a special point is the fold of the branch, which has its label already."""
+    return point.label is fold.label and abs(point.distance - fold.distance) < BESIDE_FOLD * ds
 
 
 def at_once(before: Solution, after: Solution) -> list[Label]:
@@ -93,16 +93,16 @@ def at_once(before: Solution, after: Solution) -> list[Label]:
     """
     if codim2.picked(before.problem) is not None:
         return []
-    turned = before.tangent.parameter * after.tangent.parameter < 0
+    folded = before.tangent.parameter * after.tangent.parameter < 0
     decides = before.discretisation.stability
-    every = codim2.TESTS[decides] + (() if turned else codim2.BESIDE_FOLDS[decides])
+    every = codim2.TESTS[decides] + (() if folded else codim2.BESIDE_FOLDS[decides])
     tests = [test for test in every if test.label is not Label.TORUS]
     changed = [test for test in tests if test.value(before) * test.value(after) < 0]
     sure = [test for test in changed if test.genuine(before) or test.genuine(after)]
-    rest = abs(unstable(after) - unstable(before)) - turned - len(sure)
+    rest = abs(unstable(after) - unstable(before)) - folded - len(sure)
     alone = [test for test in changed if test not in sure][: max(rest, 0) % 2]
     labels = [test.label for test in (*sure, *alone)]
-    return [Label.FOLD] * turned + labels + [Label.TORUS] * (max(rest, 0) // 2)
+    return [Label.FOLD] * folded + labels + [Label.TORUS] * (max(rest, 0) // 2)
 
 
 def unstable(solution: Solution) -> int:

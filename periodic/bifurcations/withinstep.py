@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.bifurcations.testfunction import LEFT
+from periodic.bifurcations.testfunction import PARABOLA_LEFT
 from periodic.correction.outcome import Outcome
 from periodic.correction.predictor import cubic, tangent
 from periodic.correction.solution import Solution
@@ -16,11 +16,11 @@ from periodic.correction.solver import Solver
 from periodic.linear.root import root
 from periodic.orbit.orbit import Orbit
 
-ASIDE = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
+BESIDE_ROOT = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
 """Distances, as parts of the interval, at which an orbit stands for a root where Newton fails: branches cross
 there."""
 
-ORBITS = 1e1
+ORBIT_ERRORS = 1e1
 """Factor on these distances for orbits, which have errors of their own, over those for equilibria."""
 
 
@@ -119,8 +119,8 @@ class WithinStep:
 
     def _aside(self, ends: tuple[float, float], failed: _NoOrbitError) -> tuple[float, Solution]:
         """Return the solution nearest to where there was none; raise what failed if there is none near."""
-        length = (ends[1] - ends[0]) * (1 if self.base.orbit.equilibrium else ORBITS)
-        for part in ASIDE:
+        length = (ends[1] - ends[0]) * (1 if self.base.orbit.equilibrium else ORBIT_ERRORS)
+        for part in BESIDE_ROOT:
             distance = failed.distance + part * length
             if min(ends) <= distance <= max(ends):
                 with contextlib.suppress(_NoOrbitError):
@@ -128,13 +128,13 @@ class WithinStep:
         raise failed
 
 
-TRIALS = 15
+MINIMUM_TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
 CONFIRMED = 0.1
 """How well, relatively, the parabola must predict it."""
 
-DISTINCT = 0.1
+LEAST_SHARE = 0.1
 """A place to look at lies at least so far on the way from the least value to the next place known."""
 
 
@@ -147,7 +147,7 @@ def second_change(
     then parabolas lead to the minimum until one has predicted it.
     """
     known = dict(known)
-    for _ in range(TRIALS):
+    for _ in range(MINIMUM_TRIALS):
         if place in known:
             return None
         least = min(known.values())
@@ -155,7 +155,7 @@ def second_change(
         if found < 0:
             return float(place)
         foreseen = abs(found - expected) < CONFIRMED * found
-        if foreseen and (len(known) == 3 or found > LEFT * least):
+        if foreseen and (len(known) == 3 or found > PARABOLA_LEFT * least):
             return None
         place, expected = _lowest(known)
     return None
@@ -173,7 +173,7 @@ def _lowest(known: dict[float, float]) -> tuple[float, float]:
     if 0 < least < len(at) - 1:
         vertex, middle = float(parabola.deriv().roots()[0]), near[1]
         gap = (near[2] if vertex > middle else near[0]) - middle
-        place = middle + gap * max((vertex - middle) / gap, DISTINCT)
+        place = middle + gap * max((vertex - middle) / gap, LEAST_SHARE)
     else:
         place = (at[least] + at[1 if least == 0 else -2]) / 2
     return place, float(parabola(place))

@@ -3,19 +3,22 @@
 With y the event nodes' phases and the free parameters, what is left of interval j is an affine map
 
     dx_{j+1} = step[j] (1, dx_j, dy).
+
+Of the phases only those at the ends of its own segment move an interval: what is local has no other columns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.native.elimination import Routines, routines
 from periodic.collocation.residual import eliminate, evaluated, rows_of
-from periodic.events.impacts import applied
+from periodic.events.impacts import applied, perturbed
 from periodic.events.impacts import jumps as jumps_of
 from periodic.linear.bordering import Chain
 from periodic.linear.kinematic import kinematic, solve
@@ -28,11 +31,12 @@ from periodic.system import LinearisationLike, System
 
 @dataclass(frozen=True)
 class EliminatedStages:
-    """Maps from (1, dx_j, dy), width w = 1+n+q: step (N, n, w), stages (N, ncol, n, w).
+    """Maps from (1, dx_j, dy), width w = 1+n+k+p: step (N, n, w), of k phases and p parameters.
 
-    algebraic (N, ncol, m, 1+2n+q) maps (1, d rate, d state, dy) to -dz. residual is the largest one;
-    perturbed (N, n, n+q) steps perturbations at fixed tau, where that is not what `step` does. Fulfils
-    `periodic.linear.bordering.Eliminated`.
+    What is inside follows from the phases of `Mesh.ties` alone, e in place of k: stages
+    (N, ncol, n, 1+n+e+p), and algebraic (N, ncol, m, 1+2n+e+p), which maps (1, d rate, d state, dy) to -dz.
+    residual is the largest one. jumps are where the state or its rates jump, arriving (jumps, n, w) the steps
+    up to there. Fulfils `periodic.linear.bordering.Eliminated`.
     """
 
     orbit: Orbit
@@ -41,7 +45,16 @@ class EliminatedStages:
     algebraic: Array
     residual: float
     compiled: Routines | None = None
-    perturbed: Array | None = None
+    jumps: Sequence[Jump] = ()
+    arriving: Array | None = None
+
+    @cached_property
+    def perturbed(self) -> Array | None:
+        """Steps (N, n, n+p) of perturbations at fixed tau; None where `step` has them.
+
+        Raises numpy.linalg.LinAlgError where a jump has no rates.
+        """
+        return None if self.arriving is None else perturbed(self.orbit, self.step, self.arriving, self.jumps)
 
     @property
     def origin(self) -> NDArray[np.int_]:
@@ -52,26 +65,30 @@ class EliminatedStages:
         """Return a row in mesh-point states and y alone, its stages eliminated."""
         if row.stages is None:
             return row
-        n = row.nodes.shape[1]
+        n, k, ties = row.nodes.shape[1], len(self.orbit.phases), self.orbit.mesh.ties
         each = np.einsum("jln,jlnw->jw", row.stages, self.stages)
-        nodes = row.nodes.copy()
+        nodes, outer, first = row.nodes.copy(), row.outer.copy(), 1 + n + ties.shape[1]
         nodes[:-1] += each[:, 1 : 1 + n]
-        return Row(row.value + float(each[:, 0].sum()), nodes, row.outer + each[:, 1 + n :].sum(axis=0))
+        np.add.at(outer, ties, each[:, 1 + n : first])
+        outer[k:] += each[:, first:].sum(axis=0)
+        return Row(row.value + float(each[:, 0].sum()), nodes, outer)
 
     def recover(self, nodes: Array, outer: Array, constant: float) -> tuple[Array, Array]:
         """Return the increments of stages and unknowns that go with node increments and dy = `outer`."""
         orbit, (count, ncol, n) = self.orbit, self.orbit.stages.shape
         if self.compiled is not None:
             return self.compiled.recover(orbit, self.stages, self.algebraic, nodes, outer, constant)
-        width, q = self.stages.shape[3], len(outer)
+        width, ties = self.stages.shape[3], orbit.mesh.ties
+        further = np.broadcast_to(outer[len(orbit.phases) :], (count, len(outer) - len(orbit.phases)))
+        own = np.concatenate([outer[ties], further], axis=1)
         given = np.empty((count, width, 1))
-        given[:, 0, 0], given[:, 1 : 1 + n, 0], given[:, 1 + n :, 0] = constant, nodes[:-1], outer
+        given[:, 0, 0], given[:, 1 : 1 + n, 0], given[:, 1 + n :, 0] = constant, nodes[:-1], own
         stages = (self.stages.reshape(count, ncol * n, width) @ given).reshape(count, ncol, n)
         if orbit.algebraic.shape[2] == 0:
             return stages, np.zeros_like(orbit.algebraic)
-        inner = np.empty((count, ncol, 1 + 2 * n + q, 1))
+        inner = np.empty((count, ncol, 1 + 2 * n + own.shape[1], 1))
         knots = np.concatenate([nodes[:-1, None, :], stages], axis=1)
-        inner[..., 0, 0], inner[..., 1 + 2 * n :, 0] = constant, outer
+        inner[..., 0, 0], inner[..., 1 + 2 * n :, 0] = constant, own[:, None]
         inner[..., 1 : 1 + n, 0] = orbit.mesh.scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
         inner[..., 1 + n : 1 + 2 * n, 0] = stages
         return stages, -(self.algebraic @ inner)[..., 0]
@@ -86,15 +103,17 @@ def eliminate_stages(
     matrix is singular.
     """
     smooth = _eliminate(system, orbit, line)
-    step, perturbed = applied(orbit, smooth.step, jumps)
-    return replace(smooth, step=step, perturbed=perturbed)
+    if not jumps:
+        return smooth
+    arriving = smooth.step[[jump.interval for jump in jumps]]
+    return replace(smooth, step=applied(orbit, smooth.step, jumps), jumps=jumps, arriving=arriving)
 
 
 def _eliminate(system: System, orbit: Orbit, line: LinearisationLike) -> EliminatedStages:
     compiled = routines(system, line)
     if compiled is not None:
         return EliminatedStages(orbit, *compiled.eliminate_stages(orbit, line), compiled)
-    rows = rows_of(orbit, line)
+    rows = rows_of(orbit, line, tied=True)
     count, ncol, n = orbit.stages.shape
     reduced, algebraic = eliminate(rows, n)
     width = reduced.shape[2]
@@ -103,7 +122,7 @@ def _eliminate(system: System, orbit: Orbit, line: LinearisationLike) -> Elimina
     start = local[..., 1 : 1 + n] * weights[:, :, :1, None]
     right = np.concatenate([local[..., :1], start, local[..., 1 + 2 * n :]], axis=3)
     stages = solve_stages(local, right, weights)
-    steps = _steps(orbit, stages)
+    steps = _spread(orbit, _steps(orbit, stages))
     return EliminatedStages(orbit, steps, stages, algebraic.reshape(count, ncol, -1, width), rows.residual)
 
 
@@ -147,3 +166,13 @@ def _steps(orbit: Orbit, stages: Array) -> Array:
     begin = orbit.nodes[:-1]
     steps[:, :, 0] += end[1:] @ (orbit.stages - begin[:, None]) + (begin - orbit.nodes[1:])
     return steps
+
+
+def _spread(orbit: Orbit, steps: Array) -> Array:
+    """Steps (N, n, 1+n+e+p) with the columns of all phases, shape (N, n, 1+n+k+p)."""
+    (count, n, width), k, ties = steps.shape, len(orbit.phases), orbit.mesh.ties
+    e = ties.shape[1]
+    found = np.zeros((count, n, width - e + k))
+    found[:, :, : 1 + n], found[:, :, 1 + n + k :] = steps[:, :, : 1 + n], steps[:, :, 1 + n + e :]
+    np.put_along_axis(found[:, :, 1 + n : 1 + n + k], ties[:, None], steps[:, :, 1 + n : 1 + n + e], axis=2)
+    return found

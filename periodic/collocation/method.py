@@ -12,7 +12,7 @@ from periodic.collocation.elimination import elimination
 from periodic.collocation.fastmotions.substeps import SteppedCorrection, stepping
 from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.local import relax
-from periodic.collocation.meshed import MeshMethod, mode_violations, scheme_for
+from periodic.collocation.meshmethod import MeshMethod, mode_violations, scheme_for
 from periodic.collocation.native import iteration
 from periodic.collocation.native.estimate import Estimated, estimated
 from periodic.collocation.residual import evaluated
@@ -25,7 +25,9 @@ from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
+from periodic.events.modes import of_held, relays
 from periodic.events.noderows import event_rows
+from periodic.events.resting import neglected
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -37,9 +39,9 @@ from periodic.refinement.demand import demand, evenly, wanted_ntst
 from periodic.refinement.equidistribution import redistribute
 from periodic.stability.graded import GradedSpectrum, spectrum_of
 from periodic.stability.multipliers import Spectrum
-from periodic.system import Kind, System, surfaces_of
+from periodic.system import System
 
-ASIDE = (1.0, 0.0, 10.0)
+NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
 """Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
 
 SHALLOWER = (10.0, 100.0)
@@ -140,7 +142,7 @@ class Collocation(MeshMethod):
         Past its kink a switch hardly changes, and the row of the event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
-        for before in ASIDE if deep.any() else (0.0,):
+        for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
             yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
 
     def error(
@@ -156,16 +158,15 @@ class Collocation(MeshMethod):
         error = found.error
         if error is UNKNOWN:
             return error
-        missing = self._misheld(system, orbit, error)
+        missing = max(self._misheld(system, orbit, error), neglected(system, orbit))
         rounding = error.rounding + self._rounding(system, orbit, spectrum)
-        unseen = lost(system, orbit) if found.unresolved else 0.0
-        multiplier = max(error.multiplier, unseen, missing, rounding)
+        unresolved = lost(system, orbit) if found.unresolved else 0.0
+        multiplier = max(error.multiplier, unresolved, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:
-        """Return whether several joints may stick, or sliders are held: in time they find how."""
-        held = [surface.kind for surface in surfaces_of(system) if surface.releases is not None]
-        return len(held) > 1 or Kind.SLIDER in held
+        """Return whether anything may be held, or a relay switch: in time they find how."""
+        return bool(of_held(system) or relays(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
         """What of the multipliers' error is rounding."""
@@ -205,6 +206,11 @@ class CollocationRefinement(Refinement):
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
         return tying.fits(self.wanted, self.orbit)
+
+    @property
+    def mendable(self) -> bool:
+        """Whether other meshes may lessen the error."""
+        return not self._in_wrong_mode
 
     @property
     def exhausted(self) -> bool:

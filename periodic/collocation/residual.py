@@ -12,12 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from periodic.events.modes import linearise, sides
+from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System
-
-BEFORE = 1e-9
-"""How far before a kink (rad) the equations are evaluated where a collocation point falls on it."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,7 @@ class Rows:
 class Evaluated:
     """Residual and derivatives at the collocation points of an orbit, as `LinearisationLike` has them.
 
-    All at once, interval after interval, when one of these is asked for; or of some intervals, where all of
+    They are computed for all intervals when first asked for; or for some intervals at a time, where all of
     them would take too much memory.
     """
 
@@ -70,7 +68,7 @@ class Evaluated:
             if line.d_state.shape[1:] != (line.residual.shape[1], n):
                 return line  # it is refused where stages are eliminated
             late = line.d_phase[ends] + np.einsum("pij,pj->pi", line.d_state[ends], rate[ends])
-            line.residual[ends] += BEFORE * late
+            line.residual[ends] += SAME_PHASE * late
         return line
 
     @cached_property
@@ -118,7 +116,7 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Evaluated:
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
-    """Phases and stages at which the equations are evaluated: the collocation points, BEFORE a kink.
+    """Phases and stages at which the equations are evaluated: the collocation points, SAME_PHASE a kink.
 
     A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
     either side, as rounding has it. To first order the residual is moved back to the kink.
@@ -126,17 +124,19 @@ def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
     tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
     if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
         stages = stages.copy()
-        tau[ends, -1] -= BEFORE
-        stages[ends, -1] -= BEFORE * rate[ends, -1]
+        tau[ends, -1] -= SAME_PHASE
+        stages[ends, -1] -= SAME_PHASE * rate[ends, -1]
     return tau, stages
 
 
-def rows_of(orbit: Orbit, line: LinearisationLike) -> Rows:
+def rows_of(orbit: Orbit, line: LinearisationLike, tied: bool = False) -> Rows:
     """Return the rows of evaluated equations, with columns for the event nodes' phases.
 
+    tied: only for those at the ends of each interval's own segment, `Mesh.ties`, which no others move.
     Raises FloatingPointError where they are not finite.
     """
-    moving = _phase_columns(orbit, line.d_rate, line.d_phase)
+    gradients = orbit.mesh.tie_gradients if tied else orbit.mesh.gradients
+    moving = _phase_columns(orbit, line.d_rate, line.d_phase, *gradients)
     columns = [line.residual[:, :, None], line.d_rate, line.d_state, moving, line.d_parameter]
     return finite(Rows(np.concatenate(columns, axis=2), line.d_algebraic))
 
@@ -148,14 +148,15 @@ def finite(rows: Rows) -> Rows:
     return rows
 
 
-def _phase_columns(orbit: Orbit, d_rate: Array, d_phase: Array) -> Array:
-    """Derivatives of the rows in the event nodes' phases, which move and stretch the intervals."""
-    grid, points = orbit.grid, orbit.mesh.scheme.points
-    k = len(orbit.phases)
+def _phase_columns(
+    orbit: Orbit, d_rate: Array, d_phase: Array, left_gradient: Array, width_gradient: Array
+) -> Array:
+    """Derivatives of the rows in event nodes' phases (N, k), which move and stretch the intervals."""
+    points, k = orbit.mesh.scheme.points, left_gradient.shape[1]
     if k == 0:
         return np.zeros((*d_phase.shape, 0))
-    shift = grid.left_gradient[:, None, :] + grid.width_gradient[:, None, :] * points[:, None]
-    stretch = np.repeat(grid.width_gradient / grid.width[:, None], len(points), axis=0)
+    shift = left_gradient[:, None, :] + width_gradient[:, None, :] * points[:, None]
+    stretch = np.repeat(width_gradient / orbit.grid.width[:, None], len(points), axis=0)
     rate = orbit.knot_rates[:, 1:].reshape(len(d_phase), -1, 1)
     return d_phase[:, :, None] * shift.reshape(len(d_phase), 1, k) - (d_rate @ rate) * stretch[:, None, :]
 

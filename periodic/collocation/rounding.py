@@ -1,8 +1,8 @@
-"""Rounding beside hard or shallow contacts: it is nothing to the orbit, but to the multipliers.
+"""Rounding beside hard or shallow contacts: the orbit does not show it, its multipliers do.
 
 An event node lies where a switch is at its level within the rounding of the terms that cancel in it; beside a
-touch that is much of a contact's depth. Within a contact of stiffness k rounding of the states acts on the
-multipliers k times.
+grazing that is a large part of a contact's depth. Within a contact of stiffness k the multipliers have the
+rounding of the states k times.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
+from periodic.system.precision import EPSILON
 
-EPSILON = float(np.finfo(float).eps)
 TERMS = 4
 """Largest error of a switch at its level, in roundings of the terms that cancel in it."""
 
 
 UNTOLD = 0.1
-"""Error of a contact's beginning, in parts of its length, above which the multipliers are not known."""
+"""Error of the begin of a contact, over its length, above which the multipliers are not known."""
 
 LIKELY = 2
 """Likely error of a switch at its level, in the same roundings."""
@@ -34,7 +34,7 @@ def aside(orbit: Orbit, rows: list[Row]) -> Array:
 
 
 def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
-    """Return about by how much multipliers are off by rounding of the states, where an orbit has kinks.
+    """Return an estimate of the multipliers' error by rounding of the states, where an orbit has kinks.
 
     That of one mesh point grows with the fastest rate of the fundamental matrices, that of all with the root
     of their number.
@@ -45,10 +45,10 @@ def of_states(orbit: Orbit, spectrum: Spectrum) -> float:
 
 
 def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
-    """Return about by how much they are off as contacts begin and end where rounding has it.
+    """Return an estimate of the multipliers' error by rounding of the phases at which contacts begin and end.
 
-    What rounding leaves there adds up along the orbit, with the root of the number of mesh points. They are
-    not known where a contact is no longer than that.
+    It grows with the root of the number of mesh points. The multipliers are not known where that error is as
+    long as the contact.
     """
     late, off, lengths = 0.0, aside(orbit, rows), orbit.mesh.segment_lengths(orbit.phases)
     for i, (row, start) in enumerate(zip(rows, orbit.mesh.starts, strict=True)):
@@ -65,6 +65,7 @@ def of_events(orbit: Orbit, rows: list[Row], spectrum: Spectrum) -> float:
 
 def _fastest(orbit: Orbit, spectrum: Spectrum) -> float:
     """The fastest rate of the fundamental matrices (1/rad)."""
-    before = spectrum.fundamental[:-1]
+    size = np.linalg.norm(spectrum.fundamental[:-1], axis=(1, 2))
     change = np.linalg.norm(np.diff(spectrum.fundamental, axis=0), axis=(1, 2))
-    return float((change / (orbit.grid.width * np.linalg.norm(before, axis=(1, 2)))).max())
+    left = size > 0  # of one state nothing is left where it slides
+    return float((change[left] / (orbit.grid.width * size)[left]).max(initial=0.0))

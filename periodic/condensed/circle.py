@@ -18,16 +18,16 @@ from periodic.condensed.repeating import CondensedRepeating
 from periodic.orbit.scheme import Array
 
 FEWEST = 24
-"""Intervals of the half circle to begin with, besides places opposite poles near it."""
+"""Intervals into which the half circle is cut first; the angles of poles near it are added."""
 
 TURN = 0.8
 """Largest turn (rad) of the determinant from one place to the next."""
 
 DEEPEST = 40
-"""How often an interval is halved for this."""
+"""Most halvings of an interval until the determinant turns by less."""
 
 NEAR_CIRCLE = 0.3
-"""Moduli between this part of the radius and its inverse are those of poles near the circle."""
+"""Poles whose modulus is more than this part of the radius are near the circle."""
 
 
 class Beside(Protocol):

@@ -23,13 +23,13 @@ from periodic.condensed.linearised import Local, local_rows
 from periodic.condensed.operator import CondensedOperator
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
-from periodic.correction.error import LEAST_SPAN, LEAST_VALUE, UNKNOWN, ErrorEstimate
+from periodic.correction.error import LEAST_VALUE, UNKNOWN, ErrorEstimate
 from periodic.correction.newton import Linearise, LinearisedEquations, NewtonSettings, newton_step
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.construction import bisect
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System
@@ -55,11 +55,11 @@ def estimate(
 ) -> ErrorEstimate:
     """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
     orbit = operator.orbit
-    across = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
+    arclength = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
     try:
         missing = _Missing(problem, operator)
         rows = [c.linearise(problem.system, orbit, problem.free) for c in problem.side_conditions(orbit)]
-        rows.append(across.linearise(problem.system, orbit, problem.free))
+        rows.append(arclength.linearise(problem.system, orbit, problem.free))
         states, answer = missing.states, operator.answered(rows, missing.on_own(missing.states))
         multiplier = spectrum.apart(missing.monodromy(operator.leading))
     except FAILURES:

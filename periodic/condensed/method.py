@@ -9,13 +9,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.meshed import MeshMethod, scheme_for
+from periodic.collocation.meshmethod import MeshMethod, scheme_for
+from periodic.collocation.method import Collocation
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import SplitLinearisation, exempt
 from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.settling import followed
+from periodic.condensed.split import SplitMethod
+from periodic.condensed.variations import CondensedVariations
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.newton import Correction, briefest, in_order
@@ -25,6 +28,7 @@ from periodic.correction.refinement import Refinement
 from periodic.events.noderows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
+from periodic.linear.variation import Variations
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
@@ -41,7 +45,7 @@ PARAMETER_SHARE = 0.1
 
 
 @dataclass(frozen=True)
-class CondensedCollocation(MeshMethod):
+class CondensedCollocation(SplitMethod, MeshMethod):
     """Collocation for a system with a linear part (`periodic.system.Split`).
 
     Forces on the linear part are polynomials in each interval, and its motion under them is exact, however
@@ -51,7 +55,9 @@ class CondensedCollocation(MeshMethod):
     ntst: int = 12
     ntst_min: int = 6
 
+    whole: ClassVar[type[Discretisation]] = Collocation
     ends_below: ClassVar[float] = 0.1
+    all_states: ClassVar[bool] = False
 
     def _scheme_at(self, tolerance: float) -> Scheme:
         """The scheme for a tolerance.
@@ -66,6 +72,10 @@ class CondensedCollocation(MeshMethod):
             raise EventsCrossedError
         given = SplitLinearisation.about(system, orbit, free, self.tolerance)
         return CondensedOperator(given, event_rows(system, orbit, free))
+
+    def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations:
+        """Return the motions beside an orbit. Raises UnknownVariationsError where forces jump."""
+        return CondensedVariations.about(system, orbit, free)
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
@@ -86,9 +96,9 @@ class CondensedCollocation(MeshMethod):
         """Yield the orbit on the other mesh."""
         yield transfer(orbit, mesh, phases)
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
-        motion = followed(system, orbit)
+        motion = followed(system, orbit, before)
         return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def error(
@@ -150,3 +160,8 @@ class CondensedCollocation(MeshMethod):
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say to which events the mesh should be tied, and how many intervals it needs."""
         return CondensedRefinement(self, system, orbit, error)
+
+
+def mesh_method(system: System) -> MeshMethod:
+    """Return the method that piecewise polynomials of a system are of: of all states, or of its places."""
+    return CondensedCollocation() if CondensedCollocation.takes(system) else Collocation()

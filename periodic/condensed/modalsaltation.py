@@ -22,12 +22,7 @@ from periodic.events.rates import before
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, System, guards_gradient, jumps_of
-
-FORCE_ITERATIONS = 8
-"""Newton steps to the forces at an event; one is enough where equations are linear in them."""
-
-FORCE_INCREMENT = 1e-8
-"""Part of rates and unknowns by which the last one may still move them."""
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 
 @dataclass(frozen=True)
@@ -98,7 +93,7 @@ def _given(
     Raises numpy.linalg.LinAlgError where they are not found.
     """
     n, rate, unknown = x.shape[1], np.zeros_like(x), guess[None].copy()
-    for _ in range(FORCE_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         line = linearise(system, rate, x, unknown, phase, orbit.parameter, side[None])
         rows = np.concatenate([line.d_rate[0][:, own], line.d_algebraic[0]], axis=1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[:n]
@@ -107,6 +102,6 @@ def _given(
         rate[0, own] -= change[: len(own)]
         unknown = system.move(unknown, -change[None, len(own) :])
         found = np.append(rate[0, own], unknown)
-        if np.abs(change).max(initial=0.0) <= FORCE_INCREMENT * (1 + np.abs(found).max(initial=0.0)):
+        if np.abs(change).max(initial=0.0) <= CONVERGED * (1 + np.abs(found).max(initial=0.0)):
             return rate[0, own], unknown[0]
     raise np.linalg.LinAlgError("the forces at an event are not found")

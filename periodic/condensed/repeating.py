@@ -25,8 +25,9 @@ from periodic.orbit.gradients import Points, Slopes, collocation_points, gathere
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, differentiable
+from periodic.system.precision import difference_step
 
-PARAMETER_STEP = 1e-4
+PARAMETER_STEP = difference_step(order=2)
 """Relative step in parameters of differences of the linear part's derivatives."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -25,44 +26,57 @@ STEPS = 512
 FINE = 4096
 """Steps in the period that is kept."""
 
-BRIEF = 0.01
-"""Length (rad) of slips between two stretches of sticking that may be none."""
-
-PERIODS = 60
+PERIODS = 100
 """Most periods that a motion is given to settle."""
+
+SHORTEST = 1e-6
+"""Least width (rad) of steps and intervals, in which changes of mode are located."""
 
 STILL = 1e-3
 """A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
+CLOSE = 10 * SHORTEST
+"""The same where changes of mode lie so near to each other that their order asks for it."""
+
 INTERVALS = 192
 """Intervals of the guess."""
 
-SHORTEST = 1e-6
-"""Least width (rad) of these."""
 
+def settled(system: System, start: Orbit) -> Iterator[Orbit]:
+    """Yield the motion to which a system with sliding jumps settles from rest, at an orbit's parameters.
 
-def settled(system: System, start: Orbit) -> Orbit | None:
-    """Return the motion to which a system with sliding jumps settles from rest, at an orbit's parameters.
-
-    None where it does not settle within PERIODS, or cannot be followed.
+    Then the same settled further, and in finer steps: changes of mode that lie near to each other are in
+    order only then. None where it does not settle within PERIODS, or cannot be followed.
     """
     try:
         motion = Motion.at_rest(system, start.parameter, start.nodes[0], start.algebraic[0, 0])
-        motion.pace(STEPS)
-        for _ in range(PERIODS):
-            side = motion.side
+        for steps, shortest, still in (
+            (STEPS, np.inf, STILL),
+            (STEPS, SHORTEST, CLOSE),
+            (FINE, SHORTEST, CLOSE),
+        ):
+            motion.pace(steps, shortest)
+            if not _settles(motion, still):
+                return
+            motion.pace(FINE, SHORTEST)
             motion.period()
-            states, same = np.array(motion.states), np.array_equal(side, motion.side)
-            if same and np.abs(states[-1] - states[0]).max() <= STILL * np.ptp(states, axis=0).max():
-                motion.pace(FINE, SHORTEST)
-                motion.period()
-                return orbit_of(motion)
+            yield orbit_of(motion)
     except FAILURES:
-        return None
-    return None
+        return
 
 
-def followed(system: System, orbit: Orbit) -> Orbit | None:
+def _settles(motion: Motion, still: float) -> bool:
+    """Follow a motion until a period changes it by no more than a part of its peak to peak."""
+    for _ in range(PERIODS):
+        side = motion.side
+        motion.period()
+        states, same = np.array(motion.states), np.array_equal(side, motion.side)
+        if same and np.abs(states[-1] - states[0]).max() <= still * np.ptp(states, axis=0).max():
+            return True
+    return False
+
+
+def followed(system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
     It may violate its word: that of the motion does not.
@@ -79,7 +93,8 @@ def followed(system: System, orbit: Orbit) -> Orbit | None:
         begun = orbit.nodes[k], orbit.algebraic[k, 0], response.modes, history[k], side
         motion = Motion(system, orbit.parameter, *begun, begin=float(orbit.grid.left[k]))
         motion.pace(FINE, SHORTEST)
-        motion.period()
+        for _ in range(before + 1):
+            motion.period()
         return orbit_of(motion)
     except FAILURES:
         return None
@@ -118,7 +133,7 @@ def orbit_of(motion: Motion) -> Orbit:
 def _lasting(motion: Motion) -> list[Changed]:
     """The changes of mode without what is an error of the steps.
 
-    Slips between two stretches of sticking that are brief, and stops of one step where rates lead on.
+    Slips of one step between two stretches of sticking, and stops of one step where rates lead on.
     """
     found = list(motion.events)
     for joint in motion.joints:
@@ -128,7 +143,7 @@ def _lasting(motion: Motion) -> list[Changed]:
                 continue
             rest = [each for each in found if each not in (first, second)]
             slips = first.before == STUCK and second.after == STUCK
-            if slips and (second.phase - first.phase) % FORCED < BRIEF:
+            if slips and second.step == first.step + 1:
                 found = rest
             elif first.after == STUCK and second.before == STUCK and _passes(motion, joint, first, second):
                 passed = replace(first, after=second.after)

@@ -82,7 +82,7 @@ def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
     images = motions.once(np.concatenate([space, drawn], axis=1))
     images, more = images[:, :begun], images[:, begun:]
     while space.shape[1] + more.shape[1] <= min(LARGEST_SUBSPACE, size):
-        more = _across(space, more)
+        more = _orthogonal(space, more)
         space = np.concatenate([space, more], axis=1)
         images = np.concatenate([images, motions.once(more)], axis=1)
         values, vectors = np.linalg.eig(space.T @ images)
@@ -99,7 +99,7 @@ def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
     return _all(motions, wanted)  # those next to each other in size are told apart by all of them
 
 
-def _across(space: Array, vectors: Array) -> Array:
+def _orthogonal(space: Array, vectors: Array) -> Array:
     """An orthonormal basis of vectors across a subspace."""
     for _ in range(2):
         vectors = np.linalg.qr(vectors - space @ (space.T @ vectors))[0]

@@ -30,12 +30,7 @@ from periodic.system import (
     linear_of,
     surfaces_of,
 )
-
-STEP_ITERATIONS = 8
-"""Newton steps in a step in time."""
-
-STEP_INCREMENT = 1e-10
-"""Increment at which a step in time is solved."""
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 PARTS = 8
 """Shorter steps in one in which a mode changes."""
@@ -96,6 +91,19 @@ class Step:
         return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
 
 
+@dataclass(frozen=True)
+class Holding:
+    """By which parts of their jumps what is stuck is held, on the mean of a step of a width; else NaN."""
+
+    width: float
+    parts: Array
+
+    def gives_way(self, before: Holding) -> bool:
+        """Whether a part exceeds 1 at the end of the step, led on from the step before."""
+        rate = (self.parts - before.parts) / (self.width + before.width)
+        return bool((np.abs(self.parts + rate * self.width) > 1).any())
+
+
 def _width(length: float) -> float:
     """The width of a step, the same where it differs in its last digits."""
     return float(f"{length:.9e}")
@@ -136,6 +144,7 @@ class Motion:
     unknowns: list[Array] = field(default_factory=list, init=False)
     sides: list[Array] = field(default_factory=list, init=False)
     events: list[Changed] = field(default_factory=list, init=False)
+    holding: Holding = field(init=False)
     _known: dict[float, Step] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
@@ -144,6 +153,7 @@ class Motion:
         self.places, self.forces = list(part.states), list(part.forces)
         self.own = np.setdiff1d(np.arange(len(self.state)), self.places)
         self.joints = joints_of(self.system)
+        self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
 
     @classmethod
@@ -185,10 +195,11 @@ class Motion:
 
     def _advance(self, begin: float, end: float) -> None:
         """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
-        before = self.z, self.state, self.unknown, self.side
+        before = self.z, self.state, self.unknown, self.side, self.holding
         self._step(end, _width(end - begin))
-        if end - begin > self.shortest and not np.array_equal(before[3], self.side):
-            self.z, self.state, self.unknown, self.side = before
+        changes = not np.array_equal(before[3], self.side) or self.holding.gives_way(before[4])
+        if end - begin > self.shortest and changes:
+            self.z, self.state, self.unknown, self.side, self.holding = before
             ends = np.linspace(begin, end, PARTS + 1)
             for first, last in pairwise(ends):
                 self._advance(float(first), float(last))
@@ -213,6 +224,7 @@ class Motion:
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
         self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
         self.state, self.unknown = x, unknown
+        self.holding = Holding(width, np.where(np.isin(np.arange(len(parts)), self._stuck[0]), parts, np.nan))
 
     def _over(self, width: float) -> Step:
         """What a step of a width does, kept."""
@@ -251,13 +263,13 @@ class Motion:
         """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
         shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
-        for _ in range(STEP_ITERATIONS):
+        for _ in range(MOST_ITERATIONS):
             x[self.places] = shown + step.local @ unknown[self.forces]
             change = -np.linalg.solve(*self._equations(x, unknown, parts, tau, step)).astype(float)
             x[self.own] += change[:own]
             unknown = self.system.move(unknown[None], change[None, own : own + len(unknown)])[0]
             parts[self._stuck[0]] += change[own + len(unknown) :]
-            if np.abs(change).max() < STEP_INCREMENT * (1 + np.abs(unknown).max()):
+            if np.abs(change).max() < CONVERGED * (1 + np.abs(unknown).max()):
                 break
         x[self.places] = shown + step.local @ unknown[self.forces]
         return x, unknown, parts
@@ -265,15 +277,19 @@ class Motion:
     def _equations(
         self, x: Array, unknown: Array, parts: Array, tau: float, step: Step
     ) -> tuple[Array, Array]:
-        """Rows at the end of a step by own states, unknowns and parts of jumps, and what is left of them.
+        """Rows amid a step by own states, unknowns and parts of jumps at its end, and what is left of them.
 
-        Where it is stuck a switch is 0, and the equations lie between those of its two sides.
+        Forces are constant in it: those amid it are right to second order. At its end what is stuck has a
+        switch of 0; the equations lie between those of its two sides.
         """
         system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
-        given = ((x - self.state) / step.width)[None], x[None], unknown[None], at, self.parameter
+        amid = (x + self.state)[None] / 2, unknown[None], at - step.width / 2, self.parameter
+        given = ((x - self.state) / step.width)[None], *amid
         columns = np.arange(len(self.side))
         upper = np.where(np.isin(columns, stuck), 1.0, self.side)
-        line, left = self._carried(linearise(system, *given, upper[None]), x, tau), []
+        line, left = linearise(system, *given, upper[None]), []
+        line.d_state[0] /= 2
+        line = self._carried(line, x, tau)
         for i in stuck:
             lower = np.where(columns == i, -1.0, upper)
             left.append(self._carried(linearise(system, *given, lower[None]), x, tau).residual[0])

@@ -12,6 +12,7 @@ from periodic.condensed.floquet import Leading, ModalFloquet
 from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.repeating import CondensedRepeating
+from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -43,11 +44,11 @@ class CondensedVariations:
     def about(system: System, orbit: Orbit, free: tuple[int, ...]) -> CondensedVariations:
         """Linearise; `free` are the parameters that motions may change.
 
-        Raises ValueError where forces jump.
+        Raises UnknownVariationsError where forces jump.
         """
         given = SplitLinearisation.about(system, orbit, free)
         if given.saltations:
-            raise ValueError(
+            raise UnknownVariationsError(
                 "forces at the places jump, as those of friction that sticks; curves in two parameters and "
                 "derivatives of multipliers need a structure that is compiled with condense=False"
             )

@@ -15,8 +15,9 @@ from periodic.orbit.gradients import Points, Slopes
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, differentiable, jumps_of
+from periodic.system.precision import difference_step
 
-TANGENT_STEP = 1e-5
+TANGENT_STEP = difference_step(order=2)
 """Step along a tangent, as a part of the tangent's size."""
 
 

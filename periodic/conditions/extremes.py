@@ -14,10 +14,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import Differentiable, System, differentiable
-
-NEWTON = 4
-"""Newton steps that bring a sampled extremum to where its output is stationary."""
-
+from periodic.system.precision import MOST_ITERATIONS
 
 LONGEST_MOVE = 1e-3
 """How far (rad) such a step may go; an extremum at a kink is not stationary and stays where it is."""
@@ -122,7 +119,7 @@ def _points(system: System, orbit: Orbit, tau: Array) -> Points:
 def _stationary(system: System, orbit: Orbit, output: int, phase: float) -> float:
     """Return the phase near `phase` where an output is stationary, or `phase` where there is none near."""
     found = phase
-    for _ in range(NEWTON):
+    for _ in range(MOST_ITERATIONS):
         step = 1e-2 * float(orbit.grid.width[orbit.locate(np.array([found]))[0][0]])
         near = found + step * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
         y = measure.outputs(system, orbit, near)[:, output]

@@ -7,25 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.collocation.elimination import eliminated
+from periodic.condensed.method import mesh_method
 from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain
 from periodic.linear.unknowns import mean_weights
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import System
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 MONODROMY_STEP = 3e-3
 """Length of the differences, which are of fourth order, as a part of the motion q."""
-
-NO_SIZE = 1e-6
-"""Orbits that are smaller than this (scaled) are at rest; states of order one are the unit then."""
-
-DEPENDENT = 1e-8
-"""Least cosine of left and right eigenvectors of a simple multiplier."""
-
-SETTLED = 1e-12
-VECTOR_ITERATIONS = 12
 
 
 def flip_coefficient(system: System, orbit: Orbit) -> float:
@@ -64,15 +57,15 @@ def flip_coefficient(system: System, orbit: Orbit) -> float:
     Kuznetsov, Elements of Applied Bifurcation Theory, eq. 5.48.
     """
     polynomial(orbit)
-    if len(orbit.phases) or linear_of(system) is not None:
+    if len(orbit.phases) or not mesh_method(system).all_states:
         raise ValueError("orbit has event nodes, or its system is condensed; it must be a smooth one")
     fundamental = chain(eliminated(system, orbit, ()))[:, :, 1:]
     A = fundamental[-1]
     q, p = _critical(A), _critical(A.T)
-    size = orbit.span() if orbit.span() > NO_SIZE else 1.0
+    size = orbit.span() if orbit.span() > LEAST_SPAN else 1.0
     motion = np.einsum("j,jn->", mean_weights(orbit), (fundamental @ q) ** 2)
     q = q * size / np.sqrt(motion)
-    if abs(p @ q) < DEPENDENT * np.linalg.norm(p) * np.linalg.norm(q):
+    if abs(p @ q) < CONVERGED * np.linalg.norm(p) * np.linalg.norm(q):
         raise FloatingPointError("the multiplier -1 is no simple one")
     p = p / (p @ q)
     beside = {k: monodromy(system, orbit, k * MONODROMY_STEP * q) for k in (-2, -1, 1, 2)} | {0: A}
@@ -95,8 +88,8 @@ def monodromy(system: System, orbit: Orbit, shift: Array) -> Array:
     Raises FloatingPointError where Newton's iteration does not find the motion on the orbit's mesh.
     """
     still, change = np.zeros(0), np.append(1.0, shift)
-    allowed = SETTLED * max(orbit.span(), 1.0)
-    for _ in range(VECTOR_ITERATIONS):
+    allowed = CONVERGED * max(orbit.span(), 1.0)
+    for _ in range(MOST_ITERATIONS):
         local = eliminated(system, orbit, ())
         maps = chain(local)
         nodes = maps @ change
@@ -108,6 +101,6 @@ def monodromy(system: System, orbit: Orbit, shift: Array) -> Array:
             algebraic=moved_unknowns(system, orbit.algebraic, algebraic),
         )
         if np.abs(nodes).max() <= allowed:
-            return np.asarray(maps[-1, :, 1:])
+            return np.asarray(chain(eliminated(system, orbit, ()))[-1, :, 1:])
         change[1:] = 0.0
     raise FloatingPointError("a motion beside the orbit was not found")

@@ -85,12 +85,12 @@ class Component:
         k, points = output_index(system, self.output), collocation_points(orbit)
         line = differentiable(system).output_gradient(*points.arguments(orbit), free)
         weights = self._weights(orbit, points)
-        turned = replace(self, phase=self.phase - np.pi / 2)._weights(orbit, points)
+        quarter_later = replace(self, phase=self.phase - np.pi / 2)._weights(orbit, points)
         slopes = Slopes(
             weights[:, None] * line.d_rate[:, k],
             weights[:, None] * line.d_state[:, k],
             weights[:, None] * line.d_algebraic[:, k],
-            weights * line.d_phase[:, k] + self.order * turned * line.residual[:, k],
+            weights * line.d_phase[:, k] + self.order * quarter_later * line.residual[:, k],
             weights @ line.d_parameter[:, k],
         )
         row = gathered(system, orbit, points, slopes, free)

@@ -10,13 +10,11 @@ from periodic.conditions.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.events.sideconditions import Clearance
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
-
-SHORT_OF = 1e-9
-"""How far short of its level the switch is held, as a part of its largest value: past it is an excursion."""
 
 
 @dataclass(frozen=True)
@@ -68,5 +66,5 @@ class _Grazing:
             side, extremum = min(both, key=lambda pair: abs(pair[1].value))
             self.held = Clearance(k, side, extremum.phase)
         row = self.held.linearise(system, orbit, free)
-        left = SHORT_OF * float(np.abs(dense.knots[:, :, k]).max())
+        left = AT_LEVEL * float(np.abs(dense.knots[:, :, k]).max())
         return Row(row.value - left, row.nodes, row.outer, row.stages)

@@ -11,7 +11,7 @@ from periodic.conditions.functionals import Functional, Smooth, apart
 from periodic.conditions.variations import variations, weighted
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.variation import Tangent
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
@@ -93,7 +93,7 @@ class Peak(Condition):
 class _Peak:
     functional: Smooth
     given: Given
-    across: Array | None = field(default=None)
+    border: Array | None = field(default=None)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return df/du t and its gradient; t is the kernel of the branch's equations, c' t = 1."""
@@ -102,9 +102,9 @@ class _Peak:
         rows = [c.linearise(system, orbit, given) for c in self.given.conditions]
         top = closed.matrix
         matrix = np.concatenate([top, *(closed.functional(row)[None] for row in rows)])
-        if self.across is None:
-            self.across = np.linalg.svd(matrix)[2][-1]
-        bordered = np.concatenate([matrix, self.across[None]])
+        if self.border is None:
+            self.border = np.linalg.svd(matrix)[2][-1]
+        bordered = np.concatenate([matrix, self.border[None]])
         direction = np.linalg.solve(bordered, np.append(np.zeros(len(matrix)), 1.0))
         aim = self.functional.linearise(system, orbit, free)
         k = len(orbit.phases)
@@ -122,7 +122,7 @@ class _Peak:
 
     def _bent(self, system: System, orbit: Orbit, tangent: Tangent, free: tuple[int, ...]) -> Row:
         """Return the second derivative of the functional along the tangent, by a central difference."""
-        size = GRADIENT_STEP * max(orbit.span(), 1e-6) / np.abs(tangent.nodes).max()
+        size = GRADIENT_STEP * max(orbit.span(), LEAST_SPAN) / np.abs(tangent.nodes).max()
         ends = [self.functional.linearise(system, tangent.moved(orbit, h), free) for h in (size, -size)]
         row = (ends[0] + ends[1].scaled(-1.0)).scaled(1 / (2 * size))
         return Row(0.0, row.nodes, row.outer, row.stages)

@@ -12,14 +12,13 @@ from periodic.conditions.functionals import Functional
 from periodic.conditions.levels import smooth
 from periodic.conditions.variations import equations
 from periodic.correction.condition import Condition, side_conditions
-from periodic.correction.error import LEAST_SPAN
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import as_read_by
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
 
-MET = 1e-3
+FARTHEST_MOVE = 1e-3
 """How far Newton's step may lead from an orbit, in parts of its peak to peak and of what is determined."""
 
 
@@ -87,13 +86,13 @@ def _check_met(orbit: Orbit, step: Increment, determined: Sequence[str]) -> None
     """Refuse an orbit that Newton's step still moves: it fulfils its equations or conditions elsewhere."""
     for name, change in zip(determined, step.parameters, strict=False):
         value = orbit.parameters[name]
-        if not abs(change) <= MET * max(abs(value), np.finfo(float).tiny):
+        if not abs(change) <= FARTHEST_MOVE * max(abs(value), np.finfo(float).tiny):
             raise ValueError(
                 f"{name} of the orbit is {value:.6g}, where its condition is not met; the orbit must be one "
                 f"that trace found with it (a labelled point, or determined={{{name!r}: ...}})"
             )
     apart = float(np.abs(step.profile).max()) / max(orbit.span(), LEAST_SPAN)
-    if not apart <= MET:
+    if not apart <= FARTHEST_MOVE:
         raise ValueError(
             f"orbit is {apart:.1e} peaks to peak from the one at its parameters; it must be one that trace "
             f"found there"

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from periodic.collocation.method import Collocation
-from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.variations import CondensedVariations
+from periodic.condensed.method import mesh_method
 from periodic.conditions.adjoint import Linear, polynomial
 from periodic.linear.operator import Operator
 from periodic.linear.variation import Variations
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import System
 
 
 def variations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations:
@@ -39,9 +37,8 @@ def variations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Variation
         For a Fourier series; for gradients of a system without second derivatives.
     """
     polynomial(orbit)
-    if linear_of(system) is None:
-        return Linear.about(system, orbit, free)
-    return CondensedVariations.about(system, orbit, free)
+    own = mesh_method(system).variations(system, orbit, free)
+    return Linear.about(system, orbit, free) if own is None else own
 
 
 def equations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
@@ -61,8 +58,7 @@ def equations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
     Operator
         The linearised equations.
     """
-    method = Collocation() if linear_of(system) is None else CondensedCollocation()
-    return method.linearise(system, orbit, free)
+    return mesh_method(system).linearise(system, orbit, free)
 
 
 def weighted(rows: Sequence[Row], weights: Array) -> Row | None:

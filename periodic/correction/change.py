@@ -61,6 +61,10 @@ class Change(Protocol):
         """Whether the branch cannot be followed nearer to the change than where the step ends."""
 
     @property
+    def last(self) -> bool:
+        """Whether the branch ends there: orbits beyond it are none near."""
+
+    @property
     def name(self) -> str:
         """What changes, in words."""
 

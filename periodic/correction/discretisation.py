@@ -13,7 +13,9 @@ from typing import Protocol, Self, runtime_checkable
 
 from periodic.correction.change import Change
 from periodic.correction.condition import SideCondition
+from periodic.correction.drift import drifting
 from periodic.correction.error import ErrorEstimate
+from periodic.correction.meanequilibrium import resting
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -230,6 +232,57 @@ class Discretisation(Protocol):
         """
         return False
 
+    def settled(self, system: System, start: Orbit) -> Iterator[Orbit] | None:
+        """Return motions to which a system settles, by a way of the method's own.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        start : Orbit
+            Its parameters are theirs.
+
+        Returns
+        -------
+        iterator of Orbit, or None
+            Guesses, each settled further than the one before; None where all states are to be integrated.
+        """
+        return None
+
+    def resting(self, system: System, start: Orbit) -> Orbit | None:
+        """Return the rest under the mean of all loads; see `periodic.correction.meanequilibrium`.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        start : Orbit
+            An orbit; its parameters are those of the rest.
+
+        Returns
+        -------
+        Orbit or None
+            A constant one; None where the other is at rest already, and where there is none.
+        """
+        return resting(system, start)
+
+    def drifting(self, system: System, parameter: Array) -> list[str]:
+        """Return the states that nothing holds; see `periodic.correction.drift`.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        parameter : ndarray, shape (p,)
+            Parameters in SI units.
+
+        Returns
+        -------
+        list of str
+            Their names; none as a rule.
+        """
+        return drifting(system, parameter)
+
     @property
     def stability(self) -> Stability:
         """What decides stability, and so which special points there are."""
@@ -237,7 +290,7 @@ class Discretisation(Protocol):
 
     @property
     def trusted(self) -> float:
-        """Error of the multipliers above which no special points are located by them."""
+        """Error of the multipliers above which they are not used to locate special points."""
         return float("inf")
 
     @property
@@ -246,7 +299,7 @@ class Discretisation(Protocol):
         return ()
 
     def at(self, tolerance: float) -> Self:
-        """Return the discretisation with all settings that were left open chosen for a tolerance.
+        """Return the discretisation with every setting that was left open chosen for a tolerance.
 
         Parameters
         ----------
@@ -265,7 +318,7 @@ class Discretisation(Protocol):
         """
         return self
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return an orbit with the events of its own motion, followed in time through its period.
 
         Parameters
@@ -274,6 +327,8 @@ class Discretisation(Protocol):
             The equations.
         orbit : Orbit
             An orbit, or a guess of one, whose events may not be those of its motion.
+        before : int
+            Periods through which it is followed before: what is held elsewhere afterwards has come there.
 
         Returns
         -------
@@ -283,7 +338,7 @@ class Discretisation(Protocol):
         return None
 
     def accepted(self, system: System, correction: Correction) -> Correction:
-        """Return a converged correction with its fundamental matrices, or as failed where it is spurious.
+        """Return a converged correction with its fundamental matrices; a spurious one as failed.
 
         Parameters
         ----------

@@ -28,20 +28,21 @@ from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
 from periodic.orbit.construction import bisect
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
 from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
 from periodic.system import System
+from periodic.system.precision import EPSILON
 
 Solved = Callable[
     [System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], LinearisedEquations
 ]
 """What linearises the equations at an orbit and solves them; raises FAILURES."""
 
-LEAST_SPAN = 1e-6
-"""Peak to peak (scaled) that errors are compared with at the least: an orbit may shrink to a rest."""
+AT_WORST = 30.0
+"""How many times its estimate an error may be where it is small beside others."""
 
 SAFETY = 3.0
 """How much smaller than a tolerance error estimates are to be, which beside kinks are not just right."""
@@ -114,7 +115,7 @@ class ErrorEstimate:
     @property
     def curable(self) -> float:
         """The same without what no finer mesh betters."""
-        return self.worst if self.multiplier > ROUNDED * self.rounding else self.motion
+        return self.worst if self.multiplier > SAFETY * self.rounding else self.motion
 
     @property
     def spread(self) -> float:
@@ -129,9 +130,6 @@ UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
 """Where the errors could not be estimated."""
 
 
-ROUNDED = 3.0
-"""How many times the rounding expected of them multipliers may be off by rounding."""
-
 LEAST_VALUE = 0.1
 """Values of a parameter, in parts of its range, with which its error is compared at the least."""
 
@@ -139,7 +137,7 @@ LEAST_VALUE = 0.1
 BEST = 2e-12
 """Relative error of an orbit that rounding may leave; beside a grazing it is far more in the multipliers."""
 
-LAST_DIGITS = 4 * float(np.finfo(float).eps)
+LAST_DIGITS = 4 * EPSILON
 """To how much of itself a parameter is known at the most."""
 
 REACH = 0.1

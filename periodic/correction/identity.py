@@ -8,31 +8,28 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from periodic.correction.error import LEAST_SPAN
+from periodic.correction.error import AT_WORST
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import metric_weights
-from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import resets_of
 
 SHIFTS = 64
 """How many phases are tried for the least distance of two autonomous orbits."""
 
-KEPT = 30.0
-"""How far an orbit may move when its mesh is changed, in units of its error estimate or of the tolerance."""
-
-DISTINCT = 0.05
+TWO_ORBITS = 0.05
 """Orbits as far apart, in peaks to peak, are two."""
 
-ALONG = 0.05
+TWO_IMPACTS = 0.05
 """Impacts farther apart (rad) are two."""
 
 
 def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
     """Whether b, taken `later` excitation periods later, is the orbit a within its error."""
-    part = min(KEPT * max(a.error.worst, solver.tolerance.orbit), DISTINCT)
+    part = min(AT_WORST * max(a.error.worst, solver.tolerance.orbit), TWO_ORBITS)
     allowed = part * max(a.orbit.span(), LEAST_SPAN)
     return distance(solver.problem, a.orbit, b.orbit, FORCED * later) <= allowed
 
@@ -71,10 +68,12 @@ def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[Sha
     for start, event, phase in zip(a.mesh.starts, a.mesh.events, a.phases, strict=True):
         if event.switch not in resets:
             continue
-        alike = [p for e, p in zip(a.mesh.events, a.phases, strict=True) if e == event and p != phase]
-        near = min([ALONG, *(abs(_wrapped(p - phase, period)) / 2 for p in alike)])
+        own = zip(a.mesh.events, a.phases, strict=True)
+        alike = [p for e, p in own if e.switch == event.switch and p != phase]
+        near = min([TWO_IMPACTS, *(abs(_wrapped(p - phase, period)) / 2 for p in alike)])
         each = zip(b.mesh.events, b.phases, b.mesh.starts, strict=True)
-        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for e, p, j in each if e == event]
+        theirs = [(p, j) for e, p, j in each if e.switch == event.switch]
+        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for p, j in theirs]
         shift, other = min(others, key=lambda found: abs(found[0]), default=(np.inf, 0))
         if abs(shift) < near:
             starts = [int(start)] if start else [0, len(a.nodes) - 1]

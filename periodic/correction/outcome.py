@@ -16,7 +16,7 @@ class Outcome(Enum):
     SINGULAR = "the linear system was singular"
     NOT_INTEGRATED = "time integration failed near the iterate"
     EVENTS_CROSSED = "two event nodes of the mesh met"
-    GRAZING = "an impact has no speed left, the orbit grazes"
+    GRAZING = "an impact or a relay is reached with no speed left, the orbit grazes"
     THROUGH_STOP = "the orbit passes where an impact would be, start from a simulated one that has it"
     SLIDES = "the motion would slide along a jump of the equations, which is not followed here"
     COLLAPSED = "the orbit shrank to an equilibrium"

@@ -30,6 +30,11 @@ class Refinement:
         return True
 
     @property
+    def mendable(self) -> bool:
+        """Whether other meshes may lessen the error: not that of an orbit that violates its word."""
+        return True
+
+    @property
     def exhausted(self) -> bool:
         """Whether the mesh is the finest allowed."""
         return True

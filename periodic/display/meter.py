@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 VARIABLE = "ORBITRACE_PROGRESS"
-"""The environment's choice, 0 or 1, in the place of whether somebody looks on."""
+"""Environment variable, 0 or 1: whether bars are shown, on whatever output."""
 
 DELAY = 1.0
 """Seconds before anything is shown."""
@@ -19,21 +19,21 @@ EVERY = 0.1
 """Seconds from one showing to the next."""
 
 _SHOWN = ContextVar("shown", default=False)
-"""Whether a bar is shown already: what goes on within it has none."""
+"""Whether a bar is shown already: work within it has no bar of its own."""
 
 Advance = Callable[[int, str], None]
-"""Told how many steps are done since the last call, and what to say of the last one."""
+"""Called with the number of steps since the last call, and a text about the last of them."""
 
 
 def watched() -> bool:
-    """Return whether somebody looks on: in a notebook, or where standard error is a terminal."""
+    """Return whether bars can be seen: in a notebook, or where standard error is a terminal."""
     setting = os.environ.get(VARIABLE, "").strip()
     return setting != "0" if setting else "ipykernel" in sys.modules or sys.stderr.isatty()
 
 
 @contextmanager
 def meter(what: str, unit: str, total: int | None = None) -> Iterator[Advance]:
-    """Give what advances a bar; where nobody looks on it does nothing.
+    """Show a bar and yield the function that advances it; without a display it does nothing.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def meter(what: str, unit: str, total: int | None = None) -> Iterator[Advance]:
     Yields
     ------
     callable
-        Takes a number of steps, and what to say of the last.
+        Takes a number of steps, and a text about the last of them.
     """
     if _SHOWN.get() or not watched():
         yield lambda steps, said: None

@@ -15,8 +15,9 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import difference_step
 
-SHIFT = 1e-4
+SHIFT = difference_step(order=2)
 """Length of the differences that give the second derivatives."""
 
 

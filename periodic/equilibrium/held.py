@@ -23,9 +23,10 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import difference_step
 
-DIFFERENCE_STEP = 1e-5
-"""Step of central differences in scaled states, and in parameters as a part of their size."""
+DIFFERENCE_STEP = difference_step(order=2)
+"""Of central differences in scaled states, and in parameters as a part of their size."""
 
 NEUTRAL = 1e-6
 """Sum of two real eigenvalues, in parts of their sizes, that is 0."""

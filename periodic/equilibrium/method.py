@@ -28,7 +28,7 @@ from periodic.stability.multipliers import Spectrum, Stability
 from periodic.system import System, index_of
 
 PHASES = np.linspace(0.0, FORCED, 8) + 0.1
-"""At which an excitation shows."""
+"""At which it is tested whether the equations depend on tau."""
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,12 @@ from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, index_of
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS, difference_step
 
 Complex = NDArray[np.complex128]
 
-DIFFERENCE_STEP = 1e-2
+DIFFERENCE_STEP = difference_step(order=4, derivative=2)
 """Length of the differences (scaled states), which are of fourth order."""
-
-SETTLED = 1e-14
-VECTOR_ITERATIONS = 20
 
 
 def first_lyapunov(system: System, orbit: Orbit, frequency: str = "omega") -> float:
@@ -104,10 +102,10 @@ def _moving(system: System, orbit: Orbit, shift: Array) -> Rows:
     """The equations beside an equilibrium, linearised about the rates and unknowns that they give there."""
     n = orbit.nodes.shape[1]
     beside, rate = replace(orbit, nodes=orbit.nodes + shift), np.zeros(n)
-    for _ in range(VECTOR_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         rows = rows_at(system, beside, (), rate)
         change = np.linalg.solve(rows.d_motion, -rows.residual)
         rate, beside = rate + change[:n], replace(beside, algebraic=beside.algebraic + change[n:])
-        if np.abs(change).max() < SETTLED * (1 + np.abs(rate).max()):
+        if np.abs(change).max() < CONVERGED * (1 + np.abs(rate).max()):
             break
     return rows_at(system, beside, (), rate)

@@ -8,7 +8,7 @@ from periodic.events.modes import mode_after, sides
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import HELD, STUCK, System, surfaces_of
+from periodic.system import HELD, STUCK, SurfaceLike, System, surfaces_of
 
 
 def still(
@@ -23,25 +23,37 @@ def still(
     return tuple(pair for pair in modes if pair[0] not in changed)
 
 
+def placed(surface: SurfaceLike, parameter: Array, states: Array) -> Array:
+    """Return the parameters (p,) with the place at which a surface is HELD, where it has one.
+
+    It is amid the places of some states (N, n): between the slips that are gone.
+    """
+    found = parameter.copy()
+    if surface.place is not None:
+        place, weights = surface.place
+        places = states @ np.array(weights)
+        found[place] = (places.min() + places.max()) / 2
+    return found
+
+
 def all_along(
     system: System, orbit: Orbit, events: tuple[EventNode, ...]
 ) -> tuple[tuple[tuple[int, int], ...], Array | None]:
     """Return the modes of surfaces that lose their event nodes, with those that have none, and parameters.
 
-    What slips no more is held where it is: that is its place from there on. The parameters are None where
-    none has changed.
+    What slips no more is held where it is: that is its place from there on, if it needs one. The parameters
+    are None where none has changed.
     """
-    modes, parameter = dict(still(system, orbit.mesh.modes, events)), orbit.parameter.copy()
+    modes, parameter = dict(still(system, orbit.mesh.modes, events)), orbit.parameter
     for surface in surfaces_of(system):
         had = any(mode_after(surface, event) is not None for event in orbit.mesh.events)
         has = any(mode_after(surface, event) is not None for event in events)
-        if surface.releases is None or surface.place is None or surface.column is None or has or not had:
+        if surface.releases is None or surface.column is None or has or not had:
             continue
         mode = sides(system, orbit)[:, surface.column]
         stuck = np.flatnonzero(mode == STUCK)
-        if len(stuck):
-            place, weights = surface.place
-            parameter[place] = float(orbit.nodes[stuck[-1]] @ np.array(weights))
+        if len(stuck) and (surface.place is not None or surface.alone):
+            parameter = placed(surface, parameter, orbit.nodes[stuck])
             modes[surface.switch] = HELD
     changed = not np.array_equal(parameter, orbit.parameter)
     return tuple(modes.items()), parameter if changed else None

@@ -1,7 +1,8 @@
 """What an impact brings about: it takes guards of other surfaces to their other side.
 
 An impact of a mass reverses its speed, and with it the speed at which friction on the mass slides. The mode
-of that surface changes at the impact's own event node.
+of that surface changes at the impact's own event node. Against a belt that moves the guard jumps without
+passing 0 as well, and it may be 0 just before or just after an impact that has speed.
 """
 
 from __future__ import annotations
@@ -10,14 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.events.impacts import slope_before, tied
 from periodic.events.modes import mode_after, sides
 from periodic.events.rates import before
+from periodic.events.thresholds import AT_LEVEL
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
-
-SHALLOW = 1e-9
-"""A guard that is as near to its level, as a part of its largest value, is on neither side."""
+from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Sides:
     @property
     def reached(self) -> int:
         """The side to which the impact takes it; the mode that it had where it is on none."""
-        return int(np.sign(self.after)) if abs(self.after) > SHALLOW else self.mode
+        return int(np.sign(self.after)) if abs(self.after) > AT_LEVEL else self.mode
 
 
 def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Sides:
@@ -40,27 +40,58 @@ def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Si
     after = orbit.nodes[orbit.mesh.starts[index]][None]
     states = np.concatenate([orbit.stages.reshape(-1, x.shape[1]), x, after])
     tau = np.concatenate([orbit.stage_phases.ravel(), phase, phase])
-    values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
+    modes = sides(system, orbit)[interval]  # those before the impact
+    values = guards(system, states, tau, orbit.parameter, np.repeat(modes[None], len(tau), axis=0))
+    values = values[:, surface.switch]
     values = values / (float(np.abs(values).max()) or 1.0)
     early, late = float(values[-2]), float(values[-1])
     mode = 0 if surface.column is None else int(sides(system, orbit)[interval, surface.column])
-    if mode == 0 and abs(early) > SHALLOW:
+    if mode == 0 and abs(early) > AT_LEVEL:
         mode = int(np.sign(early))
     return Sides(early, late, mode)
 
 
+def thrown(system: System, orbit: Orbit, surface: SurfaceLike) -> list[int]:
+    """Return the impacts of an orbit, by their event nodes, at which the guard of another surface jumps.
+
+    Not those at which it is 0 when the impact has no speed, as that of friction on the ground: it passes its
+    level where the impact ends.
+    """
+    if surface.kind not in (Kind.SLIDING, Kind.SLIDER):
+        return []
+    return [index for index in tied(system, orbit) if _thrown(system, orbit, surface.switch, index)]
+
+
+def _thrown(system: System, orbit: Orbit, switch: int, index: int) -> bool:
+    """Whether an impact throws a guard; at the state between the two about it the impact has no speed."""
+    _, x, phase = before(orbit, index)
+    start, own = orbit.mesh.starts[index], orbit.mesh.events[index].switch
+    after = orbit.nodes[start][None]
+    by_state, by_phase, _ = system.switch_gradient(after, phase, orbit.parameter)
+    arriving = slope_before(system, orbit, index)
+    leaving = float(by_phase[0, own] + by_state[0, own] @ orbit.node_rates[start])
+    if arriving == leaving:
+        return False
+    still = x + arriving / (arriving - leaving) * (after - x)
+    states, tau = np.concatenate([x, after, still]), np.repeat(phase, 3)
+    early, late, between = system.switch(states, tau, orbit.parameter)[:, switch]
+    least = AT_LEVEL * max(abs(early), abs(late))
+    return bool(abs(late - early) > least and abs(between) > least)
+
+
 def others(system: System, event: EventNode) -> list[SurfaceLike]:
     """Return the surfaces that an impact may take to their other sides."""
-    bent = (Kind.KINK, Kind.JUMP, Kind.SLIDING, Kind.SLIDER)
+    bent = (Kind.KINK, Kind.JUMP, Kind.SLIDING, Kind.SLIDER, Kind.RELAY)
     return [s for s in surfaces_of(system) if s.kind in bent and s.switch != event.switch]
 
 
 def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, int], ...]:
     """Return the modes that an impact of an orbit brings about, as its event node has them."""
-    event, found = orbit.mesh.events[index], list[tuple[int, int]]()
+    event = orbit.mesh.events[index]
+    found = [pair for pair in event.modes if pair == (event.switch, STUCK)]  # what comes to rest on the wall
     for surface in others(system, event):
-        told, own = mode_after(surface, event), beside(system, orbit, index, surface)
-        if told == STUCK and abs(own.after) <= SHALLOW:
+        stated, own = mode_after(surface, event), beside(system, orbit, index, surface)
+        if stated == STUCK and abs(own.after) <= AT_LEVEL:
             found.append((surface.switch, STUCK))
         elif own.reached not in (0, own.mode):
             found.append((surface.switch, own.reached))

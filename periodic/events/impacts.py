@@ -1,7 +1,7 @@
 """Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
 
 The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
-it is told by `periodic.events.saltation`.
+it: `periodic.events.saltation`.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from periodic.events.modes import modes_in, of_kind
-from periodic.events.rates import before, rate_before
-from periodic.events.saltation import mapped, saltation
+from periodic.events.rates import all_before, before, rate_before
+from periodic.events.saltation import Saltations, mapped
 from periodic.orbit.jump import Jump
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -28,16 +28,34 @@ def tied(system: System, orbit: Orbit) -> list[int]:
 
 
 def jumps(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Jump]:
-    """Return the event nodes of an orbit at which its state or its rates jump, linearised.
+    """Return the event nodes of an orbit at which its state or its rates jump, linearised."""
+    own = jumping(system, orbit)
+    if not own:
+        return []
+    carried = Saltations(system, orbit, own, free)
+    interval, x, phase = all_before(orbit, own)
+    events = [orbit.mesh.events[i] for i in own]
+    after, by_state, by_phase, by_parameter = mapped(system, events, x, phase, orbit.parameter)
+    k, found = len(orbit.phases), list[Jump]()
+    for place, index in enumerate(own):
+        by_outer = np.zeros((x.shape[1], k + len(free)))
+        by_outer[:, index] = by_phase[place]
+        by_outer[:, k:] = by_parameter[place][:, list(free)]
+        states = x[place], after[place], by_state[place]
+        found.append(Jump(index, int(interval[place]), *states, by_outer, carried, place))
+    return found
 
-    Raises numpy.linalg.LinAlgError where one has no rates.
-    """
-    jumping = {*resets_of(system), *jumps_of(system), *carrying(system)}
-    return [
-        _jump(system, orbit, i, free)
+
+def jumping(system: System, orbit: Orbit) -> tuple[int, ...]:
+    """Return the event nodes of an orbit at which its state or its rates jump."""
+    own = {*resets_of(system), *jumps_of(system), *carrying(system)} if orbit.mesh.events else set()
+    if not own:
+        return ()
+    return tuple(
+        i
         for i, event in enumerate(orbit.mesh.events)
-        if (event.switch in jumping or {k for k, _ in event.modes} & jumping) and not _settling(system, event)
-    ]
+        if (event.switch in own or {k for k, _ in event.modes} & own) and not _settling(system, event)
+    )
 
 
 def _settling(system: System, event: EventNode) -> bool:
@@ -51,42 +69,42 @@ def carrying(system: System) -> list[int]:
     return [k for surface in of_kind(system, Kind.SLIDER) for k in surface.releases or ()]
 
 
-def _jump(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Jump:
-    switch, k = orbit.mesh.events[index].switch, len(orbit.phases)
-    interval, x, phase = before(orbit, index)
-    after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, orbit.parameter)
-    by_outer = np.zeros((x.shape[1], k + len(free)))
-    by_outer[:, index] = by_phase[0]
-    by_outer[:, k:] = by_parameter[0][:, list(free)]
-    carried = saltation(system, orbit, index, free)(x, phase, orbit.parameter)
-    return Jump(index, interval, x[0], after[0], by_state[0], by_outer, carried)
-
-
-def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> tuple[Array, Array | None]:
-    """Return the steps (N, n, w) with impacts at their ends, and the steps of perturbations at fixed tau.
-
-    The latter have shape (N, n, n+q), None where there are no impacts: their columns are the states, then the
-    free parameters.
-    """
-    if not found:
-        return step, None
-    n, k = step.shape[1], len(orbit.phases)
-    perturbed = np.concatenate([step[:, :, 1 : 1 + n], step[:, :, 1 + n + k :]], axis=2)
+def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> Array:
+    """Return the steps (N, n, w) with impacts at their ends."""
     for jump in found:
         j, start = jump.interval, orbit.nodes[jump.interval + 1]
         own = step[j].copy()
         own[:, 0] += start - jump.before
-        perturbed[j] = jump.saltation[:, :n] @ perturbed[j]
-        perturbed[j, :, n:] += jump.saltation[:, n:]
         step[j] = jump.by_state @ own
         step[j, :, 0] += jump.after - start
-        step[j, :, 1 + n :] += jump.by_outer
-    return step, perturbed
+        step[j, :, 1 + orbit.nodes.shape[1] :] += jump.by_outer
+    return step
 
 
-def event_row(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Row:
-    """Return the condition of an impact, linearised: s(x-, phi, p) = 0 where the interval before it ends."""
-    switch, k, end = orbit.mesh.events[index].switch, len(orbit.phases), orbit.mesh.scheme.end
+def perturbed(orbit: Orbit, step: Array, arriving: Array, found: Sequence[Jump]) -> Array:
+    """Return the steps of perturbations at fixed tau, shape (N, n, n+q), by the states, then the parameters.
+
+    arriving (jumps, n, w): the steps of the intervals that end at jumps, up to these. Raises
+    numpy.linalg.LinAlgError where one has no rates.
+    """
+    n, k = step.shape[1], len(orbit.phases)
+
+    def at_fixed_phase(steps: Array) -> Array:
+        return np.concatenate([steps[:, :, 1 : 1 + n], steps[:, :, 1 + n + k :]], axis=2)
+
+    passing = at_fixed_phase(step)
+    for jump, own in zip(found, at_fixed_phase(arriving), strict=True):
+        passing[jump.interval] = jump.saltation[:, :n] @ own
+        passing[jump.interval, :, n:] += jump.saltation[:, n:]
+    return passing
+
+
+def arriving_row(system: System, orbit: Orbit, index: int, switch: int, free: tuple[int, ...]) -> Row:
+    """Return a switch s(x-, phi, p) where the interval before an event node ends, and its gradient.
+
+    That of an impact is 0 there.
+    """
+    k, end = len(orbit.phases), orbit.mesh.scheme.end
     interval, x, phase = before(orbit, index)
     side = modes_in(system, orbit, interval)
     d_state, d_phase, d_parameter = guards_gradient(system, x, phase, orbit.parameter, side)

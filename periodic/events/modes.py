@@ -16,25 +16,26 @@ from typing import cast
 
 import numpy as np
 
+from periodic.events.thresholds import SHALLOW
 from periodic.orbit.mesh import EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import (
+    HELD,
+    MINUS,
+    PLUS,
     STUCK,
     Jumping,
     Kind,
     LinearisationLike,
     SurfaceLike,
     System,
+    guards,
     surfaces_of,
 )
 
 LOOKS = 3
 """States at which guards are compared."""
-
-SHALLOW = 0.05
-"""How far past its level a switch without event nodes may be, as a part of how far it is on its own side."""
-
 
 _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
     weakref.WeakKeyDictionary()
@@ -44,7 +45,7 @@ _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Arra
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
     """Return the surface that a switch is the guard or a release of."""
-    return next(s for s in surfaces_of(system) if switch == s.switch or switch in (s.releases or ()))
+    return next(s for s in surfaces_of(system) if switch in (s.switch, s.leaves, *(s.releases or ())))
 
 
 def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
@@ -54,6 +55,11 @@ def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
 
 def bends(system: System) -> list[int]:
     """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
+    return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP, Kind.RELAY)]
+
+
+def returns(system: System) -> list[int]:
+    """Return those past whose level an excursion may be as short as it likes: all but relays."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
 
 
@@ -70,6 +76,11 @@ def twins(system: System, switch: int) -> list[int]:
     values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
     same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
     return [switch, *same]
+
+
+def relays(system: System) -> list[int]:
+    """Return the guards of relays: in either mode another function."""
+    return [surface.switch for surface in of_kind(system, Kind.RELAY)]
 
 
 def of_held(system: System) -> list[int]:
@@ -102,8 +113,15 @@ def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
     own = dict(event.modes).get(surface.switch)
     if own is not None:
         return own
+    if surface.kind == Kind.IMPACT:
+        return event.direction if event.switch == surface.leaves else None
     passes = event.switch == surface.switch or event.switch in (surface.releases or ())
-    return event.direction if passes and surface.kind != Kind.IMPACT else None
+    return event.direction if passes else None
+
+
+def held_all_along(mesh: Mesh, surface: SurfaceLike) -> bool:
+    """Whether a motion is held at a surface all along."""
+    return dict(mesh.modes).get(surface.switch) == HELD
 
 
 def group(system: System, mesh: Mesh, switch: int) -> list[int]:
@@ -155,7 +173,7 @@ def _along(mesh: Mesh, surface: SurfaceLike) -> Array:
     found = np.full(mesh.ntst, np.nan if whole is None else whole, dtype=float)
     for j, mode in changes:
         found[j:] = mode
-    return found
+    return found if surface.kind != Kind.IMPACT else np.where(found == STUCK, STUCK, 0.0)
 
 
 def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
@@ -163,9 +181,22 @@ def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
     if surface.releases is not None:
         return 0
     states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
+    if surface.kind == Kind.RELAY:
+        return _relayed(system, states, tau, orbit.parameter, surface)
     values = system.switch(states, tau, orbit.parameter)[:, surface.switch]
     side = 1 if values.max() > -values.min() else -1
     return side if (side * values).min() > -SHALLOW * np.abs(values).max() else 0
+
+
+def _relayed(system: System, states: Array, tau: Array, parameter: Array, surface: SurfaceLike) -> int:
+    """The mode of a relay that never switches: on where it has been above the upper threshold."""
+    columns = sum(other.column is not None for other in surfaces_of(system))
+    side = np.zeros((len(tau), columns))
+    values = dict[int, Array]()
+    for mode in (MINUS, PLUS):
+        side[:, cast(int, surface.column)] = mode
+        values[mode] = guards(system, states, tau, parameter, side)[:, surface.switch]
+    return PLUS if values[MINUS].max() > 0 and values[PLUS].min() > 0 else MINUS
 
 
 def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, ...]:
@@ -184,12 +215,12 @@ def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, .
 
 
 def inconsistency(system: System, events: Sequence[EventNode]) -> str:
-    """Return where event nodes are no word of what is held and released; '' where they are one.
+    """Return where event nodes are no word of what is held and released, or a relay; '' where they are one.
 
     Each transition of a surface begins in the mode in which the one before ended.
     """
     for surface in surfaces_of(system):
-        if surface.releases is None:
+        if surface.releases is None and surface.kind != Kind.RELAY:
             continue
         own = [(e, cast(int, mode_after(surface, e))) for e in events if mode_after(surface, e) is not None]
         for (_, before), (event, after) in zip(own[-1:] + own[:-1], own, strict=True):
@@ -212,11 +243,6 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
     if not getattr(system, "guards_depend", False):
         return np.zeros((1, 0))
     return sides(system, orbit)[interval][None]
-
-
-def modes_at(system: System, orbit: Orbit, phase: Array) -> Array:
-    """Return the modes at phases (K,), shape (K, columns)."""
-    return sides(system, orbit)[orbit.locate(phase)[0]]
 
 
 def linearise(

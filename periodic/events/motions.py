@@ -12,11 +12,17 @@ from typing import cast
 
 import numpy as np
 
-from periodic.events.modes import twins
+from periodic.events.heldalong import placed
+from periodic.events.modes import of_kind, sides, twins
+from periodic.events.relays import mode_at
 from periodic.events.rewrites.sites import Node, ordered
+from periodic.events.rewrites.together import together
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, SAME_PHASE
+from periodic.events.violations import largest
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
-from periodic.orbit.mesh import EventNode, Mesh, uniform
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import (
@@ -28,33 +34,30 @@ from periodic.system import (
     Moving,
     SurfaceLike,
     System,
-    linear_of,
+    TrajectoryLike,
     surfaces_of,
 )
 
-PER_PERIOD, LEAST = 60, 4
-"""Intervals in a period, and in the shortest segment."""
+PER_PERIOD = 60
+"""Intervals in a period of the guess."""
 
-SAME = 1e-9
-"""Events that lie so near to each other (rad) are one."""
+FOLLOWED = 1e-8
+"""Tolerance with which motions are followed in time for their events."""
 
 APART = 1e-5
 """How far from each other (rad) events are put that are one in time, but do not bring each other about."""
-
-ASIDE = 1e-10
-"""How far beside an event (rad) the motion is looked at, which may jump there."""
 
 
 def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
     """Return the event nodes of what happened along a motion, with their phases."""
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
-    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME)):
+    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME_PHASE)):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
         for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
             node = _node(system, surfaces[apart[0].surface], apart)
             found.append((node, apart[0].phase + count * APART))
-    return found
+    return together(system, found, APART)
 
 
 def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
@@ -77,19 +80,27 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
     """The event node of what happens at once, the first of which brings the others about."""
     surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
     for event in each:
-        if surfaces[event.surface].kind != Kind.IMPACT and (event is not first or event.after == STUCK):
+        if event.after == STUCK or (surfaces[event.surface].kind != Kind.IMPACT and event is not first):
             modes.append((surfaces[event.surface].switch, event.after))
     switch, direction = _passage(system, surface, first)
     return EventNode(switch, direction, modes=tuple(modes))
 
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:
-    """What brings the others about that happen at once: an impact, then what comes to rest."""
-    return 0 if surface.kind == Kind.IMPACT else 2 if event.before == STUCK else 1
+    """What brings the others about that happen at once: an impact, what comes to rest, what is let go.
+
+    Friction goes before sliders beside it.
+    """
+    if surface.kind == Kind.IMPACT and event.before != STUCK:
+        return 0
+    return (3 if event.before == STUCK else 1) + (surface.kind == Kind.SLIDER)
 
 
 def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
     """The switch that passes its level at an event, and the direction."""
+    if surface.kind == Kind.IMPACT and event.before == STUCK:
+        assert surface.leaves is not None
+        return surface.leaves, 1
     if surface.kind == Kind.IMPACT:
         return surface.switch, system.switches[surface.switch].direction
     if event.before == STUCK and surface.releases is not None:
@@ -97,16 +108,41 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
     return surface.switch, -event.before if event.after == STUCK else event.after
 
 
+def motion_from(
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    phase: Array,
+    tolerance: float,
+    modes: Sequence[int] | None,
+) -> TrajectoryLike:
+    """Return the motion of a system from a state, in given modes before it of relays and what slides."""
+    given = state, algebraic, parameter, phase, tolerance
+    keeps = any(surface.kind == Kind.RELAY or surface.alone for surface in surfaces_of(system))
+    return system.motion(*given, modes) if modes and keeps else system.motion(*given)
+
+
 def orbit_of(
-    system: Moving, state: Array, algebraic: Array, parameter: Array, tolerance: float
+    system: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    tolerance: float,
+    begin: float = 0.0,
+    before: Sequence[int] | None = None,
 ) -> Orbit | None:
     """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
 
+    begin: the phase of the state; before: the modes of all surfaces before it, which relays and sliding keep.
+
     Raises what the integration raises.
     """
-    if not any(surface.releases is not None for surface in surfaces_of(system)):
+    followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
+    if not followed and all(surface.leaves is None for surface in surfaces_of(system)):
         return None
-    whole = system.motion(state, algebraic, parameter, np.array([0.0, FORCED]), tolerance)
+    ends = np.array([begin, begin + FORCED])
+    whole = motion_from(system, state, algebraic, parameter, ends, tolerance, before)
     if not hasattr(whole, "modes"):
         return None
     whole = cast(Followed, whole)
@@ -115,28 +151,62 @@ def orbit_of(
     mesh, phases = _mesh(system, nodes)
     modes, parameter = list[tuple[int, int]](), parameter.copy()
     for index, surface in enumerate(surfaces_of(system)):
-        if surface.releases is None or changed & {surface.switch, *surface.releases}:
+        if surface not in followed or changed & {surface.switch, *(surface.releases or ())}:
             continue
         mode = whole.modes[index]
-        if mode == STUCK and surface.place is not None:
-            place, weights = surface.place
-            parameter[place] = float(np.dot(weights, state))
-            mode = HELD
+        if mode == STUCK and (surface.place is not None or surface.alone):
+            parameter, mode = placed(surface, parameter, state[None]), HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance)
+    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin, before)
 
 
-def followed(system: System, orbit: Orbit, tolerance: float) -> Orbit | None:
+def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
     """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
 
-    It may violate its word: that of the motion does not. Raises what the integration raises.
+    It is followed from amid the longest segment in which it is not behind a wall, as far from all events as
+    can be, and through some periods `before` that one. It may violate its word: that of the motion does not.
+
+    Raises what the integration raises.
     """
-    if not hasattr(system, "motion") or linear_of(system) or orbit.mesh.period != FORCED:
+    if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
         return None
-    at = np.zeros(1)
+    at = _begin(system, orbit)[None]
     state, algebraic = orbit.state(at)[0], orbit.algebraic_guess(at)[0]
-    return orbit_of(cast(Moving, system), state, algebraic, orbit.parameter, tolerance)
+    moving, begin, modes = cast(Moving, system), float(at[0]), _modes(system, orbit, at)
+    for _ in range(before):
+        ends = np.array([begin, begin + FORCED])
+        path = motion_from(moving, state, algebraic, orbit.parameter, ends, tolerance, modes)
+        state, algebraic = path.state[-1], path.algebraic[-1]
+        modes = list(cast(Followed, path).modes) if hasattr(path, "modes") else modes
+    return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin, modes)
+
+
+def _modes(system: System, orbit: Orbit, at: Array) -> list[int]:
+    """The modes of all surfaces at a phase (1,), 0 of those that have no column."""
+    found = sides(system, orbit)[orbit.locate(at)[0][0]]
+    relays = {s.switch: mode_at(system, orbit, s, at) for s in surfaces_of(system) if s.kind == Kind.RELAY}
+    own = [0 if s.column is None else int(found[s.column]) for s in surfaces_of(system)]
+    return [relays.get(s.switch, mode) for s, mode in zip(surfaces_of(system), own, strict=True)]
+
+
+def _begin(system: System, orbit: Orbit) -> Array:
+    """The phase amid the longest segment in which an orbit is not behind a wall; of all if it is in each."""
+    at, walls = np.mod(amid(orbit), FORCED), of_kind(system, Kind.IMPACT)
+    ahead = np.ones(len(at), dtype=bool)
+    for k in (wall.switch for wall in walls):
+        own = -system.switches[k].direction * system.switch(orbit.state(at), at, orbit.parameter)[:, k]
+        ahead &= own >= -AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
+    return np.asarray(at[ahead.argmax()])
+
+
+def amid(orbit: Orbit) -> Array:
+    """Return the phases amid the segments, the longest first; 0 where there are none."""
+    if not orbit.mesh.events:
+        return np.zeros(1)
+    lengths = orbit.mesh.segment_lengths(orbit.phases)
+    order = np.argsort(-lengths, kind="stable")
+    return np.asarray((orbit.phases + lengths / 2)[order])
 
 
 def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
@@ -146,7 +216,7 @@ def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
     rest = constant(uniform(Scheme(), 1), *system.rest(system.nominal), system.nominal)
     events, phases = ordered(nodes, rest)
     lengths = np.diff(np.append(phases, phases[0] + FORCED))
-    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST)
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), MIN_INTERVALS)
     breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
     return Mesh(Scheme(), breaks, events, FORCED), phases
 
@@ -159,17 +229,19 @@ def _on(
     algebraic: Array,
     parameter: Array,
     tolerance: float,
+    begin: float,
+    before: Sequence[int] | None,
 ) -> Orbit:
-    """The motion at the points of a mesh, which may begin anywhere in it."""
+    """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
     nodes = mesh.nodes(phases)
     stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points
     for start in mesh.starts:
-        nodes[start] += ASIDE
-        stages[start - 1, -1] -= ASIDE
-    flat = np.mod(np.concatenate([nodes, stages.ravel()]), FORCED)
-    phase, place = np.unique(np.append(flat, [0.0, FORCED]), return_inverse=True)
-    path = system.motion(state, algebraic, parameter, phase, tolerance)
+        nodes[start] += SAME_PHASE
+        stages[start - 1, -1] -= SAME_PHASE
+    flat = begin + np.mod(np.concatenate([nodes, stages.ravel()]) - begin, FORCED)
+    phase, place = np.unique(np.append(flat, [begin, begin + FORCED]), return_inverse=True)
+    path = motion_from(system, state, algebraic, parameter, phase, tolerance, before)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]
     first, count = len(nodes), mesh.ntst

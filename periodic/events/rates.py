@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.events.modes import linearise
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
-ITERATIONS = 4
-"""Newton steps; one is enough where the equations are linear in rates and unknowns."""
 
-CLOSE = 1e-14
-"""Relative change that is none."""
+def rates_at(
+    system: System, parameter: Array, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
+) -> Array:
+    """Return x' (K, n) at states (K, n) and phases (K,) on given sides of jumps, from guesses of x' and z.
+
+    Raises numpy.linalg.LinAlgError where the equations do not determine it.
+    """
+    n, found = x.shape[1], np.concatenate([rate, algebraic], axis=1)
+    for _ in range(MOST_ITERATIONS):
+        line = linearise(system, found[:, :n], x, found[:, n:], phase, parameter, side)
+        matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)
+        change = np.linalg.solve(matrix, line.residual[..., None])[..., 0]
+        found = found - change
+        if (np.abs(change).max(axis=1) <= CONVERGED * (1 + np.abs(found).max(axis=1))).all():
+            break
+    return found[:, :n]
 
 
 def rate_at(
@@ -23,34 +39,19 @@ def rate_at(
 
     Raises numpy.linalg.LinAlgError where the equations do not determine it.
     """
-    n, found = x.shape[1], np.append(rate, algebraic)[None]
-    for _ in range(ITERATIONS):
-        line = linearise(system, found[:, :n], x, found[:, n:], phase, orbit.parameter, side[None])
-        matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
-        change = np.linalg.solve(matrix, line.residual[0])
-        found = found - change
-        if np.abs(change).max() <= CLOSE * (1 + np.abs(found).max()):
-            break
-    return found[0, :n]
-
-
-def slope_at(
-    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
-) -> Array:
-    """Return dx'/dx (n, n) there, from x' and z.
-
-    Raises numpy.linalg.LinAlgError where the equations do not determine it.
-    """
-    n = x.shape[1]
-    line = linearise(system, rate[None], x, algebraic[None], phase, orbit.parameter, side[None])
-    matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)[0]
-    return np.asarray(-np.linalg.solve(matrix, line.d_state[0])[:n])
+    return rates_at(system, orbit.parameter, x, rate[None], algebraic[None], phase, side[None])[0]
 
 
 def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
     """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
     interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst
     return interval, orbit.mesh.scheme.end[None] @ orbit.knots[interval], orbit.phases[index : index + 1]
+
+
+def all_before(orbit: Orbit, indices: Sequence[int]) -> tuple[NDArray[np.int_], Array, Array]:
+    """The intervals before event nodes (K,), the states x- at their ends (K, n), and the phases (K,)."""
+    interval = (orbit.mesh.starts[list(indices)].astype(np.int_) - 1) % orbit.mesh.ntst
+    return interval, orbit.mesh.scheme.end @ orbit.knots[interval], orbit.phases[list(indices)]
 
 
 def rate_before(orbit: Orbit, index: int) -> Array:

@@ -10,58 +10,82 @@ Piecewise-smooth Dynamical Systems, 2008, 2.5).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.events.modes import modes_in, sides
-from periodic.events.rates import before, rate_at, rate_before
+from periodic.events.rates import all_before, before, rate_before, rates_at
 from periodic.orbit.jump import Jump
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
-from periodic.system import Resetting, System, guards_gradient, resets_of
+from periodic.system import STUCK, Resetting, System, guards_gradient, resets_of
+from periodic.system.precision import difference_step
 
-STEP = 1e-3
+STEP = difference_step(order=4)
 """Step of differences in each argument, as a part of its size: they are of the fourth order."""
 
 STENCIL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 """Central difference of the fourth order: steps and their weights."""
 
-Saltation = Callable[[Array, Array, Array], Array]
-"""(x- (1, n), tau (1,), p) -> matrix (n, n+q): dx+ from (dx-, dp) at fixed tau."""
 
+@dataclass(frozen=True, eq=False)
+class Saltations:
+    """The saltation matrices at some event nodes of an orbit, for some free parameters.
 
-def saltation(system: System, orbit: Orbit, index: int, free: tuple[int, ...]) -> Saltation:
-    """Return the saltation matrix at an event node of an orbit, as a function of where the event is.
-
-    It raises numpy.linalg.LinAlgError where there are no rates, and where the switch is at rest.
+    See `periodic.orbit.jump.Carried`. Rates before and after are guessed from the orbit's own.
     """
-    switch, start = orbit.mesh.events[index].switch, orbit.mesh.starts[index]
-    interval, side, unknown = before(orbit, index)[0], sides(system, orbit), orbit.algebraic
-    arriving = rate_before(orbit, index), unknown[interval, -1]
-    leaving = orbit.node_rates[start], unknown[start, 0]
-    n, chosen = orbit.nodes.shape[1], list(free)
 
-    def matrix(x: Array, phase: Array, parameter: Array) -> Array:
-        at = replace(orbit, parameter=parameter)
-        after, by_state, by_phase, by_parameter = mapped(system, switch, x, phase, parameter)
-        old = rate_at(system, at, x, *arriving, phase, side[interval])
-        new = rate_at(system, at, after, *leaving, phase, side[start])
-        slopes_of = guards_gradient(system, x, phase, parameter, side[interval : interval + 1])
-        s_state, s_phase, s_parameter = (g[0, switch] for g in slopes_of)
-        slopes = np.append(s_state, s_parameter[chosen])
-        jump = new - by_state[0] @ old - by_phase[0]
-        found = np.zeros((n, n + len(free)))
-        found[:, :n], found[:, n:] = by_state[0], by_parameter[0][:, chosen]
-        speed = float(s_state @ old + s_phase)
-        if speed == 0:
+    system: System
+    orbit: Orbit
+    indices: tuple[int, ...]
+    free: tuple[int, ...]
+
+    @cached_property
+    def matrices(self) -> Array:
+        """S (K, n, n+q): dx+ from (dx-, dp) at fixed tau. Raises numpy.linalg.LinAlgError, see `at`."""
+        _, x, phase = all_before(self.orbit, self.indices)
+        return self.at(x, phase, self.orbit.parameter)
+
+    def at(self, x: Array, phase: Array, parameter: Array) -> Array:
+        """Return them for events elsewhere: x- (K, n), tau (K,), p.
+
+        Raises numpy.linalg.LinAlgError where there are no rates, and where a switch is at rest.
+        """
+        system, orbit, side = self.system, self.orbit, self._modes
+        interval, start = self._intervals
+        events, each = [orbit.mesh.events[i] for i in self.indices], np.arange(len(phase))
+        switch = [event.switch for event in events]
+        after, by_state, by_phase, by_parameter = mapped(system, events, x, phase, parameter)
+        arriving = orbit.knot_rates[interval], orbit.algebraic[interval, -1]
+        ends = orbit.mesh.scheme.end @ arriving[0]
+        old = rates_at(system, parameter, x, ends, arriving[1], phase, side[interval])
+        leaving = orbit.node_rates[start], orbit.algebraic[start, 0]
+        new = rates_at(system, parameter, after, *leaving, phase, side[start])
+        slopes_of = guards_gradient(system, x, phase, parameter, side[interval])
+        s_state, s_phase, s_parameter = (g[each, switch] for g in slopes_of)
+        slopes = np.concatenate([s_state, s_parameter[:, list(self.free)]], axis=1)
+        jump = new - np.einsum("kij,kj->ki", by_state, old) - by_phase
+        speed = np.einsum("kn,kn->k", s_state, old) + s_phase
+        if (speed == 0).any():
             raise np.linalg.LinAlgError("an event at rest")
-        return found + np.outer(jump, slopes) / speed
+        smooth = np.concatenate([by_state, by_parameter[:, :, list(self.free)]], axis=2)
+        return smooth + jump[:, :, None] * slopes[:, None] / speed[:, None, None]
 
-    return matrix
+    @cached_property
+    def _intervals(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+        start = self.orbit.mesh.starts[list(self.indices)].astype(np.int_)
+        return (start - 1) % self.orbit.mesh.ntst, start
+
+    @cached_property
+    def _modes(self) -> Array:
+        return sides(self.system, self.orbit)
 
 
 def saltation_gradient(
@@ -77,13 +101,13 @@ def saltation_gradient(
 
     S is the saltation matrix at an event node for the parameters `tangent`.
     """
-    matrix = saltation(system, orbit, index, tangent)
+    matrix = Saltations(system, orbit, (index,), tangent)
     interval, x, phase = before(orbit, index)
     n, k, end = x.shape[1], len(orbit.phases), orbit.mesh.scheme.end
     place = np.concatenate([x[0], phase, orbit.parameter])
 
     def value(moved: Array) -> float:
-        return float(weights @ matrix(moved[None, :n], moved[n : n + 1], moved[n + 1 :]) @ perturbation)
+        return float(weights @ matrix.at(moved[None, :n], moved[n : n + 1], moved[n + 1 :])[0] @ perturbation)
 
     def slope(i: int) -> float:
         unit = np.zeros(len(place))
@@ -128,12 +152,35 @@ def at_fixed_phase(
 
 
 def mapped(
-    system: System, switch: int, x: Array, phase: Array, parameter: Array
+    system: System, events: Sequence[EventNode], x: Array, phase: Array, parameter: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """x+ with its derivatives in state, phase and parameters; x- itself where only the equations jump."""
-    if switch not in resets_of(system):
-        n = x.shape[1]
-        return x, np.eye(n)[None], np.zeros((1, n)), np.zeros((1, n, len(parameter)))
-    resetting = cast(Resetting, system)
-    after = resetting.reset(switch, x, phase, parameter)
-    return after, *resetting.reset_gradient(switch, x, phase, parameter)
+    """x+ (K, n), its derivatives in state, phase and parameters; x- itself where only the equations jump.
+
+    Of an impact after which it rests on the wall x+ is where x-, r(x-), r(r(x-)), ... tend to: the speed
+    falls to -e times itself each time, so that it is x- + (r(x-) - x-)/(1 + e), whatever e is.
+    """
+    count, n = x.shape
+    after, by_state = x.copy(), np.tile(np.eye(n), (count, 1, 1))
+    by_phase, by_parameter = np.zeros((count, n)), np.zeros((count, n, len(parameter)))
+    switches, resets = np.array([event.switch for event in events]), {*resets_of(system)}
+    for switch in {*switches.tolist()} & resets:
+        own, resetting = switches == switch, cast(Resetting, system)
+        after[own] = resetting.reset(switch, x[own], phase[own], parameter)
+        slopes = resetting.reset_gradient(switch, x[own], phase[own], parameter)
+        by_state[own], by_phase[own], by_parameter[own] = slopes
+    for i, event in enumerate(events):
+        if event.switch not in resets or (event.switch, STUCK) not in event.modes:
+            continue
+        share = 1 / (1 + bounce(system, event.switch, x[i], phase[i], parameter)[1])
+        after[i] = x[i] + share * (after[i] - x[i])
+        by_state[i] = np.eye(n) + share * (by_state[i] - np.eye(n))
+        by_phase[i], by_parameter[i] = 0.0, 0.0
+    return after, by_state, by_phase, by_parameter
+
+
+def bounce(system: System, switch: int, x: Array, phase: float, parameter: Array) -> tuple[Array, float]:
+    """Return r(x-) (n,) and the part e of its speed that an impact leaves, by what the next one would."""
+    resetting, at = cast(Resetting, system), np.array([phase])
+    after = resetting.reset(switch, x[None], at, parameter)[0]
+    first, second = after - x, resetting.reset(switch, after[None], at, parameter)[0] - after
+    return after, -float(first @ second) / (float(first @ first) or 1.0)

@@ -1,4 +1,4 @@
-"""Side conditions at a change of events: how far a switch is from its level, how long a stretch is."""
+"""Side conditions at a change of events: how far a switch is from its level, how long a segment is."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.impacts import slope_before
+from periodic.events.impacts import arriving_row, slope_before
 from periodic.events.modes import modes_in
+from periodic.events.noderows import node_row
 from periodic.events.rates import before, rate_before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.gradients import Points, Slopes, gathered
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, guards, guards_gradient
+from periodic.system.precision import difference_step
 
-STEP = 1e-4
+STEP = difference_step(order=2)
 """Step (rad) along the motion of differences of a switch's gradient."""
 
 
@@ -91,31 +93,27 @@ class Lengths:
 
 @dataclass(frozen=True)
 class Limit:
-    """Side condition: side * (a switch) is `level` at an event node, which need not be its own."""
+    """Side condition: side * (a switch) is `level` at an event node, which need not be its own.
+
+    arriving: whether it is that of the state before the impact there.
+    """
 
     node: int
     switch: int
     side: int
     level: float = 0.0
+    arriving: bool = False
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
         """Return its value and gradient."""
-        start, k = orbit.mesh.starts[self.node], len(orbit.phases)
-        where = orbit.nodes[start : start + 1], orbit.phases[self.node : self.node + 1], orbit.parameter
-        modes = modes_in(system, orbit, start - 1)
-        d_state, d_phase, d_parameter = guards_gradient(system, *where, modes)
-        nodes, outer = np.zeros_like(orbit.nodes), np.zeros(k + len(free))
-        nodes[start] = d_state[0, self.switch]
-        outer[self.node] = d_phase[0, self.switch]
-        outer[k:] = d_parameter[0, self.switch, list(free)]
-        value = float(guards(system, *where, modes)[0, self.switch])
-        row = Row(value, nodes, outer).scaled(self.side)
-        return Row(row.value - self.level, row.nodes, row.outer)
+        at = arriving_row if self.arriving else node_row
+        row = at(system, orbit, self.node, self.switch, free).scaled(self.side)
+        return Row(row.value - self.level, row.nodes, row.outer, row.stages)
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Side condition: the switch of an impact arrives at its level with a given |ds/dtau|."""
+    """Side condition: the switch of an impact, or a relay, arrives at its level with a given |ds/dtau|."""
 
     index: int
     speed: float
@@ -125,13 +123,15 @@ class Speed:
         interval, x, phase = before(orbit, self.index)
         event, rate = orbit.mesh.events[self.index], rate_before(orbit, self.index)[None]
         points = Points(np.array([interval]), np.ones(1), phase, rate, x, np.zeros((1, 0)))
+        modes = modes_in(system, orbit, interval)
         ends = [
-            system.switch_gradient(x + step * rate, phase + step, orbit.parameter) for step in (STEP, -STEP)
+            guards_gradient(system, x + step * rate, phase + step, orbit.parameter, modes)
+            for step in (STEP, -STEP)
         ]
         by_state, by_phase, by_parameter = (
             (ahead - back)[:, event.switch] / (2 * STEP) for ahead, back in zip(*ends, strict=True)
         )
-        slope = system.switch_gradient(x, phase, orbit.parameter)[0][:, event.switch]
+        slope = guards_gradient(system, x, phase, orbit.parameter, modes)[0][:, event.switch]
         slopes = Slopes(slope, by_state, np.zeros((1, 0)), by_phase, by_parameter[0, list(free)])
         row = gathered(system, orbit, points, slopes, free).scaled(event.direction)
         return Row(speed(system, orbit, self.index) - self.speed, row.nodes, row.outer, row.stages)

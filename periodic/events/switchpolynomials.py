@@ -15,20 +15,13 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from periodic.events.modes import group, mode_after, of_kind, sides, sliding, surface_of
+from periodic.events.impactmodes import thrown
+from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of
+from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
-
-NOISE = 1e-11
-"""A switch that is as near to its level, as a part of its largest value, may be on either side of it."""
-
-BRIEF = 1e-2
-"""Length (rad) of excursions beside an event node that are not told from the passage there."""
-
-SHARED = 1e-9
-"""A switch that is as near to its level at another one's event node passes it there too."""
 
 
 @dataclass(frozen=True)
@@ -89,24 +82,21 @@ class SwitchPolynomials:
         mixed = _changing(bounds) | everywhere
         interval = np.repeat(np.arange(len(values)), scheme.ncol + 1)
         theta = np.tile(scheme.knots, len(values))
-        turning = np.flatnonzero(mixed & _changing(np.diff(bounds)))
-        found = [(j, t) for j in turning for t in _turns(scheme, values[j])]
-        extra = np.array(found, dtype=float).reshape(-1, 2)
-        interval = np.append(interval, extra[:, 0].astype(int))
-        theta = np.append(theta, extra[:, 1])
-        value = np.append(
-            values.ravel(), np.einsum("il,il->i", scheme.basis(extra[:, 1]), values[extra[:, 0].astype(int)])
-        )
+        bending = np.flatnonzero(mixed & _changing(np.diff(bounds)))
+        which, places = _stationary(scheme, values[bending])
+        inside = bending[which]
+        interval, theta = np.append(interval, inside), np.append(theta, places)
+        value = np.append(values.ravel(), np.einsum("il,il->i", scheme.basis(places), values[inside]))
         order = np.lexsort((theta, interval))
         interval, theta, value = interval[order], theta[order], value[order]
         far = np.isfinite(value) & (np.abs(value) > NOISE * np.abs(values).max())
         sides = np.sign(np.where(far, value, 0.0)).astype(int)
         return Along(interval, theta, grid.left[interval] + theta * grid.width[interval], value, sides)
 
-    def passages(self, switch: int) -> list[tuple[EventNode, float]]:
+    def crossings(self, switch: int) -> list[tuple[EventNode, float]]:
         """Return where a switch passes its level, with the phases in order, those of event nodes exact.
 
-        What an impact brings about is no passage.
+        What an impact brings about is no crossing.
         """
         along = self.along(switch)
         kept = np.flatnonzero(along.sides)
@@ -173,7 +163,7 @@ class SwitchPolynomials:
     def _directions_of(self, switch: int) -> list[int]:
         values, found = self.knots[:, :, switch], []
         surface = surface_of(self.system, switch)
-        near = SHARED * float(np.abs(values).max())
+        near = AT_LEVEL * float(np.abs(values).max())
         for j, event in zip(self.orbit.mesh.starts, self.orbit.mesh.events, strict=True):
             before, after = values[j - 1, -2], values[j, 1]
             shared = abs(values[j, 0]) <= near and before * after < 0
@@ -184,12 +174,16 @@ class SwitchPolynomials:
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
         """Side of a switch in each interval by the modes of its surface, `otherwise` without event nodes.
 
-        Of a switch with impacts it is the side that they lead back to. Where the motion is held at a surface
-        its guard has none, 0, and elsewhere those of the releases have none.
+        Of a switch with impacts it is the side that they lead back to, of a relay its mode. Where the motion
+        is held at a surface its guard has none, 0, and elsewhere those of the releases have none.
         """
         mesh, surface = self.orbit.mesh, surface_of(self.system, switch)
         if surface.releases is not None:
             return self._held(switch, surface, otherwise)
+        if surface.kind == Kind.RELAY and surface.column is not None:
+            return self.modes[:, surface.column].astype(int)
+        if surface.kind == Kind.IMPACT and switch == surface.leaves:
+            return np.where(self._resting(surface), -1, 0)
         if surface.kind == Kind.IMPACT:
             return np.full(mesh.ntst, -self.system.switches[switch].direction)
         own = [(j, d) for j, d in zip(mesh.starts, self._directions(switch), strict=True) if d]
@@ -197,6 +191,12 @@ class SwitchPolynomials:
         for start, direction in own:
             sides[start:] = direction
         return sides
+
+    def _resting(self, surface: SurfaceLike) -> NDArray[np.bool_]:
+        """In which intervals something rests on a wall."""
+        if surface.column is None:
+            return np.zeros(self.orbit.mesh.ntst, dtype=bool)
+        return self.modes[:, surface.column] == STUCK
 
     def _held(self, switch: int, surface: SurfaceLike, otherwise: int) -> NDArray[np.int_]:
         assert surface.releases is not None and surface.column is not None
@@ -223,8 +223,8 @@ class SwitchPolynomials:
         values = np.nan_to_num(self.knots[:, :, switch])
         return int(np.sign(values.flat[np.abs(values).argmax()])) or 1
 
-    def unseen(self, switch: int, otherwise: int) -> list[Extremum]:
-        """Return the farthest point of each excursion past the level that the mesh is not tied to.
+    def unmarked(self, switch: int, otherwise: int) -> list[Extremum]:
+        """Return the farthest point of each excursion past the level that has no event nodes.
 
         `otherwise` is the side on which a switch without event nodes is taken to be. What begins or ends at
         an event node is none: there it is the node that is not yet, or not quite, at the passage.
@@ -255,21 +255,32 @@ class SwitchPolynomials:
         return bool(at_nodes[run].any())
 
     def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
-        """Whether it does, or is as brief beside one as what polynomials make of a slow passage."""
+        """Whether it does, or is as brief beside one as polynomials make a slow crossing."""
         if self._beginning(along, run, at_nodes):
             return True
         at_level = at_nodes & (along.sides == 0)
         beside = at_level[(run[0] - 1) % len(at_level)] or at_level[(run[-1] + 1) % len(at_level)]
         return bool(
-            beside and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < BRIEF
+            beside
+            and np.mod(along.phase[run[-1]] - along.phase[run[0]], self.orbit.mesh.period) < SLOW_CROSSING
         )
 
     def _ends(self, switch: int) -> list[int]:
         """The intervals at whose begin a switch has an event node, or one of the jump that it belongs to."""
+        surface = surface_of(self.system, switch)
+        if surface.leaves is not None:
+            left = [
+                j
+                for j, e in enumerate(self.orbit.mesh.events)
+                if e.switch in (surface.switch, surface.leaves)
+            ]
+            return [int(self.orbit.mesh.starts[j]) for j in left]
         jump = sliding(self.system, switch)
         if jump is None:
             return list(self._tied(switch))
-        return [int(self.orbit.mesh.starts[i]) for i in group(self.system, self.orbit.mesh, jump)]
+        own = group(self.system, self.orbit.mesh, jump)
+        own += thrown(self.system, self.orbit, surface_of(self.system, jump))
+        return [int(self.orbit.mesh.starts[i]) for i in own]
 
     def value(self, at: Extremum) -> float:
         """Return the switch itself at a point, not the polynomial through its values at the knots."""
@@ -286,7 +297,7 @@ class SwitchPolynomials:
         """
         own = sorted(self._tied(switch))
 
-        def stretch(e: Extremum) -> int:
+        def between_nodes(e: Extremum) -> int:
             return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
@@ -299,12 +310,12 @@ class SwitchPolynomials:
         first = min(every, key=lambda e: far(e, phase))
         width, same = (
             self.orbit.grid.width[first.interval],
-            [e for e in every if stretch(e) == stretch(first)],
+            [e for e in every if between_nodes(e) == between_nodes(first)],
         )
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
-        """Return all minima of side * s, its impacts left out, of a sliding jump where it is on that side."""
+        """Return all minima of side * s, its impacts left out, of sliding and relays where on that side."""
         along = self.along(switch, everywhere=True)
         points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
         value = side * along.value[points]
@@ -317,11 +328,18 @@ class SwitchPolynomials:
                 if e.switch == switch
             ]
             low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
-        if sliding(self.system, switch) is not None:
+            low = low[~self._at_rest(along.interval[low], along.theta[low], switch)]
+        if sliding(self.system, switch) is not None or switch in relays(self.system):
             at_node = np.isin(along.interval[low], self._ends(switch)) & (along.theta[low] == 0.0)
             there = self.expected(switch, side)[along.interval[low]] == side
             low = low[there & ~at_node]
         return [along.extremum(switch, int(i)) for i in low]
+
+    def _at_rest(self, interval: NDArray[np.int_], theta: Array, switch: int) -> NDArray[np.bool_]:
+        """Which places are at rest on a wall, or where something leaves it."""
+        resting = self._resting(surface_of(self.system, switch))
+        left = resting[interval - 1] & (theta == 0.0)
+        return np.asarray(resting[interval] | left)
 
 
 def _wrapped(phase: float, period: float) -> float:
@@ -349,12 +367,27 @@ def _monomial(scheme: Scheme) -> Array:
     return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
 
 
-def _turns(scheme: Scheme, values: Array) -> list[float]:
-    """Zeros of the derivative of the polynomial through values at the knots, inside (0, 1)."""
-    slope = _monomial(scheme) @ values
-    largest = float(np.abs(slope).max())
-    if largest == 0.0:
-        return []
-    roots = np.polynomial.polynomial.polyroots(slope)
-    real = roots.real[np.abs(roots.imag) < 1e-6]
-    return sorted(float(t) for t in real if 0 < t < 1)
+def _stationary(scheme: Scheme, values: Array) -> tuple[NDArray[np.int_], Array]:
+    """Zeros inside (0, 1) of the derivatives of polynomials through values at the knots (K, ncol+1).
+
+    Returns which polynomial each belongs to, and the zeros themselves.
+    """
+    roots = _roots(values @ _monomial(scheme).T)
+    inside = (np.abs(roots.imag) < AT_EXTREMUM) & (roots.real > 0) & (roots.real < 1)
+    return np.nonzero(inside)[0], roots.real[inside]
+
+
+def _roots(coefficients: Array) -> NDArray[np.complex128]:
+    """Roots of polynomials with such coefficients (K, degree+1), lowest first: (K, degree), NaN where fewer.
+
+    They are the eigenvalues of companion matrices, all at once.
+    """
+    count, most = coefficients.shape
+    degree = (np.arange(most) * (coefficients != 0)).max(axis=1, initial=0)
+    found = np.full((count, most - 1), np.nan, dtype=np.complex128)
+    for d in set(degree.tolist()) - {0}:
+        own = coefficients[degree == d, : d + 1]
+        companion = np.tile(np.eye(d, k=1), (len(own), 1, 1))
+        companion[:, :, 0] -= (own[:, :-1] / own[:, -1:])[:, ::-1]
+        found[degree == d, :d] = np.linalg.eigvals(companion)
+    return found

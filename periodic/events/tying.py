@@ -14,17 +14,16 @@ import numpy as np
 import scipy
 
 from periodic.checks import at_least_0, number
-from periodic.events import impacts, sticking
+from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
-from periodic.events.modes import bends
+from periodic.events.modes import bends, relays, surface_of
+from periodic.events.relays import switched
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import Kind, System, surfaces_of
-
-SAME = 1e-9
-"""Phases closer than this are the same."""
 
 DEEPEST = 0.1
 """Shallowest switch level worth an event node, in tolerances or errors of the states."""
@@ -32,9 +31,6 @@ DEEPEST = 0.1
 
 MILD = 0.1
 """Length of excursions past the kink of a derivative, over those past a kink of the equations themselves."""
-
-LEAST = 1e-13
-"""Least change of a switch for which sticking is looked for on an orbit that lacks it."""
 
 
 @dataclass(frozen=True)
@@ -128,8 +124,9 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
-        new = [Crossing(*passage, 0.0) for passage in dense.passages(k)]
-        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME for f in found)]
+        passages = switched(system, orbit, k) if k in relays(system) else dense.crossings(k)
+        new = [Crossing(*passage, 0.0) for passage in passages]
+        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME_PHASE for f in found)]
     return found
 
 
@@ -172,9 +169,11 @@ def _tied(orbit: Orbit, values: Array) -> None:
 
 
 def _elsewhere(system: System) -> set[int]:
-    """The switches whose event nodes are those of impacts and of what is held."""
-    special = [s for s in surfaces_of(system) if s.kind == Kind.IMPACT or s.releases is not None]
-    return {k for surface in special for k in (surface.switch, *(surface.releases or ()))}
+    """The switches whose event nodes are those of impacts, of relays and of what is held."""
+    kinds = (Kind.IMPACT, Kind.RELAY)
+    special = [s for s in surfaces_of(system) if s.kind in kinds or s.releases is not None]
+    found = {k for s in special for k in (s.switch, s.leaves, *(s.releases or ()))}
+    return {k for k in found if k is not None}
 
 
 def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
@@ -198,7 +197,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
         for excursion in _excursions(kept[0]) if kept else []:
             chosen += [_kink(kept, excursion, d, orbit, settings) for d in directions]
     chosen = _apart(sorted(chosen, key=_phase), orbit, settings)
-    others = (*_impacts(system, orbit), *sticking.passages(system, orbit, LEAST))
+    others = (*_impacts(system, orbit), *_held(system, orbit))
     begin = orbit.grid.left[0]
     tied = [Crossing(e, begin + (tau - begin) % orbit.mesh.period, slope) for e, tau, slope in others]
     return sorted([*chosen, *tied, *exact_crossings(system, orbit)], key=_phase)
@@ -210,6 +209,19 @@ def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float
     for i in impacts.tied(system, orbit):
         event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
         found.append((event, float(orbit.phases[i]), abs(impacts.slope_before(system, orbit, i))))
+    return found
+
+
+def _held(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
+    """The event nodes of an orbit at which what is held is stopped, released or passed, as they are.
+
+    And those at which what rests on a wall leaves it.
+    """
+    found = []
+    for event, phase in zip(orbit.mesh.events, orbit.phases, strict=True):
+        surface = surface_of(system, event.switch)
+        if surface.releases is not None or event.switch == surface.leaves:
+            found.append((event, float(phase), 1.0))
     return found
 
 
@@ -263,7 +275,9 @@ def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
 
 def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: float) -> bool:
     begin, end = excursion[0].phase, excursion[1].phase
-    return bool(np.mod(crossing.phase - begin + SAME, period) <= np.mod(end - begin, period) + 2 * SAME)
+    return bool(
+        np.mod(crossing.phase - begin + SAME_PHASE, period) <= np.mod(end - begin, period) + 2 * SAME_PHASE
+    )
 
 
 def _merged(found: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:

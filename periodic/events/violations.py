@@ -12,26 +12,25 @@ from enum import Enum, auto
 
 import numpy as np
 
+from periodic.events.impactmodes import thrown
 from periodic.events.impacts import slope_before
 from periodic.events.modes import mode_after, modes_in, surface_of
+from periodic.events.rates import before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import RELEASED, TOGETHER
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System, guards, surfaces_of
-
-AT_LEVEL = 1e-8
-"""How near to 0 what happens at another's event node is, as a part of its largest value."""
-
-NOISE = 1e-10
-"""How near to 0 a release may be on either side of it at an event node, as a part of its largest value."""
+from periodic.orbit.scheme import Array
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, surfaces_of
 
 
 class Breach(Enum):
     """How an orbit violates its word.
 
-    REVERSED: an event node passes its level the other way. GRAZED: an impact has no speed. HELD: both sides
-    of a jump lead back to it. THROUGH: the orbit goes where an impact would be. EXCURSION: a switch passes
-    its level without an event node. MODE: the motion is held where it should not be, or the reverse.
+    REVERSED: an event node passes its level the other way. GRAZED: an impact or a relay has no speed. HELD:
+    both sides of a jump lead back to it, or a relay has no band. THROUGH: the orbit goes where an impact
+    would be. EXCURSION: a switch passes its level without an event node. MODE: the motion is held where it
+    should not be, or the reverse.
     """
 
     REVERSED = auto()
@@ -45,13 +44,17 @@ class Breach(Enum):
 @dataclass(frozen=True)
 class Violation:
     """One of them: the switch, where (an extremum, or an event node), the side of its level that it should be
-    on, and how far it is past it, as a part of its largest value."""
+    on, and how far it is past it, as a part of its largest value.
+
+    arriving: whether that is the state before the impact at the event node.
+    """
 
     breach: Breach
     switch: int
     at: Extremum | int
     side: int
     depth: float
+    arriving: bool = False
 
 
 def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
@@ -64,7 +67,11 @@ def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> 
 
 def at_nodes(system: System, orbit: Orbit) -> list[Violation]:
     """Return the event nodes that do not pass their levels as they say."""
-    return [violation for i in range(len(orbit.phases)) for violation in _at_node(system, orbit, i)]
+    return _at_nodes(SwitchPolynomials(system, orbit))
+
+
+def _at_nodes(dense: SwitchPolynomials) -> list[Violation]:
+    return [violation for i in range(len(dense.orbit.phases)) for violation in _at_node(dense, i)]
 
 
 def refusals(system: System, orbit: Orbit) -> list[Violation]:
@@ -73,7 +80,7 @@ def refusals(system: System, orbit: Orbit) -> list[Violation]:
     if not impacts:
         return at_nodes(system, orbit)
     dense = SwitchPolynomials(system, orbit)
-    return at_nodes(system, orbit) + [v for switch in impacts for v in _through(dense, switch)]
+    return _at_nodes(dense) + [v for switch in impacts for v in _through(dense, switch)]
 
 
 def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
@@ -87,7 +94,10 @@ def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) 
         if surface.kind == Kind.IMPACT:
             found += _excursions(own, surface.switch, -system.switches[surface.switch].direction, 1.0)
             found += _through(own, surface.switch)
-        elif surface.kind in (Kind.KINK, Kind.JUMP):
+            if surface.leaves is not None:
+                most = largest(own, surface.leaves)
+                found += _excursions(own, surface.leaves, -1, most, Breach.MODE)
+        elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
             found += _excursions(own, surface.switch, base.side(surface.switch), 1.0)
         elif surface.releases is not None:
             found += _held(own, base, surface)
@@ -99,7 +109,7 @@ def _excursions(
 ) -> list[Violation]:
     """The excursions of a switch past its level that no event node tells of."""
     sides, found = dense.expected(switch, otherwise), list[Violation]()
-    for e in dense.unseen(switch, otherwise):
+    for e in dense.unmarked(switch, otherwise):
         side = int(sides[e.interval])
         found.append(Violation(breach, switch, e, side, -side * e.value / most))
     return found
@@ -119,27 +129,35 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
 def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
     """Where the motion slips that should be held at a surface, or the reverse."""
     assert surface.releases is not None
-    past = [limit for limit in limits(own.system, own.orbit, surface) if limit.depth > NOISE]
+    past = [limit for limit in _limits(own, surface) if limit.depth > RELEASED]
     if past:  # past a limit the motion turns back at once
         return past
-    return [
+    each = (
         violation
         for k in (surface.switch, *surface.releases)
         for violation in _excursions(own, k, base.side(k), largest(own, k), Breach.MODE)
-    ]
+    )
+    # beside friction that holds, a slider stays at its limit, and leaves it as slowly as a motion from rest
+    return [v for v in each if surface.kind != Kind.SLIDER or v.depth > RELEASED]
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
     """Return what keeps passages of a guard from being held, and stops from slipping on, at its event nodes.
 
-    Their depths are negative as long as it does.
+    At impacts that throw the guard, what keeps the modes before and after. Their depths are negative as long
+    as it does.
     """
+    return _limits(SwitchPolynomials(system, orbit), surface)
+
+
+def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
+    system, orbit = dense.system, dense.orbit
     assert surface.releases is not None
-    (up, down), guard, found = surface.releases, surface.switch, list[Violation]()
+    (up, down), guard, found = surface.releases, surface.switch, _about_impacts(system, orbit, surface)
     nodes = [j for j, event in enumerate(orbit.mesh.events) if event.switch == guard]
     if not nodes or surface.kind == Kind.SLIDER:  # a slider is held wherever its speed turns
-        return []
-    most = largest(SwitchPolynomials(system, orbit), up, down)
+        return found
+    most = largest(dense, up, down)
     for j in nodes:
         event, start = orbit.mesh.events[j], orbit.mesh.starts[j]
         at = orbit.nodes[start : start + 1], orbit.phases[j : j + 1], orbit.parameter
@@ -150,17 +168,62 @@ def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation
     return found
 
 
+def _about_impacts(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
+    """What keeps the modes before and after impacts that throw the guard of a surface."""
+    found = list[Violation]()
+    for j in thrown(system, orbit, surface):
+        if slope_before(system, orbit, j) * orbit.mesh.events[j].direction > 0:
+            interval, x, _ = before(orbit, j)
+            start = int(orbit.mesh.starts[j])
+            found += _beside_impact(system, orbit, surface, j, x, interval, arriving=True)
+            found += _beside_impact(system, orbit, surface, j, orbit.nodes[start][None], start)
+    return found
+
+
+def _beside_impact(
+    system: System,
+    orbit: Orbit,
+    surface: SurfaceLike,
+    node: int,
+    state: Array,
+    interval: int,
+    arriving: bool = False,
+) -> list[Violation]:
+    """What keeps the mode of a surface in the interval before or after an impact, at its end there."""
+    assert surface.column is not None
+    dense, phase = SwitchPolynomials(system, orbit), orbit.phases[node : node + 1]
+    mode = int(dense.modes[interval, surface.column]) or dense.side(surface.switch)
+    values = guards(system, state, phase, orbit.parameter, modes_in(system, orbit, interval))[0]
+    return [
+        Violation(Breach.MODE, k, node, side, -side * float(values[k]) / largest(dense, k), arriving)
+        for k, side in _kept(surface, mode, arriving)
+    ]
+
+
+def _kept(surface: SurfaceLike, mode: int, arriving: bool) -> tuple[tuple[int, int], ...]:
+    """The switches that keep their side, with it, just before or after an impact that throws the guard.
+
+    What is held before is held by its limits; an elastic slider turns wherever its speed does.
+    """
+    assert surface.releases is not None
+    if mode in (STUCK, HELD):
+        up, down = surface.releases
+        return ((up, -1), (down, 1)) if arriving else ()
+    return ((surface.switch, mode),) if mode and surface.kind == Kind.SLIDING else ()
+
+
 def largest(dense: SwitchPolynomials, *switches: int) -> float:
     """Return the largest value of switches along an orbit."""
     return float(np.abs(dense.knots[:, :, list(switches)]).max()) or 1.0
 
 
-def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> list[Violation]:
+def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Violation]:
     """What an event node says to happen at once to other surfaces, and does not.
 
     A joint that another's event tears off is released by the modes after it, and was held by those before.
     """
-    event, start, found = orbit.mesh.events[index], int(orbit.mesh.starts[index]), list[Violation]()
+    system, orbit, found = dense.system, dense.orbit, list[Violation]()
+    event, start = orbit.mesh.events[index], int(orbit.mesh.starts[index])
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     for k, mode in event.modes:
         surface = surface_of(system, k)
@@ -169,30 +232,39 @@ def _unforced(system: System, orbit: Orbit, index: int, own: SurfaceLike) -> lis
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
         release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
         torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
-        most = largest(SwitchPolynomials(system, orbit), release)
-        if not torn and abs(before[release]) > AT_LEVEL * most:
+        most = largest(dense, release)
+        if not torn and abs(before[release]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 
 
-def _at_node(system: System, orbit: Orbit, index: int) -> list[Violation]:
+def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
     """What is wrong at an event node."""
+    system, orbit = dense.system, dense.orbit
     event, start = orbit.mesh.events[index], orbit.mesh.starts[index]
     surface = surface_of(system, event.switch)
 
-    def told(breach: Breach, slope: float) -> list[Violation]:
+    def reported(breach: Breach, slope: float) -> list[Violation]:
         ahead = slope * event.direction
         return [] if ahead > 0 else [Violation(breach, event.switch, index, event.direction, -ahead)]
 
-    if surface.kind == Kind.IMPACT:
-        return told(Breach.GRAZED, slope_before(system, orbit, index))
+    if surface.kind in (Kind.IMPACT, Kind.RELAY):
+        band = reported(Breach.HELD, _beyond(system, orbit, index)) if surface.kind == Kind.RELAY else []
+        return reported(Breach.GRAZED, slope_before(system, orbit, index)) + band
     if surface.releases is not None:
-        reversed_there = told(Breach.REVERSED, slope_before(system, orbit, index))
-        return reversed_there + _unforced(system, orbit, index, surface)
+        reversed_there = reported(Breach.REVERSED, slope_before(system, orbit, index))
+        return reversed_there + _unforced(dense, index, surface)
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     d_state, d_phase, _ = (g[0, event.switch] for g in system.switch_gradient(*at))
     slope = float(d_phase + d_state @ orbit.node_rates[start])
-    return told(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+    return reported(Breach.HELD if surface.kind == Kind.JUMP else Breach.REVERSED, slope)
+
+
+def _beyond(system: System, orbit: Orbit, index: int) -> float:
+    """A relay's guard just after its event node: between its thresholds, if they are in order."""
+    start = int(orbit.mesh.starts[index])
+    at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
+    return float(guards(system, *at, modes_in(system, orbit, start))[0, orbit.mesh.events[index].switch])
 
 
 def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:

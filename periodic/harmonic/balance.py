@@ -118,7 +118,7 @@ class Balance:
         return tuple(self._recovered(*pair) for pair in zip(right[0], found.T, strict=True))
 
     def _recovered(self, constant: float, solution: Array) -> Increment:
-        """The increment of values and unknowns from one of the coefficients and free parameters (c, y)."""
+        """The increment of samples and unknowns that belongs to one of (c, y), for each column."""
         orbit, samples = self.orbit, self.samples
         basis, n = transform(orbit.harmonics), orbit.nodes.shape[1]
         size = basis.values.shape[1] * n

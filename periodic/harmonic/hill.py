@@ -37,8 +37,8 @@ SHIFT = 0.2137
 BLOCKS = (12, 18, 27, 40)
 """Sizes of the Krylov space in blocks, tried in turn."""
 
-BLOCK = 4
-"""States for each vector of a block, which has at least two."""
+STATES_PER_VECTOR = 4
+"""A block has n / BLOCK vectors for n states, and at least two."""
 
 KRYLOV_RESIDUAL = 1e-11
 """Largest residual of an eigenvector from a Krylov space, relative to its eigenvalue."""
@@ -47,7 +47,7 @@ DEPENDENT = 1e-4
 """Eigenvectors whose singular values spread more are replaced by Schur vectors."""
 
 WINDOW = 1.5
-"""The ends of the window are chosen by the centroids that are nearer to 0 than this."""
+"""Only centroids nearer to 0 than this decide where the window ends."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def _krylov(matrix: Array, n: int) -> _Subspace:
 
     They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
     """
-    size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // BLOCK)
+    size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // STATES_PER_VECTOR)
     factors = scipy.linalg.lu_factor(matrix - SHIFT * np.eye(size))
     space = np.linalg.qr(np.random.default_rng(0).standard_normal((size, each)))[0]
     images = np.zeros((size, 0))
@@ -209,9 +209,11 @@ def centroids(vectors: Complex, n: int) -> Array:
 
 
 def in_window(places: Array, n: int) -> tuple[NDArray[np.bool_], bool]:
-    """Which of the places (of copies, one apart) lie in a window of width 1 about 0, and whether just n do.
+    """Return which places lie in a window of width 1 about 0, and whether these are just n.
 
-    Else the n nearest to its middle. The window ends in the widest gap between the places near 0, modulo 1.
+    The places are centroids; those of the copies of one exponent are 1 apart. The window ends in the widest
+    gap between the places near 0, modulo 1. Where it does not hold n places, the n nearest to its middle are
+    taken.
     """
     near = np.sort(np.mod(places[np.abs(places) <= WINDOW], 1.0))
     if len(near) == 0:

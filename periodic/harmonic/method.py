@@ -10,7 +10,7 @@ import numpy as np
 from periodic.checks import whole
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
+from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
@@ -24,16 +24,14 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
-from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
+from periodic.refinement.demand import AIM
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
 
 WAYS = (1.0, 0.5, 0.25)
 """Parts of the way from the present to the needed number of harmonics, tried in turn."""
-
-AIM = 0.1
-"""The part of the tolerance that a new number of harmonics aims at."""
 
 ROUGHLY = 1e-4
 """A guess omits harmonics that are smaller than this part of its peak to peak."""
@@ -138,8 +136,8 @@ class HarmonicBalance(Discretisation):
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)
-        across = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], USUAL
+        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
         except FAILURES:

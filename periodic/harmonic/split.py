@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,10 @@ from numpy.typing import NDArray
 from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
+from periodic.condensed.split import SplitMethod
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.error import LEAST_SPAN, UNKNOWN, ErrorEstimate
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
@@ -41,7 +44,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.stability.multipliers import Spectrum
@@ -183,8 +186,10 @@ class SplitCorrection(Correction):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SplitHarmonicBalance(HarmonicBalance):
+class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
     """`HarmonicBalance` for a system with a linear part (`periodic.system.Split`)."""
+
+    whole: ClassVar[type[Discretisation]] = HarmonicBalance
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the balanced equations."""
@@ -216,8 +221,8 @@ class SplitHarmonicBalance(HarmonicBalance):
         more = mesh_for(present + max(4, present // 2), orbit.mesh.period)
         fine = with_unknowns(system, series(orbit, more))
         direction = tangent.restricted(orbit, fine)
-        across = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), across], USUAL
+        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
             step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
             factor = newton.max_change / max(step.length, newton.max_change)

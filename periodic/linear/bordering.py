@@ -21,6 +21,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
+from periodic.system.precision import LARGEST
 
 GROWTH = 1e6
 """Growth of motions within a period above which mesh points are not computed from the first one alone."""
@@ -28,7 +29,7 @@ GROWTH = 1e6
 PLACES = 16
 """Between so many places at the most growth is looked at."""
 
-LARGEST_FUNDAMENTAL = 1e150
+LARGEST_FUNDAMENTAL = float(np.sqrt(LARGEST))
 """Largest fundamental matrices that are given: products of two are finite."""
 
 PAIRED_UP_TO = 16
@@ -48,7 +49,8 @@ class Eliminated(Protocol):
         dx_{j+1} = step[j] (1, dx_origin[j], dy),   step (N, n, 1+n+q), origin (N,)
 
     orbit is the one linearised at, residual the largest of its equations; compiled chains in C. It
-    may have `perturbed` (N, n, n+q), the steps of perturbations at fixed tau where the state jumps.
+    may have `jumps`, where the state or its rates jump, and `perturbed` (N, n, n+q), the steps of
+    perturbations at fixed tau there.
     """
 
     @property
@@ -118,8 +120,7 @@ class Chain:
     def steps(self) -> Array:
         """How perturbations pass from joint to joint, each interval as a rule, shape (N, n, n)."""
         perturbed: Array | None = getattr(self.eliminated, "perturbed", None)
-        step, n = self.eliminated.step, self.eliminated.step.shape[1]
-        return step[self._joints[1:] - 1, :, 1 : 1 + n] if perturbed is None else perturbed[:, :, :n]
+        return self._held if perturbed is None else perturbed[:, :, : perturbed.shape[1]]
 
     @cached_property
     def fundamental(self) -> Array:
@@ -128,15 +129,31 @@ class Chain:
             found = self.maps[:, :, 1 : 1 + self.maps.shape[1]]
             if self.growth <= LARGEST_FUNDAMENTAL:
                 return found
-        return np.array(list(accumulate(self.steps, _after_bounded, initial=np.eye(self.steps.shape[1]))))
+        return np.array(list(accumulate(self.steps, after_bounded, initial=np.eye(self.steps.shape[1]))))
 
     @cached_property
     def growth(self) -> float:
         """How much motions grow at the most from one joint to another; of large systems from the first."""
+        return self._growing(self.steps)
+
+    def _growing(self, steps: Array) -> float:
+        """The same by steps (N, n, n) from joint to joint."""
         if self.maps.shape[1] <= PAIRED_UP_TO:
-            return between_any(self.steps)
+            return between_any(steps)
         found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
         return found if np.isfinite(found) else np.inf
+
+    @cached_property
+    def _spread(self) -> float:
+        """How much increments grow at the most from joint to joint, event nodes held."""
+        if getattr(self.eliminated, "jumps", ()):
+            return self._growing(self._held)
+        return self.growth
+
+    @property
+    def _held(self) -> Array:
+        """How mesh points follow from joint to joint, event nodes held, shape (N, n, n)."""
+        return self.eliminated.step[self._joints[1:] - 1, :, 1 : 1 + self.eliminated.step.shape[1]]
 
     @property
     def effect(self) -> Array:
@@ -152,7 +169,7 @@ class Chain:
         Raises numpy.linalg.LinAlgError where the bordered matrix is singular.
         """
         orbit, n = self.orbit, self.maps.shape[1]
-        if self.growth > GROWTH:
+        if self._spread > GROWTH:
             maps, top = self._from_both_ends()
         else:
             maps, top = self.maps, self.maps[-1].copy()
@@ -241,8 +258,8 @@ def between_any(steps: Array) -> float:
     return largest
 
 
-def _after_bounded(before: Array, step: Array) -> Array:
-    """A product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
+def after_bounded(before: Array, step: Array) -> Array:
+    """Return the product of two matrices, scaled down to LARGEST_FUNDAMENTAL if it is larger."""
     product = step @ before
     size = float(np.abs(product).max())
     return product if size <= LARGEST_FUNDAMENTAL else product * (LARGEST_FUNDAMENTAL / size)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
 
-LARGE = 8
+PAYS_FROM = 8
 """Number of states from which it pays."""
 
 
@@ -35,7 +35,7 @@ class Kinematic:
 def kinematic(by_rate: Array, by_state: Array) -> Kinematic | None:
     """Find the kinematic rows of R_x' and R_x, each (N, ncol, n, n); None of small systems or without any."""
     n = by_rate.shape[2]
-    if n < LARGE:
+    if n < PAYS_FROM:
         return None
     rates, states = ((values != 0).any(axis=(0, 1)) for values in (by_rate, by_state))
     rows = np.flatnonzero((rates.sum(axis=1) == 1) & (states.sum(axis=1) == 1))

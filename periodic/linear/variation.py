@@ -23,6 +23,10 @@ from periodic.orbit.scheme import Array
 Complex = NDArray[np.complex128]
 
 
+class UnknownVariationsError(ValueError):
+    """The motions beside an orbit are not known: what asks for them is refused, or not found."""
+
+
 @dataclass(frozen=True)
 class Tangent:
     """A solution of the linearised equations: mesh points (N+1, n), stages (N, ncol, n), unknowns

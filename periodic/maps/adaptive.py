@@ -89,10 +89,10 @@ class Adaptive:
             cells = [tuple(map(float, np.atleast_1d(point))) for point in points]
             yield [(cell,) for cell in cells]
             chosen += len(cells)
-            for point, value in zip(points, self._told(cells, found), strict=True):
+            for point, value in zip(points, self._values(cells, found), strict=True):
                 learner.tell(point, value)
 
-    def _told(self, cells: list[Cell], found: Mapping[Cell, Outcome]) -> list[float]:
+    def _values(self, cells: list[Cell], found: Mapping[Cell, Outcome]) -> list[float]:
         """The number in each cell; where there is none that of the nearest cell."""
         known = {cell: self._number(outcome) for cell, outcome in found.items()}
         finite = {cell: value for cell, value in known.items() if np.isfinite(value)}

@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 from periodic.checks import whole
 
-AHEAD = 10_000
-"""Chunks given to somebody else's executor before the first is done: more than it has workers."""
+CHUNKS_AHEAD = 10_000
+"""Chunks given to a user's executor before the first is done: more than it has workers."""
 
 THREADS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
@@ -40,7 +40,7 @@ class Workers(Protocol):
         """Whether they are ours: when one has died `close` makes room for others."""
 
     def close(self) -> None:
-        """Let go of what is its own, work under way included."""
+        """Release its own resources; work under way is given up."""
 
 
 class Here:
@@ -72,7 +72,7 @@ class Processes:
 
     @property
     def ahead(self) -> int:
-        """Each has its next chunk at hand."""
+        """Two for each process: the next chunk is there when one is done."""
         return 2 * self.count
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
@@ -91,9 +91,9 @@ class Processes:
 
 
 class Given:
-    """Somebody else's executor, as of dask.distributed or mpi4py.futures; it is not ours to end."""
+    """A user's executor, as of dask.distributed or mpi4py.futures; it is not shut down."""
 
-    ahead, own = AHEAD, False
+    ahead, own = CHUNKS_AHEAD, False
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
@@ -107,7 +107,7 @@ class Given:
         return future
 
     def close(self) -> None:
-        """Call off what it has not begun."""
+        """Cancel what it has not begun."""
         for future in list(self._under_way):
             future.cancel()
 

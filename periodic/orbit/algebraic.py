@@ -7,8 +7,8 @@ import numpy as np
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import MOST_ITERATIONS
 
-UNKNOWN_ITERATIONS = 12
 UNKNOWN_INCREMENT = 1e-10
 LONGEST_STEP = 5.0
 
@@ -34,12 +34,12 @@ def solve_algebraic(
     Returns
     -------
     ndarray, shape (K, m)
-        z, after UNKNOWN_ITERATIONS iterations at most.
+        z, after MOST_ITERATIONS iterations at most.
     """
     n, algebraic = state.shape[1], guess
     if algebraic.shape[1] == 0:
         return algebraic
-    for _ in range(UNKNOWN_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         line = system.linearise(rate, state, algebraic, tau, parameter)
         finite = np.isfinite(line.residual).all(axis=1) & np.isfinite(line.d_algebraic).all(axis=(1, 2))
         change = np.zeros_like(algebraic)

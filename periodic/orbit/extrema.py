@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import as_read_by
 from periodic.orbit.native import outputs as native
-from periodic.orbit.orbit import Orbit
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System
+from periodic.system.precision import LARGEST
 
 CANDIDATES = 3
 """How many of the highest samples that stand out from their neighbours are looked at more closely."""
@@ -25,14 +26,14 @@ ZOOMS = 2
 SAMPLES = 9
 PLACES = np.linspace(-1, 1, SAMPLES)
 
-SHORT = 1e-5
+SHORT_INTERVAL = 1e-5
 """Width (rad) of intervals whose points do not count, unless all are as short.
 
 Next to a kink the collocation polynomials overshoot, and a load that falls by twenty powers of ten there
 would be read off the overshoot.
 """
 
-OUT = -1e300
+OUT = -LARGEST
 """Stands for samples that do not count."""
 
 
@@ -117,10 +118,6 @@ def extrema(system: System, orbit: Orbit) -> Extremes:
     return _searched(system, orbit) if compiled is None else Extremes(*compiled)
 
 
-LEAST_PEAK_TO_PEAK = 1e-6
-"""Peak to peak of an output, as a part of its size, with which errors are compared at the least."""
-
-
 def apart(system: System, orbit: Orbit, found: Extremes, better: Callable[[], Orbit]) -> float:
     """Return how far an orbit's extremes are at the most from those of a better one, over the peak to peak.
 
@@ -155,7 +152,7 @@ def apart(system: System, orbit: Orbit, found: Extremes, better: Callable[[], Or
     values = outputs(system, finer, at.ravel())[:, own].reshape(*at.shape, len(own))
     same = np.einsum("ekbk->ekb", values)
     errors = np.abs([same[0].min(axis=1) - low, same[1].max(axis=1) - high]).max(axis=0)
-    scale = np.maximum(high - low, LEAST_PEAK_TO_PEAK * np.maximum(np.abs(low), np.abs(high)))
+    scale = np.maximum(high - low, LEAST_SPAN * np.maximum(np.abs(low), np.abs(high)))
     return float(np.max(errors / np.where(scale > 0, scale, 1.0)))
 
 
@@ -238,7 +235,7 @@ def _signed(system: System, orbit: Orbit, signs: Array, column: NDArray[np.int_]
 
 def _short(orbit: Orbit) -> NDArray[np.bool_]:
     """Which intervals do not count, shape (N,)."""
-    short = orbit.grid.width < SHORT
+    short = orbit.grid.width < SHORT_INTERVAL
     return short & ~short.all()
 
 

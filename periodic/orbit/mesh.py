@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array, Scheme
 
+MIN_INTERVALS = 4
+"""Least number of intervals in a segment."""
+
 INSIDE = 2
 """Most event nodes within a brief excursion: friction turns or holds the motion there, and lets it go."""
 
@@ -143,6 +146,18 @@ class Mesh:
             starts * (1 - left[:, None]) + ends * left[:, None],
             (1.0 * ends - 1.0 * starts) * width[:, None],
         )
+
+    @cached_property
+    def ties(self) -> NDArray[np.int_]:
+        """The event nodes at the ends of each interval's segment, shape (N, min(k, 2)): no others move it."""
+        segment, k = self.segments[0], len(self.events)
+        return np.stack([segment, (segment + 1) % max(k, 1)], axis=1)[:, : min(k, 2)]
+
+    @cached_property
+    def tie_gradients(self) -> tuple[Array, Array]:
+        """The `gradients` in the phases of these alone, shapes (N, min(k, 2))."""
+        left, width = (np.take_along_axis(gradient, self.ties, axis=1) for gradient in self.gradients)
+        return left, width
 
     def segment_lengths(self, phases: Array) -> Array:
         """Return the length of each segment; the event nodes are in order where all are positive.

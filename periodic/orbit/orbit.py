@@ -23,6 +23,9 @@ from periodic.orbit.signal import Signal
 FORCED = 2 * np.pi
 """Period of the excitation in tau."""
 
+LEAST_SPAN = 1e-6
+"""Peak to peak (scaled) below which an orbit is at rest; errors are compared with no less."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit:

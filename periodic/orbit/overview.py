@@ -13,7 +13,7 @@ from periodic.orbit.signal import Signal
 SAMPLES = 400
 """Times at which the signals are read."""
 
-ROWS = 12
+MOST_SIGNALS = 12
 """Signals that are told of."""
 
 
@@ -35,7 +35,7 @@ def orbit_html(said: str, signals: Sequence[Signal], period: float) -> str:
         The line, a table of least and largest values, and a picture.
     """
     times = np.linspace(0.0, period, SAMPLES)
-    read = [(signal, signal(times)) for signal in signals[:ROWS]]
+    read = [(signal, signal(times)) for signal in signals[:MOST_SIGNALS]]
     rows = [
         [with_unit(signal.name, signal.unit), *(f"{v:.6g}" for v in (y.min(), y.max(), np.ptp(y)))]
         for signal, y in read

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
 from periodic.orbit.layout import Layout, Quantity, layout_of
-from periodic.orbit.mesh import EventNode, Mesh, uniform
-from periodic.orbit.orbit import FORCED, Orbit
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh, uniform
+from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import System, index_of, resets_of
+from periodic.system import Kind, System, index_of, resets_of, surfaces_of
 
 PER_PERIOD = 96
 """Equal intervals in each period of the excitation, used where they resolve the samples."""
@@ -21,17 +22,11 @@ PER_PERIOD = 96
 GRADED = 384
 """Intervals in each period, placed between samples, of a motion that equal ones do not resolve."""
 
-LEAST_PEAK_TO_PEAK = 1e-6
-"""Least peak to peak (scaled) that samples are compared with."""
-
-APART = 1e-9
+LEAST_WIDTH = 1e-9
 """Least distance, in periods, of an interval's end from that of the period."""
 
-SHOWN = 0.01
+FARTHEST_SAMPLE = 0.01
 """Largest distance of the samples from the orbit, in peaks to peak."""
-
-LEAST_INTERVALS = 4
-"""Fewest intervals between two impacts."""
 
 
 def sampled(
@@ -42,6 +37,7 @@ def sampled(
     *,
     times: ArrayLike | None = None,
     system: System | None = None,
+    modes: Sequence[int] = (),
 ) -> Orbit:
     """Return the orbit through samples of a settled motion: a guess for `trace`.
 
@@ -64,7 +60,10 @@ def sampled(
     times : array_like, optional
         In the place of phases: times t in s, tau = Omega t.
     system : System, optional
-        What names and times refer to.
+        What names, times and modes refer to.
+    modes : sequence of int, optional
+        Those of the system's surfaces, as a simulation has them at its end: relays that do not switch stay in
+        theirs. By default such a relay is off where the samples have not been above its upper threshold.
 
     Returns
     -------
@@ -81,6 +80,8 @@ def sampled(
     by_name = any(isinstance(given, Mapping) for given in (state, algebraic, parameter))
     if system is None and (by_name or times is not None):
         raise ValueError("samples by name and times are those of a system; it must be given, system=")
+    if len(modes) and (system is None or len(modes) != len(surfaces_of(system))):
+        raise ValueError(f"modes are {tuple(modes)}; they must be one for each surface of a given system")
     values = _parameters(system, parameter)
     layout = None if system is None else layout_of(system)
     tau = np.asarray(phase if times is None else times, dtype=float)
@@ -102,7 +103,15 @@ def sampled(
         orbit = _through_impacts(system, tau, periods, x, z, values)
     else:
         orbit = _through(tau, periods, x, z, values)
+    if system is not None and len(modes):
+        orbit = replace(orbit, mesh=replace(orbit.mesh, modes=_of_relays(system, modes)))
     return orbit if layout is None else orbit.expressed_in(layout, "the sampled orbit")
+
+
+def _of_relays(system: System, modes: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    """The modes of relays as meshes have them, by their guards."""
+    both = zip(surfaces_of(system), modes, strict=True)
+    return tuple((surface.switch, mode) for surface, mode in both if surface.kind == Kind.RELAY)
 
 
 def _through(phase: Array, periods: int, state: Array, algebraic: Array, parameter: Array) -> Orbit:
@@ -110,20 +119,20 @@ def _through(phase: Array, periods: int, state: Array, algebraic: Array, paramet
     even = uniform(Scheme(), PER_PERIOD * periods, FORCED * periods)
     orbit = _on(even, phase, state, algebraic, parameter)
     missed = np.abs(orbit.state(phase) - state).max(axis=0)
-    if (missed <= SHOWN * np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)).all():
+    if (missed <= FARTHEST_SAMPLE * np.maximum(np.ptp(state, axis=0), LEAST_SPAN)).all():
         return orbit
     return _on(_graded(phase, state, GRADED * periods), phase, state, algebraic, parameter)
 
 
 def _graded(phase: Array, state: Array, ntst: int) -> Mesh:
     """Intervals that end at samples, of about equal arclength over phase and scaled states."""
-    sizes = np.maximum(np.ptp(state, axis=0), LEAST_PEAK_TO_PEAK)
+    sizes = np.maximum(np.ptp(state, axis=0), LEAST_SPAN)
     steps = np.diff(np.column_stack([FORCED * state / sizes, phase]), axis=0)
     length = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))
     chosen = np.unique(np.searchsorted(length, np.linspace(0, length[-1], ntst + 1)))
     period = FORCED * round((phase[-1] - phase[0]) / FORCED)
     inside = np.sort(np.mod(phase[chosen[:-1]], period)) / period
-    breaks = np.concatenate([[0.0], inside[(inside > APART) & (inside < 1 - APART)], [1.0]])
+    breaks = np.concatenate([[0.0], inside[(inside > LEAST_WIDTH) & (inside < 1 - LEAST_WIDTH)], [1.0]])
     return Mesh(Scheme(), (breaks,), (), period)
 
 
@@ -159,7 +168,7 @@ def _through_impacts(
     x, z = (np.concatenate([a[first:], a[1:first]]) for a in (state, algebraic))
     cuts = [0, *(second[1:] - first), len(tau)]
     lengths = np.diff(np.append(phase[second], phase[first] + period))
-    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), LEAST_INTERVALS)
+    counts = np.maximum(np.ceil(PER_PERIOD * lengths / FORCED).astype(int), MIN_INTERVALS)
     breaks = tuple(np.linspace(0, 1, count + 1) for count in counts)
     mesh = Mesh(Scheme(), breaks, events, period)
     grid = mesh.grid(phase[second])

@@ -18,7 +18,7 @@ MOST_MESHES = 8
 """How often the mesh is made anew for one orbit."""
 
 
-BESIDE = 1e-3
+MISSED_KINK = 1e-3
 """How far, in peaks to peak, an orbit may be from what passed a kink unseen."""
 
 
@@ -77,7 +77,7 @@ def _unmoved(solver: Solver, old: Solution, new: Solution) -> Solution:
     if not new.ok or same(solver, old, new):
         return new
     apart = distance(solver.problem, old.orbit, new.orbit)
-    near = apart <= BESIDE * old.orbit.span() and not _sees(solver, old) and _sees(solver, new)
+    near = apart <= MISSED_KINK * old.orbit.span() and not _sees(solver, old) and _sees(solver, new)
     return new if near else new.failed(Outcome.MOVED)
 
 

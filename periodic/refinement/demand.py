@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.correction.error import ROUNDED, SAFETY, ErrorEstimate
+from periodic.correction.error import SAFETY, ErrorEstimate
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import SPLIT, density
+from periodic.system.precision import EPSILON
 
 AIM = 0.1
-"""The part of the tolerance that a new mesh aims at."""
+"""The part of the tolerance that a new mesh aims at, for the orbit and for the multipliers."""
 
-CLOSER = 0.03
+AIM_WITH_KINKS = 0.03
 """The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
 
-SHARED = 0.1
-"""The same for the multipliers, to whose error each interval adds its share."""
-
-ROUNDING = 1e4 * float(np.finfo(float).eps)
+ROUNDING = 1e4 * EPSILON
 """What all shares may add up to by rounding, over the largest multiplier: as small ones ask for nothing,"""
 
 FAINT = 1e-3
 """... if they are also below this part of their goal."""
 
-FINEST = 3.0
+MOST_PIECES = 3.0
 """Into how many pieces an interval is divided at the most."""
 
 
@@ -41,13 +39,13 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
     """
     if error.shares is None or not np.isfinite(error.worst):
         return None
-    largest = error.multiplier - error.by_orbit if error.multiplier > ROUNDED * error.rounding else 0.0
-    goal, total = SHARED * tolerance / SAFETY, float(error.shares.sum())
+    largest = error.multiplier - error.by_orbit if error.multiplier > SAFETY * error.rounding else 0.0
+    goal, total = AIM * tolerance / SAFETY, float(error.shares.sum())
     part = error.shares / total * max(largest, 0.0) / goal * len(error.shares) if total > 0 else error.shares
     ncol = orbit.mesh.scheme.ncol
     pieces = np.where(part > 1, part ** (1 / (ncol + 1)), part ** (1 / (2 * ncol)))
     pieces[part < min(ROUNDING / goal, FAINT)] = 0.0
-    wanted: Array = np.minimum(pieces, FINEST) / orbit.grid.width
+    wanted: Array = np.minimum(pieces, MOST_PIECES) / orbit.grid.width
     intervals = float(wanted @ orbit.grid.width)
     return wanted * min(1.0, most / intervals) if intervals > 0 else None
 
@@ -62,7 +60,9 @@ def wanted_ntst(
     order = orbit.mesh.scheme.ncol + 1
     known = error.shares is not None
     curable = min(error.curable, error.spread) if known else error.curable
-    ratio = curable / ((CLOSER if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
+    ratio = (
+        curable / ((AIM_WITH_KINKS if known else AIM) * tolerance) if np.isfinite(error.worst) else 4.0**order
+    )
     factor = float(np.clip(ratio, 2.0**-order, 2.5**order)) ** (1 / order)
     return int(np.clip(np.ceil(factor * begun), least, most))
 

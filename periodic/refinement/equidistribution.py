@@ -8,16 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
 FLOOR = 0.2
 """Part of the mean density that every interval keeps, so that none grows without bound."""
-
-MIN_INTERVALS = 4
-"""Least number of intervals in a segment."""
-
 
 MAX_HALVINGS = 40
 """Bound on how often a segment is halved."""

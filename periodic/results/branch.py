@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 INTRINSIC = ("PhaseCondition", "Conservative")
-"""Conditions that every orbit of a system meets: others pick points, on curves whose turns have no label."""
+"""Conditions that every orbit meets. With others a branch is a curve, whose folds have no label."""
 
 
 class Branch(Record):
@@ -45,17 +45,17 @@ class Branch(Record):
     stop_backwards : Stop, optional
         Why its first part ended, of a branch that was traced both ways from its start.
     newton_iterations : int
-        All of them, those for rejected steps included.
+        Newton iterations, those of rejected steps included.
     elapsed : float
         Time in s.
     versions : dict
         Versions of the packages that made it, by name.
     checkpoints : tuple of Checkpoint
-        Where its runs (one or two) stand, for `trace` to take them up.
+        The state of each of its one or two runs, from which `trace` goes on with it.
     backwards : int
-        How many of the first points are those of the first of two runs.
+        Number of points at its begin that the first of two runs computed.
     made : dict
-        What it was made with, by value: see `periodic.results.described`.
+        The settings that it was computed with, by value: see `periodic.results.described`.
     """
 
     def __repr__(self) -> str:
@@ -68,7 +68,7 @@ class Branch(Record):
 
     @property
     def ending(self) -> str:
-        """Why it ends in words, at both ends where the reasons are not the same."""
+        """The reason why it ends, in words; both reasons where they differ between its ends."""
         back = self.stop_backwards
         if back is None or back.reason is self.stop.reason:
             return str(self.stop)
@@ -127,11 +127,11 @@ class Branch(Record):
 
     @property
     def unaccounted(self) -> tuple[Gap, ...]:
-        """What no labelled point accounts for: stretches over which the number of unstable multipliers or the
-        direction of the parameter changes all the same. Turns are labelled on branches in one parameter.
+        """Where the number of unstable multipliers or the direction of the parameter changes between
+        neighbouring points, and no labelled point explains it. On curves directions are not looked at.
         """
         picks = [d for d in self.made.get("determined", {}).values() if d.get("is") not in INTRINSIC]
-        return tuple(gaps(self._entries, turns=not picks))
+        return tuple(gaps(self._entries, folds=not picks))
 
     @property
     def shortfall(self) -> str:
@@ -141,10 +141,10 @@ class Branch(Record):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What whoever reads the branch should know, in sentences.
+        """What a reader of the branch should know, in sentences.
 
-        Which points miss the tolerance, what no labelled point accounts for, which values of `at` the branch
-        does not pass, and where a curve of special points holds none or is not searched.
+        Which points miss the tolerance, which changes no labelled point explains, which values of `at` the
+        branch does not reach; of a curve, where its points are no special ones and what was not searched for.
         """
         curve = noted(self.points, self.made, self.parameter)
         return tuple(filter(None, (self.shortfall, *map(str, self.unaccounted), self._missed, *curve)))
@@ -170,7 +170,7 @@ class Branch(Record):
     def stable_between(self) -> np.ndarray:
         """Whether the branch is stable between neighbouring points, shape (points - 1,).
 
-        Between two special points, each with a multiplier on the unit circle, those before tell.
+        Between two special points, each with a multiplier on the unit circle, the ledger's count decides.
         """
         between = []
         known = counts(self._entries)

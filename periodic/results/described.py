@@ -21,7 +21,7 @@ from periodic.results.files import digest
 IS, CODE = "is", "code"
 """Under what a description has the name of a type or function, and the digest of its code."""
 
-LARGE = 32
+DIGESTED_FROM = 32
 """Arrays of more numbers than these are described by a digest."""
 
 PLAIN = (bool, int, float, str)
@@ -70,7 +70,7 @@ def _described(value: object, inside: tuple[int, ...]) -> Any:
 
 
 def _array(value: np.ndarray, inside: tuple[int, ...]) -> Any:
-    if value.dtype.hasobject or value.size <= LARGE:
+    if value.dtype.hasobject or value.size <= DIGESTED_FROM:
         return _described(value.tolist(), inside)
     return {IS: f"array {value.shape}", CODE: digest(np.ascontiguousarray(value).tobytes())}
 
@@ -145,7 +145,7 @@ def differences(before: Any, now: Any, free: Sequence[str] = ()) -> list[str]:
     for name in dict.fromkeys((*before, *now)):
         apart = [d for d in _apart(before.get(name), now.get(name), name) if d[0] not in free]
         if apart:
-            old, new = (", ".join(_told(d[0], name, d[k]) for d in apart) for k in (1, 2))
+            old, new = (", ".join(_text_of(d[0], name, d[k]) for d in apart) for k in (1, 2))
             found.append(f"{name} {old}; now they are {new}")
     return found
 
@@ -163,7 +163,7 @@ def _apart(before: Any, now: Any, place: str) -> Iterator[tuple[str, Any, Any]]:
         yield place, before, now
 
 
-def _told(place: str, name: str, value: Any) -> str:
+def _text_of(place: str, name: str, value: Any) -> str:
     inner = place.removeprefix(name).removeprefix(".")
     return f"{inner} = {_shown(value)}" if inner else _shown(value)
 

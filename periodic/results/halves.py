@@ -70,10 +70,10 @@ def joined(parameter: str, layout: Layout, halves: Sequence[Half], made: dict[st
 def _reversed(half: Sequence[Point]) -> list[Point]:
     """A half backwards as the first part of a branch, without its start."""
     start = half[0].parameter
-    return turned([p for i, p in enumerate(half) if i > 1 or p.parameter != start])
+    return reversed_run([p for i, p in enumerate(half) if i > 1 or p.parameter != start])
 
 
-def turned(points: Sequence[Point]) -> list[Point]:
+def reversed_run(points: Sequence[Point]) -> list[Point]:
     """Return points in the opposite order.
 
     Parameters

@@ -15,7 +15,7 @@ from periodic.results.record import Record
 OUTPUTS = 3
 """Outputs that the table tells of."""
 
-ROWS = 25
+MOST_POINTS = 25
 """Special points that it has."""
 
 
@@ -37,8 +37,8 @@ def branch_html(record: Record, stable_between: np.ndarray, said: tuple[str, ...
         A table of the special points and a picture of the first output.
     """
     special = [p for p in record.points if p.label is not Label.NONE]
-    rows = [_row(record, point) for point in special[:ROWS]]
-    more = [f"and {len(special) - ROWS} special points more"] if len(special) > ROWS else []
+    rows = [_row(record, point) for point in special[:MOST_POINTS]]
+    more = [f"and {len(special) - MOST_POINTS} special points more"] if len(special) > MOST_POINTS else []
     notes = "".join(map(paragraph, (*more, *said)))
     return beside(table(_headings(record), rows), _picture(record, stable_between)) + notes
 

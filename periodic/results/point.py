@@ -1,4 +1,4 @@
-"""A point of a branch: an orbit with everything that is said of it."""
+"""A point of a branch: an orbit and what is known of it."""
 
 from __future__ import annotations
 
@@ -12,27 +12,25 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName
-from periodic.correction.error import ErrorEstimate
+from periodic.correction.error import AT_WORST, ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.display.tables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
-from periodic.stability.multipliers import CONSERVED, LOST, ROUNDING, without_trivial
+from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_ONE, without_trivial
+from periodic.system.precision import EPSILON
 
 SHOWN = 8
 """Multipliers that a notebook shows."""
 
-NOISE = 30.0
-"""How much larger than its estimate the error of a small multiplier may be."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Point:
-    """An orbit of a branch and what is said of it.
+    """An orbit of a branch and what is known of it.
 
-    A point is stable when all nontrivial multipliers lie inside the unit circle, of a conservative orbit on
-    it, within their error; a special point where one is on it is not, nor a `marginal` one. An equilibrium
-    is stable when all real parts are negative.
+    A point is stable when all nontrivial multipliers lie inside the unit circle; of a conservative orbit they
+    may lie on it, to within their error. A special point with a multiplier on the circle is not stable, nor
+    is a `marginal` point. An equilibrium is stable when all real parts are negative.
 
     Parameters
     ----------
@@ -104,7 +102,7 @@ class Point:
             return False
         if self.equilibrium:
             return bool((self.multipliers.real < 0).all())
-        slack = CONSERVED * self.error.multiplier + ROUNDING if self.conservative else 0.0
+        slack = ERRORS_FROM_ONE * self.error.multiplier + ROUNDED_ONE if self.conservative else 0.0
         return bool((np.abs(self.nontrivial) < 1 + slack).all())
 
     @property
@@ -121,10 +119,10 @@ class Point:
     def floor(self) -> float:
         """The noise floor: multipliers of this size or less are only known to be so small.
 
-        NOISE times their error, rounding included, relative to the largest where that exceeds 1.
+        AT_WORST times their error, rounding included, relative to the largest where that exceeds 1.
         """
         largest = float(np.abs(self.multipliers).max(initial=1.0))
-        return NOISE * (self.error.multiplier + float(np.finfo(float).eps)) * largest
+        return AT_WORST * (self.error.multiplier + EPSILON) * largest
 
     def entry(self, scale: float) -> Entry:
         """Return the point as the ledger of its branch has it.
@@ -139,7 +137,7 @@ class Point:
         Entry
             What the ledger needs.
         """
-        lost = self.marginal or (self.trivial is not None and self.trivial > LOST)
+        lost = self.marginal or (self.trivial is not None and self.trivial > LOST_FLOW)
         return Entry(
             label=self.label,
             value=self.parameter,
@@ -175,9 +173,9 @@ class Point:
 
 
 def _distance(multipliers: NDArray[np.complex128], count: int) -> float | None:
-    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None of none.
+    """Distance from 1 of the mean and of the product of the `count` multipliers nearest 1; None for none.
 
-    Unlike those themselves, which all but coincide, they are as accurate as the other multipliers.
+    Both are as accurate as the other multipliers; those two, nearly equal, are not.
     """
     nearest = multipliers[np.abs(multipliers - 1).argsort()[:count]]
     return float(max(abs(nearest.mean() - 1), abs(nearest.prod() - 1))) if count else None
@@ -210,7 +208,7 @@ def describe(solution: Solution, label: Label, event: str, columns: dict[str, fl
 
 
 def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
-    """The errors with that of the outputs' extremes."""
+    """The error estimate, completed by the error of the outputs' extremes."""
     problem, other, better = solution.problem, solution.estimated, solution.error.better
     if better is None:
         return solution.error
@@ -222,7 +220,7 @@ def _with_peaks(solution: Solution, found: Extremes) -> ErrorEstimate:
 def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex128]:
     """Return the multipliers of points, one row a point, rows with fewer than others filled up with NaN.
 
-    There are as many as states, but of a system with a linear part, of which the leading ones are known.
+    There are as many as states; of a system with a condensed linear part only the leading ones are known.
     """
     width = max((len(p.multipliers) for p in points), default=states)
     found = np.full((len(points), width), complex(np.nan, np.nan))
@@ -232,5 +230,5 @@ def multipliers_of(points: Sequence[Point], states: int) -> NDArray[np.complex12
 
 
 def known_of(multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Return the multipliers of a row without what it is filled up with."""
+    """Return the multipliers of a row without the NaN that fill it up."""
     return multipliers[~np.isnan(multipliers.real)]

@@ -48,10 +48,10 @@ def deferred() -> Iterator[None]:
     None
         Nothing.
     """
-    heard: list[tuple[int, FrameType | None]] = []
-    with handled(lambda *at: heard.append(at)) as before:
+    received: list[tuple[int, FrameType | None]] = []
+    with handled(lambda *at: received.append(at)) as before:
         yield
-    for number, frame in heard[:1]:
+    for number, frame in received[:1]:
         handler = before[number]
         if callable(handler):
             handler(number, frame)

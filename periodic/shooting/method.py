@@ -13,7 +13,7 @@ from typing import cast
 import numpy as np
 
 from periodic.checks import number, whole
-from periodic.collocation.meshed import check_intervals, check_scheme, scheme_for
+from periodic.collocation.meshmethod import check_intervals, check_scheme, scheme_for
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.newton import Correction
@@ -34,12 +34,12 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import Flowing, System, check_continuous
 
 TIGHTER = 0.1
-"""Tolerance of the integration that an orbit is held against, as a part of its own."""
+"""Tolerance of the second integration, by which errors are estimated, as a part of the first one's."""
 
 MARGIN = 1e-3
 """How far the integrator's tolerance must lie below that of the orbits: its errors add up over the period."""
 
-APART = 1e-12
+LEAST_WIDTH = 1e-12
 """Breaks closer than this, as a part of the period, are one."""
 
 NO_EVENTS = np.zeros(0)
@@ -84,7 +84,7 @@ class Shooting(Discretisation):
         check_intervals(self.ntst, self.ntst_min, self.ntst_max)
 
     def at(self, tolerance: float) -> Shooting:
-        """Return it with the scheme for a tolerance. Raises ValueError if it is too loose itself."""
+        """Return the method with a scheme for a tolerance. Raises ValueError if its own is too loose."""
         if self.tolerance > MARGIN * tolerance:
             raise ValueError(
                 f"tolerance of Shooting is {self.tolerance:g}; for orbits to {tolerance:g} "
@@ -103,8 +103,8 @@ class Shooting(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         period = near.mesh.period
         places = np.sort(np.mod(near.mesh.nodes(near.phases) / period, 1.0))
-        breaks = np.concatenate([[0.0], places[(places > APART) & (places < 1 - APART)], [1.0]])
-        breaks = breaks[np.append(True, np.diff(breaks) > APART)]
+        breaks = np.concatenate([[0.0], places[(places > LEAST_WIDTH) & (places < 1 - LEAST_WIDTH)], [1.0]])
+        breaks = breaks[np.append(True, np.diff(breaks) > LEAST_WIDTH)]
         mesh = Mesh(scheme, (breaks,), (), period)
         return replace(transfer(near, mesh, NO_EVENTS), parameter=parameter)
 
@@ -151,7 +151,7 @@ class ShootingRefinement(Refinement):
 
     def refined(self) -> Mesh:
         """Return the mesh that interpolates the orbit."""
-        method, error = self.method, replace(self.error, multiplier=0.0)  # no mesh betters multipliers
+        method, error = self.method, replace(self.error, multiplier=0.0)  # no mesh improves the multipliers
         limits = (method.ntst_min, method.ntst_max)
         ntst = wanted_ntst(self.orbit, error, method.orbits, *limits, self.orbit.mesh.ntst)
         return redistribute(self.orbit, ntst, (), NO_EVENTS, 0.005 * method.orbits)

@@ -19,11 +19,9 @@ import numpy as np
 
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
-from periodic.stability.multipliers import LOST, Complex, Spectrum
-from periodic.stability.product import ROUNDING, multipliers
-
-FLOW = 1e3
-"""Growth of motions above which the flow is taken out: one of 1e6 leaves six digits less of the others."""
+from periodic.stability.multipliers import LOST_FLOW, Complex, Spectrum
+from periodic.stability.product import MULTIPLIED_UP, multipliers
+from periodic.system.precision import EPSILON
 
 
 @runtime_checkable
@@ -51,7 +49,7 @@ class GradedSpectrum(Spectrum):
     """
 
     stepping: Stepping = field(kw_only=True)
-    known_to: float = ROUNDING
+    known_to: float = EPSILON
 
     @cached_property
     def _eigen(self) -> tuple[Complex, Complex]:
@@ -66,7 +64,7 @@ class GradedSpectrum(Spectrum):
         flow = self.stepping.flow
         if not self.trivial or flow is None:
             return super().known
-        return bool(_stray(self.stepping.steps, flow) <= LOST)
+        return bool(_stray(self.stepping.steps, flow) <= LOST_FLOW)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
         """Distance from the spectrum of other equations, likewise from their steps."""
@@ -82,24 +80,24 @@ class GradedSpectrum(Spectrum):
         flow = stepping.flow
         if not self.trivial or flow is None:
             return multipliers(stepping.steps, self.known_to)
-        others = multipliers(_across(stepping.steps, flow), self.known_to)
+        others = multipliers(_transverse(stepping.steps, flow), self.known_to)
         found = np.append(others, 1.0)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
 
-def spectrum_of(fundamental: Array, operator: object, trivial: int, known_to: float = ROUNDING) -> Spectrum:
+def spectrum_of(fundamental: Array, operator: object, trivial: int, known_to: float = EPSILON) -> Spectrum:
     """Return the spectrum of an orbit, from the steps of its operator where motions grow by many decades.
 
     Also where these are more than the intervals that the fundamental matrices are of.
     """
     if not isinstance(operator, Stepping):
         return Spectrum(fundamental, trivial)
-    if operator.growth <= (FLOW if trivial else GROWTH) and len(operator.steps) < len(fundamental):
+    if operator.growth <= (MULTIPLIED_UP if trivial else GROWTH) and len(operator.steps) < len(fundamental):
         return Spectrum(fundamental, trivial)
     return GradedSpectrum(fundamental, trivial, known_to, stepping=operator)
 
 
-def _across(steps: Array, flow: Array) -> Array:
+def _transverse(steps: Array, flow: Array) -> Array:
     """The steps on what is across the flow (N, n-1, n-1)."""
     bases = np.linalg.qr(flow[:, :, None], mode="complete")[0][:, :, 1:]
     bases[-1] = bases[0]

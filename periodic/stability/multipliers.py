@@ -15,25 +15,18 @@ from numpy.typing import NDArray
 
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
+from periodic.system.precision import CONVERGED
 
 Complex = NDArray[np.complex128]
 
-CONSERVED = 100.0
+ERRORS_FROM_ONE = 100.0
 """A multiplier cannot be told from 1 if it is nearer to it than so many times the multipliers' error,"""
 
-ROUNDING = 1e-10
+ROUNDED_ONE = 1e-10
 """... or nearer than this distance."""
 
-LOST = 0.1
+LOST_FLOW = 0.1
 """Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
-
-
-DEPENDENT = 1e8
-"""Left eigenvectors as long as this, of right ones of unit length, are those of dependent ones."""
-
-
-STRAIGHT = 1e-8
-"""A chord whose ends lie opposite by as little as this passes through 0."""
 
 
 class Stability(Enum):
@@ -47,7 +40,7 @@ class Stability(Enum):
 class Pair:
     """A complex pair of multipliers: argument, modulus, distance from +1, and how far its solution w turns.
 
-    turned: the mean of the turns of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
+    rotated: the mean rotation of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
     that of a single component, which may pass through 0, it changes smoothly with the orbit.
     left: left eigenvector (n,), of such a length that 2 |left x| is the most that the pair's part of a
     disturbance, x at the beginning of the period, becomes within it; none where eigenvectors coincide.
@@ -57,18 +50,18 @@ class Pair:
     argument: float
     modulus: float
     distance: float
-    turned: float
+    rotated: float
     left: Complex | None = None
     place: int = 0
 
     def turn(self, other: Pair) -> float:
         """Return by how much the multiplier turns to that of another orbit, whole turns included."""
         least = other.argument - self.argument
-        return least + math.tau * round((other.turned - self.turned - least) / math.tau)
+        return least + math.tau * round((other.rotated - self.rotated - least) / math.tau)
 
     def _apart(self, other: Pair, sign: int) -> float:
         """How far another orbit's multiplier, its conjugate for -1, and its solution turn from here."""
-        least, along = sign * other.argument - self.argument, sign * other.turned - self.turned
+        least, along = sign * other.argument - self.argument, sign * other.rotated - self.rotated
         return abs(least + math.tau * round((along - least) / math.tau)) + abs(along)
 
     def nearest(self, others: Sequence[Pair]) -> Pair:
@@ -80,18 +73,18 @@ class Pair:
     def conjugate(self) -> Pair:
         """Return the pair's other member."""
         left = None if self.left is None else self.left.conj()
-        return replace(self, argument=-self.argument, turned=-self.turned, left=left)
+        return replace(self, argument=-self.argument, rotated=-self.rotated, left=left)
 
 
-FEW = 3
+FEW_PAIRS = 3
 """Up to so many pairs each finds its nearest by itself sooner than all of them in arrays."""
 
 
 def nearest(pairs: Sequence[Pair], others: Sequence[Pair]) -> list[Pair]:
     """Return the members of another orbit's pairs to which each of these leads, see `Pair.nearest`."""
-    if len(pairs) <= FEW:
+    if len(pairs) <= FEW_PAIRS:
         return [pair.nearest(others) for pair in pairs]
-    own, other = (np.array([(pair.argument, pair.turned) for pair in some]) for some in (pairs, others))
+    own, other = (np.array([(pair.argument, pair.rotated) for pair in some]) for some in (pairs, others))
     least, along = np.moveaxis(np.concatenate([other, -other]) - own[:, None], 2, 0)
     apart = np.abs(least + math.tau * np.round((along - least) / math.tau)) + np.abs(along)
     chosen = map(int, apart.argmin(axis=1))
@@ -152,14 +145,14 @@ class Spectrum:
         upper[np.abs(multipliers - 1).argsort()[: self.trivial]] = False
         chosen = np.flatnonzero(upper)
         solutions = self.fundamental @ self.vectors[:, chosen]
-        turns = _turns(solutions[:-1], solutions[1:]).sum(axis=0)
-        both = zip(map(int, chosen), turns, self._sizes(solutions, chosen), strict=True)
+        rotations = _rotations(solutions[:-1], solutions[1:]).sum(axis=0)
+        both = zip(map(int, chosen), rotations, self._sizes(solutions, chosen), strict=True)
         return [self._pair(k, float(turn), size) for k, turn, size in both]
 
-    def _pair(self, k: int, turned: float, size: float) -> Pair:
+    def _pair(self, k: int, rotated: float, size: float) -> Pair:
         mu, left = complex(self.multipliers[k]), self._left(k)
         left = None if left is None else left * size
-        return Pair(cmath.phase(mu), abs(mu), abs(1 - mu), turned, left, k)
+        return Pair(cmath.phase(mu), abs(mu), abs(1 - mu), rotated, left, k)
 
     def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
         """The most that solutions (N+1, n, k), begun with the chosen eigenvectors, are within the period."""
@@ -172,7 +165,7 @@ class Spectrum:
             found = np.linalg.inv(self.vectors).astype(np.complex128)
         except np.linalg.LinAlgError:
             return None
-        return found if np.abs(found).max() < DEPENDENT else None
+        return found if np.abs(found).max() < 1 / CONVERGED else None
 
     @cached_property
     def _triangle(self) -> tuple[Complex, Complex]:
@@ -188,7 +181,7 @@ class Spectrum:
         """
         if self._inverse is not None:
             return np.asarray(self._inverse[k])
-        triangle, turned = self._triangle
+        triangle, rotated = self._triangle
         values = np.diag(triangle)
         at = int(np.abs(values - self.multipliers[k]).argmin())
         rest = triangle[at + 1 :, at + 1 :] - values[at] * np.eye(len(values) - at - 1)
@@ -198,9 +191,9 @@ class Spectrum:
             found[at + 1 :] = scipy.linalg.solve_triangular(rest, -triangle[at, at + 1 :], trans="T")
         except np.linalg.LinAlgError:
             return None
-        found = found @ turned.conj().T
+        found = found @ rotated.conj().T
         product = found @ self.vectors[:, k]
-        return None if abs(product) < np.linalg.norm(found) / DEPENDENT else np.asarray(found / product)
+        return None if abs(product) < np.linalg.norm(found) * CONVERGED else np.asarray(found / product)
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
         """Return the distance from another spectrum, over the largest multiplier.
@@ -242,7 +235,7 @@ class Spectrum:
     @property
     def known(self) -> bool:
         """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
-        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST)
+        return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST_FLOW)
 
 
 def apart(one: Array, two: Array) -> float:
@@ -259,14 +252,14 @@ SMALLEST = float(np.finfo(float).tiny)
 """Length below which nothing is left of a motion."""
 
 
-def _turns(begin: Complex, end: Complex) -> Array:
+def _rotations(begin: Complex, end: Complex) -> Array:
     """The integral of Im(w* dw)/|w|^2 along the chords between vectors, shapes (K, n, k) and (K, k).
 
     Where a contact reverses a velocity within an interval the chord passes between the two, not by +-pi.
     """
     product = (_directions(begin).conj() * _directions(end)).sum(axis=1)
     angle = np.arccos(np.clip(product.real, -1, 1))
-    found: Array = product.imag / np.sinc(angle / np.pi).clip(STRAIGHT)
+    found: Array = product.imag / np.sinc(angle / np.pi).clip(CONVERGED)
     return found
 
 

@@ -16,12 +16,13 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
+from periodic.system.precision import EPSILON, LARGEST
 
 APART = np.log(100.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
 
-JOINED = 1e3
-"""Steps are multiplied up first whose conditions multiply to less: what is small loses three digits by it."""
+MULTIPLIED_UP = 1e3
+"""Growth of motions in steps that are multiplied up: what does not grow loses three digits by it."""
 
 PERIODS = 16
 """How many periods the columns are carried at the most."""
@@ -29,16 +30,14 @@ PERIODS = 16
 SETTLED = 1e-11
 """What is left below the blocks when the columns span the motions in their order."""
 
-ROUNDING = float(np.finfo(float).eps)
-
 TINY = float(np.finfo(float).tiny)
 """What grows by less in an interval is gone, as where a motion begins to stick."""
 
-LARGEST_LOGARITHM = 300 * np.log(10.0)
+LARGEST_LOGARITHM = np.log(LARGEST)
 """Larger multipliers (a logarithm) are given as this one."""
 
 
-def multipliers(steps: Array, known: float = ROUNDING) -> NDArray[np.complex128]:
+def multipliers(steps: Array, known: float = EPSILON) -> NDArray[np.complex128]:
     """Return the eigenvalues of steps[-1] ... steps[0], steps (N, n, n), largest modulus first.
 
     known: the relative error of the steps. Eigenvalues are 0 whose motions a step makes smaller than that:
@@ -73,7 +72,7 @@ def _orthogonal(matrix: Array) -> tuple[Array, Array]:
 
 
 def _joined(steps: Array) -> Array:
-    """The same product in fewer factors, none of which is conditioned worse than JOINED for that."""
+    """The same product in fewer factors, none of which is conditioned worse than MULTIPLIED_UP for that."""
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = np.linalg.svd(steps, compute_uv=False)
         conditions = np.nan_to_num(np.log(sizes[:, 0] / sizes[:, -1]), nan=np.inf)
@@ -81,7 +80,7 @@ def _joined(steps: Array) -> Array:
     total = np.inf
     for step, condition in zip(steps, conditions, strict=True):
         total += condition
-        if total < np.log(JOINED):
+        if total < np.log(MULTIPLIED_UP):
             found[-1] = step @ found[-1]
         else:
             found.append(step)

@@ -72,14 +72,14 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Turn:
+class Rotation:
     """How far multipliers turn in a step and would in the next one as long, where 1 is the most."""
 
     ratio: float
     ahead: float
 
 
-def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
+def rotated(before: Motion, after: Motion, limits: WindingLimits) -> Rotation:
     """How far lightly damped pairs of multipliers turn between two orbits.
 
     Those that the motion excites the less the nearer they are to +1, and none so far that it is lost.
@@ -94,10 +94,10 @@ def turned(before: Motion, after: Motion, limits: WindingLimits) -> Turn:
             ways.append((way, way))
             turn = max(turn, abs(way.imag) / limits.most)
     if not ways:
-        return Turn(0.0, 0.0)
-    unseen = np.array(excited) * _unseen(np.array(begins), np.array(ways)) / limits.visible
-    ratio, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unseen.max(axis=0))
-    return Turn(ratio, ahead)
+        return Rotation(0.0, 0.0)
+    unresolved = np.array(excited) * _unresolved(np.array(begins), np.array(ways)) / limits.visible
+    ratio, ahead = (max(turn, float(size) ** (1 / ORDER)) for size in unresolved.max(axis=0))
+    return Rotation(ratio, ahead)
 
 
 def _excitation(pair: Pair, way: complex, change: Array) -> float:
@@ -107,7 +107,7 @@ def _excitation(pair: Pair, way: complex, change: Array) -> float:
     return 2 * abs(complex(pair.left @ change)) * pair.distance**2 / (pair.modulus * abs(way))
 
 
-def _unseen(begin: Complex, way: Complex) -> Array:
+def _unresolved(begin: Complex, way: Complex) -> Array:
     """The largest distance of 1/(1 - mu) from the cubic through its ends while log mu goes from `begin`.
 
     Of each of many, in arrays of one shape.
@@ -139,8 +139,8 @@ def pair_crossings(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[f
     """
     offset, found = 0.0 if sign > 0 else math.pi, []
     for a, b in _matched(before, after):
-        seen = a.turn(b)
-        for turn in (seen, seen - math.copysign(math.tau, seen))[: 1 + (abs(seen) > math.pi)]:
+        shortest = a.turn(b)
+        for turn in (shortest, shortest - math.copysign(math.tau, shortest))[: 1 + (abs(shortest) > math.pi)]:
             low, high = sorted((a.argument, a.argument + turn))
             first, last = (math.floor((end - offset) / math.tau) for end in (low, high))
             places = ((offset + math.tau * past - a.argument) / turn for past in range(first + 1, last + 1))
@@ -192,7 +192,7 @@ def _coupling(own: Spectrum, other: Spectrum) -> Array:
     """
     chosen = [pair.place for pair in own.pairs]
     both = np.concatenate([own.vectors[:, chosen], own.vectors[:, chosen].conj()], axis=1)
-    matrix = _seen_from(own, other)
+    matrix = _in_frame_of(own, other)
     if matrix is None:
         return np.full((len(chosen), len(chosen)), np.inf)
     try:
@@ -209,14 +209,14 @@ def _coupling(own: Spectrum, other: Spectrum) -> Array:
     return np.asarray(np.sqrt(largest * largest.T))
 
 
-def _seen_from(own: Spectrum, other: Spectrum) -> Array | None:
+def _in_frame_of(own: Spectrum, other: Spectrum) -> Array | None:
     """The other's monodromy matrix in the subspace of an orbit's own, None where their coordinates differ."""
     if own.frame is None or other.frame is None:
         return other.monodromy
     if len(own.frame) != len(other.frame):
         return None
-    turned = other.frame.T @ own.frame
-    return np.asarray(turned.T @ other.monodromy @ turned)
+    rotated = other.frame.T @ own.frame
+    return np.asarray(rotated.T @ other.monodromy @ rotated)
 
 
 @lru_cache(maxsize=4)

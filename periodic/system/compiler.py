@@ -15,8 +15,10 @@ class Compiling(System, Protocol):
         """The loaded library of a C source, the same one each time; None where NumPy is to do."""
 
     def address(self, kernel: str, free: tuple[int, ...] = ()) -> int | None:
-        """The address of linearise (in the parameters `free`), move, switch, switch_gradient or output in C.
+        """The address of a method in C: of linearise or linearise_beside (in the parameters `free`), move,
+        switch, switch_gradient, guards, guards_gradient or output.
 
+        The guards are the switches on given sides of the jumps, the last argument as in `linearise_beside`.
         Each is a function of the number of points, then of arguments and results in order, as contiguous
         arrays; of the results structural nonzeros alone are written. None where NumPy is to do. A system
         that has `library` may be without it.

@@ -44,6 +44,8 @@ class SurfaceLike(Protocol):
     STUCK is held where up < 0 < down, goes on as PLUS where up rises to 0, as MINUS where down falls to 0.
     column: its column in the `side` of `Jumping`, None of a surface that is in none. place: of what may be
     HELD the index of the parameter that says where, and the weights (n,) of states in its deflection (SI).
+    alone: whether it may be HELD without one, as the equations determine the motion then.
+    leaves: of an impact on whose wall the motion may rest, STUCK, the switch at whose rise to 0 it leaves.
     """
 
     @property
@@ -58,6 +60,10 @@ class SurfaceLike(Protocol):
     def column(self) -> int | None: ...
     @property
     def place(self) -> tuple[int, tuple[float, ...]] | None: ...
+    @property
+    def alone(self) -> bool: ...
+    @property
+    def leaves(self) -> int | None: ...
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,8 @@ class Surface:
     releases: tuple[int, int] | None = None
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
+    alone: bool = False
+    leaves: int | None = None
 
 
 class EventLike(Protocol):
@@ -283,6 +291,8 @@ def check_continuous(method: str, system: System) -> None:
     A jump at given phases, of a square wave, bends all motions alike. Raises ValueError.
     """
     what = "with impacts" if resets_of(system) else ""
+    if any(surface.kind == Kind.RELAY for surface in surfaces_of(system)):
+        what = what or "with relays"
     state, jumps = system.rest(system.nominal)[0], list(jumps_of(system))
     if jumps:
         phase = np.arange(4.0)

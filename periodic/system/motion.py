@@ -80,11 +80,18 @@ class Moving(System, Protocol):
     """A system that can be followed in time, through impacts too."""
 
     def motion(
-        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        tolerance: float,
+        modes: Sequence[int] | None = None,
     ) -> TrajectoryLike:
         """Integrate from `state` (n,) at phase[0] to all of `phase` (K,), which rises.
 
-        algebraic (m,) is a guess of the unknowns at phase[0]; tolerance is relative and absolute. The
+        algebraic (m,) is a guess of the unknowns at phase[0]; tolerance is relative and absolute. modes: of
+        all surfaces before, in which relays and what slides stay; only systems with these are given them. The
         trajectory has two points of one phase at each impact, with the states before and after it. Raises
         ArithmeticError where the integration fails.
         """

@@ -15,9 +15,8 @@ class Timed(System, Protocol):
     def frequency(self) -> Sequence[str]:
         """Names of the parameters whose product is the angular frequency Omega (rad/s).
 
-        A system may have `frequency_factor` too, by which that product is then multiplied, and
-        `frequency_held`, values by name of other parameters on which that factor depends: it is right at
-        these alone.
+        A system may have `frequency_factor` too, by which that product is then multiplied. Where this
+        factor depends on other parameters, `frequency_held` has their values by name, for which it holds.
         """
 
 
@@ -27,10 +26,10 @@ def frequency_of(system: System) -> tuple[str, ...]:
 
 
 def frequency_factor_of(system: System) -> float:
-    """Return what the product of the parameters `frequency_of` is multiplied by to be Omega."""
+    """Return Omega over the product of the parameters `frequency_of`."""
     return float(getattr(system, "frequency_factor", 1.0))
 
 
 def frequency_held_of(system: System) -> dict[str, float]:
-    """Return the values of parameters (SI) at which alone `frequency_factor_of` is right, by name."""
+    """Return the values (SI) of parameters, by name, for which `frequency_factor_of` holds."""
     return dict(getattr(system, "frequency_held", {}))

@@ -5,7 +5,7 @@ equispaced angles. On a torus P turns it by the angle rho: with R the shift of a
 
     (R_{-rho} P(u))(theta_j) = u(theta_j),   sum_j (u_j - v_j) . v'_j = 0,
 
-the second picking one of all phases by the curve v before (Schilder, Osinga & Vogt, SIAM J. Appl. Dyn. Syst.
+the second a phase condition with the curve v before (Schilder, Osinga & Vogt, SIAM J. Appl. Dyn. Syst.
 4 (2005) 459-488; Kuznetsov, Elements of Applied Bifurcation Theory, 7.3).
 """
 

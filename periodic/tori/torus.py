@@ -8,16 +8,14 @@ from typing import cast
 import numpy as np
 
 from periodic.bifurcations.label import Label
+from periodic.bifurcations.switching import FIRST_DISTANCE
 from periodic.checks import number, positive, whole
 from periodic.orbit.layout import layout_of
 from periodic.orbit.scheme import Array
 from periodic.results.point import Point
 from periodic.system import Flowing, System, check_system, index_of
+from periodic.system.precision import MOST_ITERATIONS
 from periodic.tori.invariant import Invariance, Torus, moved, phase_row, tail_of, unknowns
-
-NEWTON = 8
-FIRST = 0.02
-"""Amplitude of the first torus, in those of the scaled states."""
 
 
 class TorusError(ArithmeticError):
@@ -133,7 +131,7 @@ class Family:
         """Return the first torus and the direction of the family."""
         weights = self._weights(base)
         way = way / np.sqrt(weights @ way**2)
-        small = moved(base, self._free, unknowns(base, self._free) + FIRST * way)
+        small = moved(base, self._free, unknowns(base, self._free) + FIRST_DISTANCE * way)
         held = weights * way
         found = self._newton(small, small, held, float(held @ unknowns(small, self._free)))
         if found is None:
@@ -174,7 +172,7 @@ class Family:
         values = unknowns(guess, self._free)
         along = phase_row(guess)
         origin = unknowns(phase, self._free)
-        for _ in range(NEWTON):
+        for _ in range(MOST_ITERATIONS):
             torus = moved(guess, self._free, values)
             try:
                 residual, jacobian = self._equations.linearise(torus)

@@ -15,7 +15,7 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
-from periodic.bifurcations.locate import Sought, special_points
+from periodic.bifurcations.location import Sought, special_points
 from periodic.bifurcations.testfunction import Course, margins
 from periodic.bifurcations.turningpoint import Found, at_once
 from periodic.bifurcations.twoparameter import codim2
@@ -28,11 +28,11 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Stop
 from periodic.tracing.ends import ending
-from periodic.tracing.rereading import reread
+from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
-from periodic.tracing.steps.stepper import BeyondError, Stepper
+from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
@@ -100,6 +100,7 @@ class Continuation:
     state: State | None = field(default=None, repr=False)
     ended: Checkpoint | None = field(default=None, repr=False)
     _running: Iterator[Point] | None = field(default=None, init=False, repr=False)
+    _unread: bool = field(default=False, init=False, repr=False)
     _since_remesh: int = field(default=0, init=False, repr=False)
     _count: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
@@ -241,12 +242,14 @@ class Continuation:
         """Take steps from a base, which is the last solution on a mesh for the next one."""
         assert self.state is not None
         while self.state.steps + 1 < self.control.max_points:
-            step = self._taken(base)
+            step = self._taken(base, worded=True)
+            if step is None and self._reread(self.state.last):
+                yield self.collected[-1]
+                base = self._prepared(self.state.last)
+                continue
+            if step is None and self._unread:
+                step = self._taken(base, worded=False)
             if step is None:
-                if self._reread(self.state.last):
-                    yield self.collected[-1]
-                    base = self._prepared(self.state.last)
-                    continue
                 yield self._emitted(base, Label.FAILED)
                 return
             for special in step.special:
@@ -266,9 +269,13 @@ class Continuation:
             base = self._prepared(self.state.last)
         self.stop = Stop.max_points(self.control.max_points)
 
-    def _taken(self, base: Solution) -> Step | None:
-        """Take one step, as long as can be; set `stop` where even the shortest is rejected."""
+    def _taken(self, base: Solution, worded: bool) -> Step | None:
+        """Take one step, as long as can be; set `stop` where even the shortest is rejected.
+
+        worded: whether that is so at once where an orbit is met that violates its word, which may be read.
+        """
         assert self.state is not None
+        self.stop, self._unread = None, False
         ds, begin, origin = self.state.ds, self.state.begun.value, base
         control = self.control.down_to(self.state.least)
         tests = self.watch.tests()
@@ -292,7 +299,9 @@ class Continuation:
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
-                if not ds >= (max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min):
+                self._unread = worded and isinstance(rejected, WordError)
+                least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
+                if self._unread or not ds >= least:
                     self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
                     return None
 
@@ -311,7 +320,7 @@ class Continuation:
 
     def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
         """What no labelled point accounts for between points in order along the branch."""
-        return gaps(ledger, turns=codim2.picked(self.solver.problem) is None)
+        return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -368,7 +377,9 @@ class Continuation:
             yield self.collected[-1]
             for special in named if found.touches else []:
                 yield from self._met(special)
-        elif self._reread(at.end):
+        elif at.change.last:
+            self.stop = Stop.small_step(f"{at.change.name}, beyond which the motion is another one")
+        elif (at.change.strict or at.change.final) and self._reread(at.end):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")

@@ -2,35 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import cast
 
-import numpy as np
-
-from periodic.collocation.meshed import MeshMethod
+from periodic.collocation.meshmethod import MeshMethod
 from periodic.collocation.method import Collocation
 from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.whole.wider import WholeSystem
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
-from periodic.harmonic.method import HarmonicBalance
 from periodic.harmonic.split import SplitHarmonicBalance
-from periodic.orbit.scheme import Family
-from periodic.system import Condensable, System, Within, jumps_of, linear_of, resets_of, slides_of
+from periodic.system import Condensable, System, Within
 
-SPLIT: tuple[tuple[type[Discretisation], type[Discretisation]], ...] = (
-    (Collocation, CondensedCollocation),
-    (HarmonicBalance, SplitHarmonicBalance),
+SPLIT: tuple[type[CondensedCollocation] | type[SplitHarmonicBalance], ...] = (
+    CondensedCollocation,
+    SplitHarmonicBalance,
 )
-"""Methods with one for split systems, whose rows are not all of their equations."""
+"""Methods for systems whose rows are not all of their equations; each says which it takes."""
 
 
 def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
     """Return the problem that is solved and the method for it. Raises ValueError where none fits."""
     system = problem.system
     asked = method.condense if isinstance(method, MeshMethod) else None
-    if linear_of(system) is not None:
+    if any(each.takes(system) for each in SPLIT):
         if asked is False:
             raise ValueError(
                 "condense is False, but the system has its places alone; compile its structures with "
@@ -74,34 +70,12 @@ def _output(condition: Condition) -> str | None:
 
 def _split(method: Discretisation, system: System) -> Discretisation:
     """The method for a system whose linear part is given by its modes."""
-    if isinstance(method, tuple(condensed for _, condensed in SPLIT)):
+    if isinstance(method, SPLIT):
         return method
-    found = next((condensed for whole, condensed in SPLIT if isinstance(method, whole)), None)
+    found = next((each for each in SPLIT if isinstance(method, each.whole)), None)
     if found is None:
         raise ValueError(
             f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
             f"compiled with condense=False for it"
         )
-    _check_events(system)
-    scheme = getattr(method, "scheme", None)
-    if scheme is not None and scheme.family is not Family.RADAU:
-        raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
-    chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
-    usual = type(method)()
-    return found(**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
-
-
-def _check_events(system: System) -> None:
-    """Refuse states that are reset, and jumps of a motion whose sticking is not known. Raises ValueError."""
-    if resets_of(system):
-        raise ValueError(
-            "the states at the places are reset; a structure must be compiled with condense=False for that"
-        )
-    unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
-    state, _ = system.rest(system.nominal)
-    slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]
-    if slopes[unknown].any():
-        raise ValueError(
-            "the equations at the places jump, and whether motion sticks there is known only of a "
-            "structure with all its modes; it must be compiled with condense=False"
-        )
+    return found.like(method, system)

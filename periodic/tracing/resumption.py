@@ -8,7 +8,7 @@ from typing import Any
 from periodic.orbit.layout import layout_of
 from periodic.results.branch import Branch
 from periodic.results.described import described, differences
-from periodic.results.halves import turned
+from periodic.results.halves import reversed_run
 from periodic.results.point import Point
 from periodic.tracing.continuation import Continuation
 from periodic.tracing.setup import Setup
@@ -82,7 +82,7 @@ def taken_up(runs: list[Continuation], branch: Branch) -> list[Iterator[Point]]:
         raise ResumeError("guess is a branch with another start; start and bounds must be as before")
     own = [[*branch.points[branch.backwards :]]]
     if branch.stop_backwards is not None:
-        own.insert(0, [start_of(branch), *turned(branch.points[: branch.backwards])])
+        own.insert(0, [start_of(branch), *reversed_run(branch.points[: branch.backwards])])
     stops = [branch.stop_backwards or branch.stop, branch.stop]
     generators: list[Iterator[Point]] = []
     for run, stop in zip(runs, stops, strict=False):

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import cast
 
 import numpy as np
 
-from periodic.condensed import settling as condensed
+from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
-from periodic.events.motions import orbit_of
+from periodic.correction.tolerance import Accuracy
+from periodic.events.motions import FOLLOWED, motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
-from periodic.system import Moving, System, linear_of, slides_of, surfaces_of
+from periodic.system import Moving, System, surfaces_of
+from periodic.tracing.returnmap import ReturnMap
 
 PERIODS = 100
 """Most periods of the excitation that a motion is given to settle."""
@@ -20,39 +23,73 @@ PERIODS = 100
 STILL = 1e-3
 """A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
-TOLERANCE = 1e-6
-"""Of the integration."""
+NEAR = 1e-2
+"""The same of an orbit on which Newton's method on the return map ends: its word can be read."""
 
-SAMPLES = 193
+TRANSIENTS = (10, 40)
+"""Periods after which an orbit is looked for near the motion."""
+
+PLACES_IN_PERIOD = 193
 """Places in a period at which it is looked at."""
 
 
-def settled(system: System, start: Orbit) -> Orbit | None:
-    """Return the motion to which a system settles from the beginning of an orbit, with its parameters.
+def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
+    """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    None where it does not settle within PERIODS, where its integration fails, and of a system that cannot be
-    followed in time.
+    By the method's own way, or by integration of all states. None where it does not settle within PERIODS,
+    where its integration fails, and of a system that cannot be followed in time.
     """
-    if linear_of(system):
-        return condensed.settled(system, start) if slides_of(system) else None
+    own = method.settled(system, start)
+    if own is not None:
+        yield from own
+    elif (found := _integrated(system, start)) is not None:
+        yield found
+
+
+def _integrated(system: System, start: Orbit) -> Orbit | None:
+    """The motion of a system with all its states."""
     if not hasattr(system, "motion"):
         return None
-    moving, phase = cast(Moving, system), np.linspace(0, FORCED, SAMPLES)
-    state, algebraic = start.nodes[0], start.algebraic[0, 0]
-    for _ in range(PERIODS):
+    moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
+    state, algebraic, modes = start.nodes[0], start.algebraic[0, 0], None
+    for count in range(PERIODS):
         try:
-            path = moving.motion(state, algebraic, start.parameter, phase, TOLERANCE)
+            found = None
+            if count in TRANSIENTS:
+                found = _fixed(moving, state, algebraic, start.parameter, phase, modes)
+            state = state if found is None else found
+            given = state, algebraic, start.parameter, phase, Accuracy.STANDARD
+            path = motion_from(moving, *given, modes)
         except FAILURES:
             return None
         if not np.isfinite(path.state).all():
             return None
-        if _closed(path.state):
-            last = path.state[-1], path.algebraic[-1], start.parameter, TOLERANCE
-            if (converged := orbit_of(moving, *last)) is not None:
+        if found is not None or _closed(path.state):
+            last = path.state[-1], path.algebraic[-1], start.parameter, FOLLOWED
+            if (converged := orbit_of(moving, *last, before=getattr(path, "modes", None))) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        state, algebraic = path.state[-1], path.algebraic[-1]
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
     return None
+
+
+def _fixed(
+    moving: Moving,
+    state: Array,
+    algebraic: Array,
+    parameter: Array,
+    phase: Array,
+    modes: Sequence[int] | None,
+) -> Array | None:
+    """The beginning of an orbit near a motion, if Newton's method finds one."""
+
+    def follow(begin: Array) -> Array:
+        return motion_from(moving, begin, algebraic, parameter, phase, Accuracy.STANDARD, modes).state
+
+    try:
+        return ReturnMap(follow, STILL / 2, NEAR).fixed(state)
+    except FAILURES:
+        return None
 
 
 def held(system: System, motion: Orbit) -> list[str]:
@@ -63,11 +100,12 @@ def held(system: System, motion: Orbit) -> list[str]:
     states, tau = motion.nodes[:-1], motion.grid.left
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)
     slopes = np.abs(system.switch_gradient(states, tau, motion.parameter)[0]).sum(axis=2).max(axis=0)
-    still = values <= TOLERANCE * slopes * motion.span()
-    unknown = [s.switch for s in surfaces_of(system) if s.releases is not None and s.place is None]
+    still = values <= Accuracy.STANDARD * slopes * motion.span()
+    each = [s for s in surfaces_of(system) if s.releases is not None]
+    unknown = [s.switch for s in each if s.place is None and not s.alone]
     return [system.switches[k].name for k in unknown if still[k]]
 
 
 def _closed(path: Array) -> bool:
-    """Whether a motion over a period comes back to its beginning."""
-    return bool(np.abs(path[-1] - path[0]).max() < STILL * np.ptp(path, axis=0).max())
+    """Whether a motion over a period comes back to its beginning, as far as the tolerance tells."""
+    return bool(np.abs(path[-1] - path[0]).max() < STILL * max(np.ptp(path, axis=0).max(), Accuracy.STANDARD))

@@ -11,28 +11,23 @@ from periodic.bifurcations.switching import away
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
+from periodic.correction.tolerance import COARSEST, Accuracy
+from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
 from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
-from periodic.tracing.drift import drifting
-from periodic.tracing.rereading import worded
-from periodic.tracing.resting import resting
+from periodic.tracing.eventsfrommotion import worded
+from periodic.tracing.heldplaces import amid
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
-"""Where a branch to the first orbit is begun if Newton does not find it, in units of its parameter."""
+"""Where a branch that leads to the first orbit is begun, over the wanted parameter, in turn."""
 
-ASIDE = 1e-6
-"""How far outside the bounds, as a part of their range, an orbit at a turn on a bound may be."""
-
-LOOSE = 1e-2
-"""Tolerance of the way to a first orbit that is beyond the method's reach."""
-
-ROUGH = 1e-6
-"""Tolerance of the way to a first orbit."""
+BESIDE_BOUND = 1e-6
+"""How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
 
 GROWN = 300
 """Most steps in which another parameter is grown from 0."""
@@ -50,8 +45,9 @@ Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
 class Start:
     """The search for the first orbit.
 
-    search: whether one that Newton does not find may be approached from elsewhere, by `follow`. shortfall:
-    why the way there ended where the method's reach does. tried: what was tried besides the guess.
+    search: whether an orbit that Newton does not find may be approached along a branch, by `follow`.
+    shortfall: why such a branch ended, where the method cannot resolve its orbits. tried: what was tried
+    besides the guess.
     """
 
     solver: Solver
@@ -66,7 +62,8 @@ class Start:
         Raises SpentError, which says so.
         """
         try:
-            return self._found(guess, sign)
+            first = self._found(guess, sign)
+            return amid(self.solver, guess, first, sign) if first.ok else first
         except SpentError:
             raise SpentError(f"all before a first orbit: {self._sought}; {SPENT}") from None
 
@@ -85,12 +82,16 @@ class Start:
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
-            return self._at_turn(guess, sign, first)
+            return self._read(guess, sign) or self._at_fold(guess, sign, first)
         others = self._other_guesses(guess)
-        if settles:
-            motion = next(others, None)
-            if motion is not None and (last := worded(self.solver, motion, sign)).ok:
+        if slips:
+            last = worded(solver, first.orbit, sign)
+            if last.ok and np.isfinite(last.error.motion):
                 return last
+        if settles:
+            for motion in iter(lambda: next(others, None), None):
+                if (last := worded(self.solver, motion, sign)).ok:
+                    return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
             if (last := self._fixed(rest, sign)).ok:
@@ -111,12 +112,19 @@ class Start:
                 return last
         return first
 
+    def _read(self, guess: Orbit, sign: float) -> Solution | None:
+        """The orbit near a guess with the word of its own motion; None where there is none."""
+        changed = self.solver.discretisation.reworded(self.solver.problem.system, guess)
+        found = None if changed is None else worded(self.solver, changed, sign)
+        return found if found is not None and found.ok else None
+
     def why_not(self, outcome: Outcome, parameter: Array) -> str:
         """Say why there is no first orbit at parameters (p,), what was tried, and what else there is."""
         if not self.tried:
             return outcome.value
         problem = self.solver.problem
-        free = [] if problem.autonomous else drifting(problem.system, parameter)
+        method, system = self.solver.discretisation, problem.system
+        free = [] if problem.autonomous else method.drifting(system, parameter)
         held = f"; nothing holds {' and '.join(free)}" if free else ""
         return (
             f"{outcome.value}{held}; nor was one found from {', '.join(self.tried)}; "
@@ -124,34 +132,35 @@ class Start:
         )
 
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
-        """Guesses at the wanted parameters, each found only when those before have not served.
+        """Guesses at the wanted parameters, each computed only when those before have failed.
 
-        The first is a motion that has settled, None where there is none; none at all where friction holds it.
+        First a motion that has settled, further and further, then None; no more where friction holds it.
         """
-        motion = self._settled(guess)
-        names = [] if motion is None else held(self.solver.problem.system, motion)
-        if names:
-            self.tried[-1] += f": {' and '.join(names)} holds all along, at a place that is not determined"
-            return
         system, method = self.solver.problem.system, self.solver.discretisation
-        yield None if motion is None else method.guess(system, guess.parameter, motion)
+        for motion in self._settled(guess):
+            if names := held(system, motion):
+                place = "at a place that is not determined"
+                self.tried[-1] += f": {' and '.join(names)} holds all along, {place}"
+                return
+            yield method.guess(system, motion.parameter, motion)
+        yield None
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
-        """The rest under the mean load, if the guess does not begin there; none of free oscillations."""
+        """Equilibrium under the mean load, unless the guess begins there; none of free oscillations."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
-        rest = resting(problem.system, guess)
+        rest = method.resting(problem.system, guess)
         return None if rest is None else self._adopted(self.solver, rest)
 
-    def _settled(self, guess: Orbit) -> Orbit | None:
+    def _settled(self, guess: Orbit) -> Iterator[Orbit]:
         """A simulation that is left to settle; none of free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
-            return None
+            return
         self.tried.append("a simulation left to settle")
-        return settled(problem.system, guess)
+        yield from settled(method, problem.system, guess)
 
     def _grown(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses on branches in another parameter that begin where it is 0: forcing, friction or load."""
@@ -180,7 +189,7 @@ class Start:
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
         """Find the first orbit by that of another discretisation; None where there is none."""
         solver, system = self.solver, self.solver.problem.system
-        loose = self._loosely(solver, LOOSE)
+        loose = self._loosely(solver, COARSEST)
         for method in solver.discretisation.alternatives:
             other = replace(loose, discretisation=method.at(loose.tolerance.orbit))
             near = other.discretisation.guess(system, guess.parameter, guess)
@@ -196,16 +205,16 @@ class Start:
         tolerance = replace(solver.tolerance, orbit=max(least, solver.tolerance.orbit))
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 
-    def _at_turn(self, guess: Orbit, sign: float, first: Solution) -> Solution:
-        """Find an orbit at a turn of the branch, where the parameter cannot be held."""
+    def _at_fold(self, guess: Orbit, sign: float, first: Solution) -> Solution:
+        """Find an orbit at a fold of the branch, where the parameter cannot be held."""
         failed = first.failed(Outcome.COLLAPSED) if first.ok else first
         problem = self.solver.problem
         try:
-            across = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
-        except FAILURES:
+            kernel = away(problem.system, guess, 1, problem.autonomous).scaled(sign)
+        except (*FAILURES, UnknownVariationsError):
             return failed
-        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, across, 0.0)))
-        aside = ASIDE * problem.scale
+        found = refined(self.solver, self.solver.on(guess, self.solver.constraint(guess, kernel, 0.0)))
+        aside = BESIDE_BOUND * problem.scale
         within = problem.low - aside <= found.value <= problem.high + aside
         return found if found.ok and within else failed
 
@@ -217,20 +226,29 @@ class Start:
         parameter[problem.index] = far = factor * wanted
         sign = int(np.sign(wanted - far))
         near = replace(guess, parameter=parameter)
-        first = self._fixed(self._rest(near) or near, float(sign))
-        if not first.ok or far == wanted:
+        if far == wanted or not (first := self._there(near, float(sign))).ok:
             return None
         nearer = replace(problem, bounds=(min(wanted, far), max(wanted, far)))
         own = replace(self.solver, problem=nearer)
-        solver = self._loosely(own, ROUGH) if own.tolerance.orbit < ROUGH else own
+        solver = self._loosely(own, Accuracy.STANDARD) if own.tolerance.orbit < Accuracy.STANDARD else own
         begin = first.orbit if solver is own else self._adopted(solver, first.orbit)
         orbit, stop = self.follow(solver, begin, sign, None)
         if stop.reason is Reason.INACCURATE and orbit is not None:
             self.shortfall = f"at {problem.value(orbit):.6g}, on the way there, {stop.detail}"
-            orbit, _ = self.follow(self._loosely(solver, LOOSE), orbit, sign, None)
+            orbit, _ = self.follow(self._loosely(solver, COARSEST), orbit, sign, None)
         if orbit is None or problem.value(orbit) != wanted:
             return None
         return orbit if solver is own else self._adopted(own, orbit)
+
+    def _there(self, near: Orbit, sign: float) -> Solution:
+        """An orbit elsewhere: from rest, or from a motion that has settled there."""
+        solver, system = self.solver, self.solver.problem.system
+        first = self._fixed(self._rest(near) or near, sign)
+        if not solver.discretisation.settles(system) or first.ok and np.isfinite(first.error.motion):
+            return first
+        each = (self._adopted(solver, motion) for motion in settled(solver.discretisation, system, near))
+        found = (worded(solver, motion, sign) for motion in each)
+        return next((last for last in found if last.ok), first)
 
     @staticmethod
     def _adopted(solver: Solver, orbit: Orbit) -> Orbit:

@@ -21,9 +21,10 @@ from symbolic.checks import refusal, typed
 from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
-from symbolic.equations.terms import Motion, Place, Slider, State, Unknown, struck
+from symbolic.equations.terms import Motion, Place, Relay, Slider, State, Unknown, struck
 from symbolic.equations.variables import ANGULAR, Coordinate, Parameter, SwitchInfo, Value, Variable
 from symbolic.mistakes import explained
+from symbolic.relays import kept_by
 from symbolic.sketch import Sketch
 
 
@@ -79,7 +80,11 @@ class Body(Protocol):
         """
 
 
-def _turning(value: Value, symbol: ca.SX) -> ca.SX:
+SAME_GRAPH = 20
+"""How deep the graphs of two expressions are compared."""
+
+
+def _angular(value: Value, symbol: ca.SX) -> ca.SX:
     """An angular frequency in rad/s, from the unit of the user's parameter."""
     given = value.unit if isinstance(value, Parameter) else ""
     if given not in ("", *ANGULAR):
@@ -126,6 +131,7 @@ class Assembly:
     resets: dict[int, dict[State, ca.SX]] = field(default_factory=dict, init=False)
     impacts: dict[int, tuple[Motion, ca.SX]] = field(default_factory=dict, init=False)
     sliders: dict[int, Slider] = field(default_factory=dict, init=False)
+    relays: dict[int, Relay] = field(default_factory=dict, init=False)
     places_held: dict[int, tuple[str, ca.SX]] = field(default_factory=dict, init=False)
     joints: dict[object, Joint] = field(default_factory=dict, init=False)
     structures: list[Body] = field(default_factory=list, init=False)
@@ -140,7 +146,7 @@ class Assembly:
             In any order.
         """
         for part in parts:
-            with self.owned(part.owner), explained(type(part).__name__):
+            with kept_by(self), self.owned(part.owner), explained(type(part).__name__):
                 part.contribute(self)
 
     def close(self, condense: bool = True) -> None:
@@ -152,7 +158,7 @@ class Assembly:
             Whether structures keep two states at their places alone.
         """
         for place, joint in self.joints.items():
-            with self.owned(str(getattr(place, "name", ""))):
+            with kept_by(self), self.owned(str(getattr(place, "name", ""))):
                 joint.close(self)
         for structure in self.structures:
             (structure.condense if condense else structure.expand)(self)
@@ -282,7 +288,7 @@ class Assembly:
             something else.
         """
         symbol = self.numbers.symbol(value, name, unit, self.owner, allowed)
-        return _turning(value, symbol) if unit == "rad/s" else symbol
+        return _angular(value, symbol) if unit == "rad/s" else symbol
 
     def excite(self, frequency: ca.SX) -> None:
         """Set Omega, the angular frequency of the excitation: theta = Omega t.
@@ -579,7 +585,7 @@ class Assembly:
         self.places_held[len(self.switches)] = called, found
         return found
 
-    def slider(self, name: str, state: State, row: ca.SX, strain: ca.SX, limit: ca.SX) -> None:
+    def slider(self, name: str, state: State, row: ca.SX, elongation: ca.SX, limit: ca.SX) -> None:
         """Add an elastic slider: z is held while |e - z| < l, and carried along where e - z = l or -l.
 
         Parameters
@@ -590,10 +596,10 @@ class Assembly:
             z.
         row : casadi.SX
             The row of z where the state decides, as that of one who creeps.
-        strain, limit : casadi.SX
+        elongation, limit : casadi.SX
             e and l, functions of coordinates and the phase; all in the unit of z.
         """
-        index, scale, rates = len(self.switches), state.scale, (self.rate(strain), self.rate(limit))
+        index, scale, rates = len(self.switches), state.scale, (self.rate(elongation), self.rate(limit))
         speeds = tuple((rates[0] - way * rates[1]) / scale for way in (1, -1))
         slipping = tuple(state.derivative / scale - speed for speed in speeds)
         place = self.holds(state.name, state.symbol, scale, state.unit)
@@ -608,8 +614,31 @@ class Assembly:
         )
         self.differential_rows.append(row)
         self.switch(f"{name}: strained", rates[0] / scale, 0)
-        self.switch(f"{name}: slips up", (strain - state.symbol - limit) / scale, 1)
-        self.switch(f"{name}: slips down", (strain - state.symbol + limit) / scale, -1)
+        self.switch(f"{name}: slips up", (elongation - state.symbol - limit) / scale, 1)
+        self.switch(f"{name}: slips down", (elongation - state.symbol + limit) / scale, -1)
+
+    def relay(self, u: ca.SX, on: ca.SX, off: ca.SX) -> ca.SX:
+        """Add a relay with hysteresis: on where u has risen through `on`, off where it fell through `off`.
+
+        Parameters
+        ----------
+        u, on, off : casadi.SX
+            What is compared, and the thresholds: functions of states, phase and parameters.
+
+        Returns
+        -------
+        casadi.SX
+            Its symbol, 1 where it is on and -1 where it is off; that of the same relay if there is one.
+        """
+        over, under = u - on, u - off
+        for known in self.relays.values():
+            if ca.is_equal(known.over, over, SAME_GRAPH) and ca.is_equal(known.under, under, SAME_GRAPH):
+                return known.symbol
+        index = len(self.switches)
+        symbol = ca.SX.sym(f"relay_{len(self.relays) + 1}")
+        self.relays[index] = Relay(symbol, over, under)
+        self.switch(f"relay {len(self.relays)}", over, 0)
+        return symbol
 
     def smooth_at(self, expression: ca.SX) -> None:
         """Say that the equations have no kink where an expression vanishes, though branches meet there.

@@ -41,7 +41,7 @@ PRODUCTS = (ca.OP_MUL, ca.OP_DIV, ca.OP_IF_ELSE_ZERO)
 STEPPED = {ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil", ca.OP_FMOD: "fmod", ca.OP_COPYSIGN: "copysign"}
 """Operations that jump at places which no switch tells of: rounding, remainders, signs of others."""
 
-NOTHING = 1e-200
+STANDS_FOR_ZERO = 1e-200
 """A constant below this stands for 0, as in max(delta, 1e-300)^n."""
 
 
@@ -151,7 +151,7 @@ def switching(rows: ca.SX, given: Callable[[ca.SX], Traits]) -> list[ca.SX]:
         if node.op() not in COMPARED + SIGNED:
             continue
         parts = [node.dep(i) for i in range(node.n_dep())]
-        parts = [p for p in parts if not (p.is_constant() and abs(float(p)) < NOTHING)]
+        parts = [p for p in parts if not (p.is_constant() and abs(float(p)) < STANDS_FOR_ZERO)]
         if len(parts) == 1 and node.op() in BENT:
             found += [factor for factor in known.factors(parts[0]) if known.moves([factor])]
         elif known.moves(parts) and len(parts) == 2:

@@ -22,7 +22,7 @@ Order = int | float | str | Fraction
 MOST_PERIODS = 1000
 """Most periods of theta after which an excitation may repeat."""
 
-ROUNDED = 1e-12
+ROUNDED_RATIO = 1e-12
 """Relative difference from a rational number up to which a floating-point number stands for it."""
 
 
@@ -36,7 +36,7 @@ def order_of(value: Order) -> Fraction:
     if not isinstance(exact, Fraction) or exact <= 0:
         raise refusal("order", value, allowed)
     found = exact.limit_denominator(MOST_PERIODS)
-    if abs(found - exact) > ROUNDED * exact:
+    if abs(found - exact) > ROUNDED_RATIO * exact:
         raise refusal("order", value, f"{allowed}: the excitation has no common period otherwise")
     return found
 

@@ -17,6 +17,8 @@ import casadi as ca
 import numpy as np
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.jumps.relays import decided, in_modes, with_relays
+from symbolic.equations.jumps.resting import Resting, walls, with_walls
 from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
@@ -49,6 +51,8 @@ class Expressions:
     switches: ca.SX
     guards: ca.SX
     sliders: dict[int, Held]
+    relays: tuple[int, ...]
+    resting: dict[int, Resting]
     resets: dict[int, ca.SX]
     rest_state: ca.SX
     rest_algebraic: ca.SX
@@ -69,22 +73,29 @@ def expressed(assembly: Assembly) -> Expressions:
     unknowns, excitation = assembly.unknowns, assembly.excitation
     moved = packed.scaled([u.moved for u in unknowns])
     moving = _moving_rows(assembly)
-    both = packed.scaled(rows + moving)  # at once: what they share stays the same
+    both = packed.scaled(rows + moving, relays=True)  # at once: what they share stays the same
     residual = both[: len(rows)]
-    switches = packed.scaled([expression for _, expression in assembly.switches])
+    switches = packed.scaled([expression for _, expression in assembly.switches], relays=True)
+    modes = decided(assembly.relays)
+    _check_relays(assembly, outputs)
     resets, telling = tuple(assembly.resets), both[len(rows) :] if moving else None
     at = {k: packed.scaled([place]) for k, (_, place) in assembly.places_held.items()}
-    beside = sided(packed, residual, switches, resets, telling, tuple(assembly.sliders), at)
-    guards = ca.vertcat(switches, *(s for _, *both in beside.slides for s in both))
+    free = walls(assembly)
+    beside = sided(packed, residual, switches, resets, telling, (*assembly.sliders, *free), at, modes)
+    own = with_relays(packed, assembly.relays, switches, modes, in_modes(switches, switches, modes))
+    guards = ca.vertcat(own, *(s for _, *both in beside.slides for s in both))
     first = len(rows) - len(assembly.differential_rows) - len(assembly.algebraic_rows) - len(assembly.places)
     beside, guards = with_sliders(packed, assembly.sliders, beside, guards, first)
+    beside, guards, resting = with_walls(packed, free, beside, guards)
     return Expressions(
         rate=packed.rate,
         state=packed.state,
         algebraic=packed.unknown,
         phase=packed.phase,
         parameter=packed.parameter,
-        residual=residual,
+        residual=ca.substitute(beside.residual, beside.side, ca.SX.zeros(beside.side.numel()))
+        if modes
+        else residual,
         sided=beside,
         places=_places(packed, assembly),
         unexcited=ca.substitute(
@@ -98,6 +109,8 @@ def expressed(assembly: Assembly) -> Expressions:
         switches=ca.substitute(guards, beside.side, ca.SX.zeros(beside.side.numel())),
         guards=guards,
         sliders={k: Held(s.releases, assembly.states.index(s.state)) for k, s in assembly.sliders.items()},
+        relays=tuple(assembly.relays),
+        resting=resting,
         resets={
             k: packed.scaled([to.get(s, s.symbol) / s.scale for s in assembly.states])
             for k, to in assembly.resets.items()
@@ -107,6 +120,19 @@ def expressed(assembly: Assembly) -> Expressions:
         increment=packed.increment,
         moved=ca.substitute(moved, ca.vertcat(*[u.increment for u in unknowns]), packed.increment),
     )
+
+
+def _check_relays(assembly: Assembly, outputs: list[ca.SX]) -> None:
+    """Refuse outputs and resets that depend on whether a relay is on: they are functions of the state."""
+    symbols = ca.vertcat(ca.SX(0, 1), *[relay.symbol for relay in assembly.relays.values()])
+    for (variable, _), expression in zip(assembly.described, outputs, strict=True):
+        if ca.depends_on(expression, symbols):
+            raise ValueError(
+                f"output {variable.name!r} depends on a relay; it must be a function of the state alone"
+            )
+    for k, to in assembly.resets.items():
+        if ca.depends_on(ca.vertcat(*to.values()), symbols):
+            raise ValueError(f"reset {assembly.switches[k][0].name!r} depends on a relay; it must not")
 
 
 def _places(packed: Packed, assembly: Assembly) -> dict[int, tuple[str, tuple[float, ...]]]:

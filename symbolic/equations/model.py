@@ -16,9 +16,9 @@ PART = "Part, as symbolic.Mass(x, 1.0) is"
 
 
 class Part:
-    """One term of the equations of motion; what it adds it says in `contribute`.
+    """One term of the equations of motion; its method `contribute` adds it.
 
-    A class may have `EXAMPLE`, values of its fields as a text scene has them, where 1.0 is no good one.
+    A class may have `EXAMPLE`: values of its fields, as in a text scene, where 1.0 is none to begin with.
     """
 
     EXAMPLE: ClassVar[Mapping[str, object]] = {}
@@ -54,7 +54,7 @@ class Part:
         return Model((self,)) + other
 
     def __radd__(self, other: object) -> Model:
-        return Model((self,)) if other == 0 else NotImplemented  # what sum begins with
+        return Model((self,)) if other == 0 else NotImplemented  # sum() begins with 0
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
-"""The numbers of a model and their names: bare numbers are named by what they are, and by what they belong to
-where that is not enough.
+"""The numbers of a model and their names: bare numbers are named by the field that they are given for, and by
+its owner where that name is not unique.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Number:
 
     @property
     def kept(self) -> bool:
-        """Whether nothing but its own name is left to it."""
+        """Whether its own name is the only one that it may have."""
         return not (self.bare and self.owner)
 
 
@@ -48,7 +48,7 @@ class Numbers:
         return own.symbol
 
     def _taken(self, wanted: Parameter, owner: str, bare: bool) -> Parameter:
-        """The number that is there already, or the new one."""
+        """The equal number that exists already, or the new one."""
         for known in self.taken:
             same = known.bare and bare and known.owner == owner and _alike(known.parameter, wanted)
             if same or known.parameter is wanted:
@@ -72,7 +72,7 @@ class Numbers:
     def named(self) -> dict[str, tuple[Parameter, list[ca.SX]]]:
         """Return the parameters by name, in the order of the parts, with the symbols that stand for each.
 
-        Raises ValueError where two of them come to one name.
+        Raises ValueError where two of them get one name.
         """
         found: dict[str, tuple[Parameter, list[ca.SX]]] = {}
         for number in self.taken:
@@ -118,5 +118,5 @@ def _alike(a: Parameter, b: Parameter) -> bool:
 
 
 def _fits(a: Parameter, b: Parameter) -> bool:
-    """Whether two numbers of one name may be one parameter: of one value, and no two units."""
+    """Whether two numbers of one name may be one parameter: equal values, and no two units."""
     return a.value == b.value and (a.unit == b.unit or "" in (a.unit, b.unit))

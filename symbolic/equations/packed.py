@@ -26,6 +26,7 @@ class Packed:
         self.unknown = ca.SX.sym("algebraic", len(unknowns))
         self.increment = ca.SX.sym("increment", len(unknowns))
         self.waves = assembly.excitation.symbols
+        self.relays = [relay.symbol for relay in assembly.relays.values()]
         scales = ca.vertcat(*[s.scale for s in states])
         old = [s.derivative for s in states] + [s.symbol for s in states]
         old += [u.symbol for u in unknowns] + [symbol for symbols in parameters for symbol in symbols]
@@ -33,7 +34,7 @@ class Packed:
         self.old = ca.vertcat(*old)
         self.new = ca.vertcat(self.rate * scales, self.state * scales, self.unknown, *values)
 
-    def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None) -> ca.SX:
+    def scaled(self, expressions: list[ca.SX], waved: ca.SX | None = None, *, relays: bool = False) -> ca.SX:
         """Stack expressions in SI as one in the vectors.
 
         Parameters
@@ -42,6 +43,8 @@ class Packed:
             In the assembly's symbols.
         waved : casadi.SX, optional
             What stands for the waves of the excitation; by default their values at the phase.
+        relays : bool
+            Whether relays stay their symbols; by default they are on above their upper threshold alone.
 
         Returns
         -------
@@ -49,7 +52,10 @@ class Packed:
             A column in the vectors.
         """
         excitation = self.assembly.excitation
-        stacked = self.assembly.with_frequency(ca.vertcat(ca.SX(0, 1), *expressions))
+        stacked = ca.vertcat(ca.SX(0, 1), *expressions)
+        for relay in () if relays else reversed(self.assembly.relays.values()):  # those before may be in it
+            stacked = ca.substitute(stacked, relay.symbol, ca.copysign(1, relay.over))
+        stacked = self.assembly.with_frequency(stacked)
         stacked = excitation.timed(stacked, self.phase)
         given = excitation.values(self.phase) if waved is None else waved
         return ca.substitute(ca.substitute(stacked, self.waves, given), self.old, self.new)

@@ -6,15 +6,13 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
+from symbolic.equations.excitation import ROUNDED_RATIO
 from symbolic.equations.packed import Packed
 
-SAME = 1e-12
-"""Ratios of two functions that differ by less are equal."""
-
-ALIKE = 3
+PARAMETER_SETS = 3
 """Sets of parameters on which two functions are compared, the nominal one first."""
 
-POINTS = 24
+SAMPLE_POINTS = 24
 """Points at which they are compared for each."""
 
 
@@ -34,11 +32,11 @@ class Samples:
         rest = packed.scaled([s.rest / s.scale for s in assembly.states])
         start = np.array(ca.Function("rest", [packed.parameter], [rest])(nominal)).reshape(-1, 1)
         self.points = []
-        for k in range(ALIKE):
+        for k in range(PARAMETER_SETS):
             change = draw.uniform(0.02, 0.1, nominal.size) if k else np.zeros(nominal.size)
             parameter = np.where(nominal == 0, change, nominal * (1 + change))
-            spread = 10 ** draw.uniform(-1, 1, POINTS) * draw.normal(size=(len(start), POINTS))
-            self.points.append((start + spread, draw.uniform(0, 2 * np.pi, (1, POINTS)), parameter))
+            spread = 10 ** draw.uniform(-1, 1, SAMPLE_POINTS) * draw.normal(size=(len(start), SAMPLE_POINTS))
+            self.points.append((start + spread, draw.uniform(0, 2 * np.pi, (1, SAMPLE_POINTS)), parameter))
 
     def _evaluated(self, column: ca.SX) -> list[Array]:
         """Values at the points for each set of parameters, shape (rows, POINTS)."""
@@ -69,7 +67,7 @@ def constant(values: list[Array]) -> bool:
     """Whether a function does not vary with state and phase, for any parameters."""
     finite = [v[np.isfinite(v)] for v in values]
     with np.errstate(over="ignore"):
-        return all(v.size and np.ptp(v) <= SAME * np.abs(v).max() for v in finite)
+        return all(v.size and np.ptp(v) <= ROUNDED_RATIO * np.abs(v).max() for v in finite)
 
 
 def multiples(values: list[Array], others: list[Array]) -> bool:
@@ -80,6 +78,6 @@ def multiples(values: list[Array], others: list[Array]) -> bool:
         if not a.size or not a.any() or not b.any():
             return False
         a, b = a / np.abs(a).max(), b / np.abs(b).max()
-        if np.abs(a - (a @ b) / (b @ b) * b).max() > SAME:
+        if np.abs(a - (a @ b) / (b @ b) * b).max() > ROUNDED_RATIO:
             return False
     return True

@@ -53,6 +53,11 @@ class Surface:
     place : (int, tuple of float), optional
         Of what may be HELD: the index of the parameter that says where, and the weights (n,) of the scaled
         states in how far it is deflected (SI).
+    alone : bool
+        Whether it may be HELD without a place, as the equations determine the motion then.
+    leaves : int, optional
+        Of an impact on which the motion may come to rest: the index of the switch that is negative as long as
+        it is pressed to it, and at whose rise to 0 it leaves.
     """
 
     kind: Kind
@@ -61,6 +66,8 @@ class Surface:
     releases: tuple[int, int] | None = None
     column: int | None = None
     place: tuple[int, tuple[float, ...]] | None = None
+    alone: bool = False
+    leaves: int | None = None
 
 
 def surfaces(
@@ -70,6 +77,9 @@ def surfaces(
     slides: Mapping[int, tuple[int, int]],
     sliders: Container[int] = (),
     places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
+    relays: Container[int] = (),
+    alone: Container[int] = (),
+    leaves: Mapping[int, int] | None = None,
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
@@ -87,14 +97,22 @@ def surfaces(
         Those of elastic sliders.
     places : mapping of int to (int, tuple of float), optional
         Where they may be held: see `Surface`.
+    relays : container of int
+        Those of relays.
+    alone : container of int
+        Those of sliding that may be HELD without a place.
+    leaves : mapping of int to int, optional
+        Of walls, the switches at which what rests on them leaves.
     """
-    released = {k for pair in slides.values() for k in pair}
+    released = {k for pair in slides.values() for k in pair} | set((leaves or {}).values())
 
     def kind(k: int) -> Kind:
         if k in resets:
             return Kind.IMPACT
         if k in sliders:
             return Kind.SLIDER
+        if k in relays:
+            return Kind.RELAY
         if k in jumps:
             return Kind.SLIDING if k in slides else Kind.JUMP
         plain = switches[k].levels == (0.0,) and switches[k].direction == 0
@@ -108,6 +126,8 @@ def surfaces(
             slides.get(k),
             jumps.index(k) if k in jumps else None,
             (places or {}).get(k) if k in slides else None,
+            k in alone,
+            (leaves or {}).get(k),
         )
         for k, info in enumerate(switches)
         if k not in released

@@ -84,6 +84,19 @@ class Slider:
     place: ca.SX
 
 
+@dataclass(frozen=True)
+class Relay:
+    """A relay with hysteresis.
+
+    symbol: 1 where it is on, -1 where it is off. over, under: u less the upper threshold, and less the lower
+    one: it is off as long as the first is negative, on as long as the second is positive.
+    """
+
+    symbol: ca.SX
+    over: ca.SX
+    under: ca.SX
+
+
 def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -> dict[State, ca.SX]:
     """Return the velocities after an impulse on one coordinate that gives it the velocity `after`.
 

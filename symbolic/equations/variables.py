@@ -62,7 +62,7 @@ class SwitchInfo:
     """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
 
     `direction` is -1 where only a falling passage is a kink, +1 for a rising one, 0 for both. Levels fall:
-    each marks the same kink more sharply than the one before, as long as s goes that far below it.
+    each marks the same kink more sharply than the one before, as long as s falls that far.
     """
 
     name: str
@@ -111,12 +111,12 @@ Value = float | Parameter
 
 
 def not_negative(field: str, value: Value) -> None:
-    """Refuse a part's number that is negative; what is none is refused on compilation. Raises ValueError."""
+    """Refuse a negative number of a part; what is no number is refused on compilation. Raises ValueError."""
     _within(NOT_NEGATIVE, field, value)
 
 
 def above_zero(field: str, value: Value) -> None:
-    """Refuse a part's number that is not positive; what is none, compilation refuses. Raises ValueError."""
+    """Refuse a part's number that is not positive; compilation refuses what is none. Raises ValueError."""
     _within(POSITIVE, field, value)
 
 
@@ -142,9 +142,9 @@ class Coordinate:
     name, unit : str
         Name, and SI unit.
     scale : float, optional
-        Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+        Length (SI) that is 1 in the scaled equations; by default that of a contact on the coordinate, else 1.
     start : float
-        Where the search for a rest begins (SI): beyond a clearance, where the part's own force holds.
+        Where the search for the equilibrium begins (SI); needed where that lies beyond a clearance.
 
     Raises
     ------
@@ -209,9 +209,9 @@ def coordinate(name: str, unit: str = "m", scale: float | None = None, start: fl
     name, unit : str
         Name, and SI unit.
     scale : float, optional
-        Length (SI) taken as one inside; by default that of a contact on the coordinate, else 1.
+        Length (SI) that is 1 in the scaled equations; by default that of a contact on the coordinate, else 1.
     start : float
-        Where the search for a rest begins (SI): needed where the rest lies beyond a clearance.
+        Where the search for the equilibrium begins (SI); needed where that lies beyond a clearance.
 
     Returns
     -------
@@ -246,7 +246,7 @@ def coordinates(
     Returns
     -------
     tuple of Coordinate
-        One part is laid on each: ``sym.combine(sym.Mass(q, 1.0) for q in x)``.
+        For one part on each: ``sym.combine(sym.Mass(q, 1.0) for q in x)``.
 
     Raises
     ------

@@ -1,14 +1,12 @@
-"""One call of CVODES, by which both flows integrate."""
+"""CVODES for ordinary differential equations, along any phases."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable
-from typing import TypeVar
+from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from symbolic.arrays import Array
 from symbolic.integration.interrupts import heard
@@ -16,12 +14,14 @@ from symbolic.integration.interrupts import heard
 STEPS = 20_000
 """Most steps from one phase of output to the next."""
 
-KEPT = 64
-"""How many integrators are kept; each is for certain phases."""
+KEPT = 128
+"""How many integrators are kept; each is for certain parts of an interval."""
 
+LENGTH = 1e6
+"""Every interval is run through in this time: CasADi takes times for one that are nearer than 1e-9."""
 
-SPACED = 2e-9
-"""Phases (rad) that are nearer to each other CasADi takes for one, and leaves the state where it is."""
+DIGITS = 15
+"""Of the parts of an interval at which a solution is wanted."""
 
 
 class IntegrationError(ArithmeticError):
@@ -32,43 +32,58 @@ class IntegrationError(ArithmeticError):
         self.phase = phase
 
 
-def integrator(problem: dict[str, ca.SX], phase: tuple[float, ...], tolerance: float) -> ca.Function:
-    """Return CVODES for an ODE from phase[0] to each of the later phases."""
-    options = {
-        "reltol": tolerance,
-        "abstol": tolerance,
-        "max_num_steps": STEPS,
-        "disable_internal_warnings": True,
-        "show_eval_warnings": False,
-    }
-    return ca.integrator("flow", "cvodes", problem, phase[0], list(phase[1:]), options)
+@dataclass(frozen=True, eq=False)
+class Cvodes:
+    """Integrates an ODE y' = f(y, tau, p).
 
+    Parameters
+    ----------
+    problem : dict of str to casadi.SX
+        x = y, t = tau, p, and ode = f.
+    """
 
-def integrated(integrator: ca.Function, start: Array, parameter: Array) -> Array | None:
-    """Return the solution at the later phases, a column each, or None where CVODES fails."""
-    try:
-        with heard():
-            return np.array(integrator(x0=start, p=parameter)["xf"])
-    except RuntimeError:  # what CasADi raises for every failure of CVODES
-        return None
+    problem: dict[str, ca.SX]
+    _integrators: dict[tuple[float, ...], ca.Function] = field(default_factory=dict, init=False, repr=False)
 
+    def run(self, start: Array, phase: Array, parameter: Array, tolerance: float) -> Array | None:
+        """Return y at all phases (K,), which rise, shape (K, w); None where CVODES fails.
 
-Key = TypeVar("Key", bound=Hashable)
+        tolerance: relative and absolute.
+        """
+        begin, width = phase[0], phase[-1] - phase[0]
+        parts, place = np.unique(np.round((phase - begin) / (width or 1.0), DIGITS), return_inverse=True)
+        if len(parts) == 1:
+            return np.repeat(start[None], len(phase), axis=0)
+        given = np.concatenate([parameter, [begin, width / LENGTH]])
+        try:
+            with heard():
+                later = self._integrator(tuple(parts), tolerance)(x0=start, p=given)["xf"]
+        except RuntimeError:  # what CasADi raises for every failure of CVODES
+            return None
+        found = np.concatenate([start[None], np.array(later).T])
+        return found[place] if np.isfinite(found).all() else None
 
+    def _integrator(self, parts: tuple[float, ...], tolerance: float) -> ca.Function:
+        """CVODES from the first of some parts of an interval to the others, kept; the oldest goes for it."""
+        key = (*parts, tolerance)
+        if key not in self._integrators:
+            while len(self._integrators) >= KEPT:
+                self._integrators.pop(next(iter(self._integrators)))
+            options = {
+                "reltol": tolerance,
+                "abstol": tolerance,
+                "max_num_steps": STEPS,
+                "disable_internal_warnings": True,
+                "show_eval_warnings": False,
+            }
+            times = [LENGTH * part for part in parts]
+            made = ca.integrator("flow", "cvodes", self._stretched, times[0], times[1:], options)
+            self._integrators[key] = made
+        return self._integrators[key]
 
-def kept(integrators: dict[Key, ca.Function], key: Key, make: Callable[[], ca.Function]) -> ca.Function:
-    """Return the integrator of a key, made where there is none; the oldest goes for it."""
-    if key not in integrators:
-        while len(integrators) >= KEPT:
-            integrators.pop(next(iter(integrators)))
-        integrators[key] = make()
-    return integrators[key]
-
-
-def spaced(phase: Array) -> NDArray[np.int_]:
-    """Return for each phase the index of the last one, at or before it, of those that are integrated to."""
-    last, found = 0, []
-    for k, tau in enumerate(phase):
-        last = k if tau - phase[last] >= SPACED else last
-        found.append(last)
-    return np.array(found)
+    @property
+    def _stretched(self) -> dict[str, ca.SX]:
+        """The problem with its interval, (begin, width / LENGTH), as parameters."""
+        interval, own = ca.SX.sym("interval", 2), self.problem
+        ode = ca.substitute(own["ode"], own["t"], interval[0] + interval[1] * own["t"])
+        return own | {"p": ca.vertcat(own["p"], interval), "ode": interval[1] * ode}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import scipy
@@ -22,7 +23,7 @@ Rates = Callable[[float, Array], Array]
 
 @dataclass
 class Counted:
-    """Rates that are evaluated `most` times, and not again after a signal: CasADi drops what that raises."""
+    """Rates that are evaluated `most` times, and not again after a signal, whose exception CasADi drops."""
 
     rates: Rates
     most: float
@@ -43,8 +44,15 @@ def failure(phase: float) -> IntegrationError:
     return IntegrationError(f"CVODES and LSODA both failed at tau = {phase:.6g}", phase)
 
 
-def followed(rates: Rates, jacobian: Rates, start: Array, phase: Array, tolerance: float) -> Array:
-    """Return the solution at the later phases, a row each. Raises IntegrationError."""
+def followed(
+    rates: Rates,
+    jacobian: Rates,
+    start: Array,
+    phase: Array,
+    tolerance: float,
+    method: Literal["LSODA", "Radau"] = "LSODA",
+) -> Array:
+    """Return the solution at the later phases, a row each, by LSODA or Radau. Raises IntegrationError."""
     if not np.isfinite(rates(phase[0], start)).all():
         raise failure(phase[0])
     with heard() as raised:
@@ -52,7 +60,7 @@ def followed(rates: Rates, jacobian: Rates, start: Array, phase: Array, toleranc
             Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
             (phase[0], phase[-1]),
             start,
-            method="LSODA",
+            method=method,
             t_eval=phase[1:],
             rtol=tolerance,
             atol=tolerance,

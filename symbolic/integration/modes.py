@@ -1,6 +1,8 @@
 """The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
 
-A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held.
+A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held,
+what rests on a wall after bounces without number. A relay is on or off, PLUS or MINUS, and its guard another
+one in either mode.
 Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
 sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
 solved by Murty's rule of the least index, which ends where A is a P-matrix.
@@ -18,12 +20,13 @@ from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.surfaces import MINUS, PLUS, STUCK, Kind, Surface
 from symbolic.integration.cvodes import IntegrationError
+from symbolic.integration.field import VectorField
 
 Modes = tuple[int, ...]
 """Of every surface of a system, in their order; 0 of those that have none."""
 
-HELD = (Kind.SLIDING, Kind.SLIDER)
-"""Kinds of surfaces that may be STUCK."""
+LOW = 0.1
+"""Height of a bounce, in tolerances, that is none."""
 
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
@@ -36,6 +39,8 @@ class Switched(Protocol):
     def expressions(self) -> Expressions: ...
     @property
     def surfaces(self) -> Sequence[Surface]: ...
+    @property
+    def field(self) -> VectorField: ...
     def switch(self, state: Array, phase: Array, parameter: Array, side: Array | None = None) -> Array: ...
     def switch_gradient(
         self, state: Array, phase: Array, parameter: Array, side: Array | None = None
@@ -102,9 +107,14 @@ class Switching:
         """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
         found = np.zeros(self.system.expressions.sided.side.numel())
         for surface, mode in zip(self.surfaces, modes, strict=True):
-            if surface.kind in HELD and surface.column is not None:
+            if surface.column is not None:
                 found[surface.column] = mode
         return found
+
+    @staticmethod
+    def _rests(surface: Surface, mode: int) -> bool:
+        """Whether something is at rest on a wall."""
+        return surface.kind == Kind.IMPACT and mode == STUCK
 
     def guards(self, modes: Modes) -> list[Guard]:
         """Return what is positive in some modes."""
@@ -113,24 +123,40 @@ class Switching:
             if mode == STUCK and surface.releases is not None:
                 up, down = surface.releases
                 found += [Guard(i, up, -1), Guard(i, down, 1)]
+            elif mode == STUCK and surface.leaves is not None:
+                found.append(Guard(i, surface.leaves, -1))
             elif mode:
                 found.append(Guard(i, surface.switch, mode))
         return found
 
-    def values(self, guards: Sequence[Guard], modes: Modes, phase: Array, state: Array) -> Array:
-        """Return guards along a motion, (N, guards)."""
-        signs = np.array([guard.sign for guard in guards])
-        return self._switches(modes, phase, state)[:, [guard.switch for guard in guards]] * signs
+    def begin(self, tau: float, state: Array, earlier: Modes | None = None) -> tuple[Array, Modes]:
+        """Return the modes at the beginning of a motion, and the state, on the limits of what slips.
 
-    def begin(self, tau: float, state: Array) -> tuple[Array, Modes]:
-        """Return the modes at the beginning of a motion, and the state, on the limits of what slips."""
+        earlier: modes before it, in which relays, and what slides, stay where they may.
+        """
         values = self._at((0,) * len(self.surfaces), tau, state)
-        modes = tuple(self._first(surface, values) for surface in self.surfaces)
-        return self.consistent(modes, tau, state)
+        modes = [self._first(surface, values) for surface in self.surfaces]
+        if earlier is not None:
+            each = zip(self.surfaces, modes, earlier, strict=True)
+            modes = [before if _stays(surface, before) else mode for surface, mode, before in each]
+        lying = (self._settles(surface, values, tau, state) for surface in self.surfaces)
+        modes = [STUCK if lies else mode for mode, lies in zip(modes, lying, strict=True)]
+        return self.consistent(tuple(self._relayed(modes, tau, state)), tau, state)
+
+    def _relayed(self, modes: list[int], tau: float, state: Array) -> list[int]:
+        """The modes with relays switched whose threshold has been passed, one that others depend on first."""
+        found = list(modes)
+        for i, surface in enumerate(self.surfaces):
+            if (
+                surface.kind == Kind.RELAY
+                and found[i] * self._at(tuple(found), tau, state)[surface.switch] < 0
+            ):
+                found[i] = -found[i]
+        return found
 
     def _first(self, surface: Surface, values: Array) -> int:
         """The mode of a surface as its guard has it."""
-        if surface.kind in (Kind.JUMP, Kind.RELAY, Kind.MARKER):
+        if surface.kind == Kind.MARKER:
             return 0
         if surface.kind == Kind.IMPACT:
             return PLUS
@@ -142,20 +168,40 @@ class Switching:
             return way if slips else STUCK
         return STUCK if surface.kind == Kind.SLIDING and abs(rate) <= self.tolerance else way
 
+    def maps(self, fallen: Sequence[Guard]) -> bool:
+        """Return whether an event at which some guards have fallen to 0 is an impact, or more than one."""
+        return any(self.struck(guard) for guard in fallen)
+
     def passed(self, fallen: Sequence[Guard], modes: Modes, tau: float, state: Array) -> tuple[Array, Modes]:
         """Return state and modes after an event at which some guards have fallen to 0."""
         new, tossed = list(modes), set()
         for guard in fallen:
             surface, mode = self.surfaces[guard.surface], modes[guard.surface]
-            if surface.kind == Kind.IMPACT:
+            if surface.kind == Kind.IMPACT and mode == STUCK:
+                new[guard.surface] = PLUS
+            elif surface.kind == Kind.IMPACT:
                 state = self.system.reset(surface.switch, state[None], np.array([tau]), self.parameter)[0]
                 new = self._turned(new, tau, state)
-            elif surface.kind == Kind.KINK:
+                if self._settles(surface, self._at(tuple(new), tau, state), tau, state):
+                    new[guard.surface] = STUCK
+            elif surface.kind in (Kind.KINK, Kind.JUMP, Kind.RELAY):
                 new[guard.surface] = -mode
             else:
                 new[guard.surface] = -guard.sign if mode == STUCK else STUCK
                 tossed |= {guard.surface} if mode == STUCK else set()
-        return self.consistent(tuple(new), tau, state, tossed)
+        return self.consistent(tuple(self._relayed(new, tau, state)), tau, state, tossed)
+
+    def _settles(self, surface: Surface, values: Array, tau: float, state: Array) -> bool:
+        """Whether what is on a wall bounces no higher than is nothing: it rests, if it is pressed to it.
+
+        What is behind the wall, as by the error of a guess, is laid on it where it does not come out again.
+        """
+        if surface.leaves is None or values[surface.leaves] >= 0:
+            return False
+        own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+        slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+        height = (slope[own.position] * state[own.velocity]) ** 2 / (-2 * values[surface.leaves])
+        return bool(values[surface.switch] + height <= LOW * self.tolerance)
 
     def _turned(self, modes: list[int], tau: float, state: Array) -> list[int]:
         """The modes after an impact, which may turn what slips and tear off what is held."""
@@ -167,7 +213,7 @@ class Switching:
                 found[i] = (PLUS if rate > 0 else MINUS) if slips else STUCK
             elif surface.kind == Kind.SLIDER and modes[i] != STUCK and modes[i] * rate < 0:
                 found[i] = STUCK
-        return found
+        return self._relayed(found, tau, state)
 
     def consistent(
         self, modes: Modes, tau: float, state: Array, tossed: Collection[int] = ()
@@ -205,7 +251,7 @@ class Switching:
 
     def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
         """The nearest state at which what sticks is at rest, and what is carried at its limit."""
-        rows = []
+        rows, state = [], self._laid(modes, tau, state)
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.kind == Kind.SLIDING and mode == STUCK:
                 rows.append(surface.switch)
@@ -223,6 +269,17 @@ class Switching:
                     gradient[row], gradient[row, held.place] = 0.0, own
         return np.asarray(state - np.linalg.pinv(gradient) @ value)
 
+    def _laid(self, modes: Modes, tau: float, state: Array) -> Array:
+        """The state with what rests on walls just on them, without speed."""
+        state = state.copy()
+        for surface, mode in zip(self.surfaces, modes, strict=True):
+            if self._rests(surface, mode):
+                own, at = self.system.expressions.resting[surface.switch], np.array([tau])
+                slope = self.system.switch_gradient(state[None], at, self.parameter)[0][0, surface.switch]
+                state[own.position] -= self._at(modes, tau, state)[surface.switch] / slope[own.position]
+                state[own.velocity] = 0.0
+        return state
+
     def _at(self, modes: Modes, tau: float, state: Array) -> Array:
         return self._switches(modes, np.array([tau]), state[None])[0]
 
@@ -230,35 +287,36 @@ class Switching:
         side = np.repeat(self.side(modes)[None], len(phase), axis=0)
         return self.system.switch(state, phase, self.parameter, side)
 
-    def along(
-        self, tau: float, state: Array, crossings: Sequence[tuple[int, float, float]]
-    ) -> tuple[Event, ...]:
-        """Return the events of a motion through kinks and impacts alone.
-
-        Parameters
-        ----------
-        tau : float
-            Phase where it begins.
-        state : ndarray, shape (n,)
-            State there.
-        crossings : sequence of tuple
-            Switch, phase, and the rate with which it passes.
-        """
-        modes, found = self.begin(tau, state)[1], []
-        places = {surface.switch: i for i, surface in enumerate(self.surfaces)}
-        for switch, phase, rate in crossings:
-            i = places[switch]
-            impact = self.surfaces[i].kind == Kind.IMPACT
-            after = PLUS if impact or rate > 0 else MINUS
-            modes = (*modes[:i], after, *modes[i + 1 :])
-            found.append(Event(i, after if impact else -after, after, phase, modes))
-        return tuple(found)
+    def struck(self, guard: Guard) -> bool:
+        """Whether what has fallen to 0 is an impact."""
+        surface = self.surfaces[guard.surface]
+        return surface.kind == Kind.IMPACT and guard.switch == surface.switch
 
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
         """Return what has happened to the surfaces: changes of mode, and impacts."""
-        struck = {guard.surface for guard in fallen if self.surfaces[guard.surface].kind == Kind.IMPACT}
+        struck = {guard.surface for guard in fallen if self.struck(guard)}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
+
+
+def modes_along(phase: Array, events: Sequence[Event], last: Modes) -> list[Modes]:
+    """Return the modes at phases along a motion, from its events in order, and those at its end."""
+    if not events:
+        return [last] * len(phase)
+    first = list(events[0].modes)
+    for event in events:
+        if event.modes == events[0].modes and event.phase == events[0].phase:
+            first[event.surface] = event.before
+    each = [tuple(first), *(event.modes for event in events)]
+    at = [event.phase for event in events]
+    passed = np.searchsorted(at, phase, side="right")
+    struck = np.append(np.diff(phase) == 0, False)  # of an impact's two points the first is before it
+    return [each[k] for k in np.where(struck, np.searchsorted(at, phase), passed)]
+
+
+def _stays(surface: Surface, before: int) -> bool:
+    """Whether a surface begins in the mode in which it was."""
+    return surface.kind == Kind.RELAY and before != 0 or surface.kind == Kind.SLIDING and before == STUCK
 
 
 def _mode(surface: Surface, values: Array, mode: int) -> int:

@@ -11,7 +11,7 @@ a solution for every x, also where contact is lost and g hardly depends on z. Th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -21,9 +21,12 @@ import scipy
 
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
-from symbolic.integration.crossings import SwitchCrossings
-from symbolic.integration.cvodes import IntegrationError, integrated, integrator, kept, spaced
-from symbolic.integration.rates import constraint_rows, explicit_rates
+from symbolic.equations.surfaces import Kind
+from symbolic.integration.cvodes import Cvodes, IntegrationError
+from symbolic.integration.field import VectorField
+from symbolic.integration.follower import Followed, Follower
+from symbolic.integration.modes import Modes, Switched, Switching
+from symbolic.integration.rates import constraint_rows
 
 EPSILON = 1e-10
 """Added to the derivative of each constraint in its unknown, with which it rises."""
@@ -54,14 +57,13 @@ class Sensitivities:
 class SensitiveFlow:
     """Integrates a system in scaled variables; `move` takes the unknowns along Newton's increments.
 
-    `kinks` are the switches at whose level the rates have a kink: there the integration begins anew.
-    Raises ValueError for a system without a constraint for each unknown.
+    At kinks, and at jumps at given phases, the integration begins anew. Raises ValueError for a system
+    without a constraint for each unknown.
     """
 
-    expressions: Expressions
+    system: Switched
     move: Callable[[Array, Array], Array]
-    kinks: Sequence[int] = ()
-    _integrators: dict[Hashable, ca.Function] = field(default_factory=dict, repr=False)
+    _sensitive: dict[tuple[int, ...], Cvodes] = field(default_factory=dict, repr=False)
     _starts: dict[tuple[int, ...], ca.Function] = field(default_factory=dict, repr=False)
     _slopes: dict[tuple[int, ...], ca.Function] = field(default_factory=dict, repr=False)
 
@@ -72,6 +74,11 @@ class SensitiveFlow:
                 f"the system has {rows} constraints for {unknowns} algebraic unknowns; "
                 f"time integration needs one for each"
             )
+
+    @property
+    def expressions(self) -> Expressions:
+        """The equations."""
+        return self.system.expressions
 
     def run(
         self,
@@ -85,7 +92,8 @@ class SensitiveFlow:
         """Return the solution from `state` at phase[0] at all of `phase`, with its derivatives.
 
         algebraic is a guess of the unknowns at phase[0], tolerance relative and absolute. Raises
-        IntegrationError where CVODES fails.
+        IntegrationError where CVODES fails, ValueError where the motion is mapped, held, or meets a jump that
+        depends on it.
         """
         n, width = len(state), 1 + len(state) + len(free)
         start = self._start(state, algebraic, parameter, float(phase[0]), free)
@@ -97,61 +105,82 @@ class SensitiveFlow:
         self, start: Array, parameter: Array, phase: Array, free: tuple[int, ...], tolerance: float
     ) -> Array:
         """The values at all phases: the kinks are found first, then each piece between them integrated."""
+        size, (found, modes) = self._field.y.numel(), self._followed(start, parameter, phase, tolerance)
+        values, y, begin, done = [], start, float(phase[0]), -np.inf
+        for passage in found.passages:
+            given, kink = self._given(parameter, modes), passage.root
+            near = ASIDE * tolerance / abs(kink.rate) if kink.rate else np.inf
+            end = max(kink.before - near, (begin + kink.before) / 2)
+            inside = np.append(phase[(phase > done) & (phase <= kink.before)], kink.before)
+            early = np.concatenate([[begin], inside[inside < end], [end]])
+            piece = self._integrated(y, given, np.maximum(early, begin), free, tolerance)[1:]
+            late = [self._carried(piece[-1], given, end, at - end, free) for at in inside[inside >= end]]
+            values += [piece[:-1], np.array(late[:-1]).reshape(-1, len(y))]
+            y, begin, done = np.append(passage.y, late[-1][size:]), kink.after, kink.before
+            modes = passage.modes
+        last = np.maximum(np.append(begin, phase[phase > done]), begin)
+        values.append(self._integrated(y, self._given(parameter, modes), last, free, tolerance)[1:])
+        return np.concatenate(values)
 
-        def sweep(y: Array, along: Array) -> Array:
-            return np.concatenate([y[None], self._integrated(y, parameter, along, None, tolerance)])
+    def _followed(
+        self, start: Array, parameter: Array, phase: Array, tolerance: float
+    ) -> tuple[Followed, Modes]:
+        """The motion alone, and the modes in which it begins; just its start where nothing ends them."""
+        n, y = self.expressions.state.numel(), start[: self._field.y.numel()]
+        switching = Switching(self.system, parameter, tolerance)
+        _, modes = switching.begin(float(phase[0]), y[:n])
+        if not switching.guards(modes):
+            return Followed(y[None], [], (), modes), modes
+        follower = Follower(
+            switching,
+            lambda modes, y, along: self._field.sweep(y, along, self._given(parameter, modes), tolerance),
+            lambda modes, y, along: self._field.guards(y, along, self._given(parameter, modes)),
+            lambda y, tau: y,
+            n,
+        )
+        found = follower.run(y, phase, modes)
+        for event in found.events:
+            surface = self.system.surfaces[event.surface]
+            at_given = not ca.depends_on(self.expressions.switches[surface.switch], self.expressions.state)
+            if surface.kind != Kind.KINK and not (surface.kind == Kind.JUMP and at_given):
+                raise ValueError(
+                    f"the motion meets {surface.name} at tau = {event.phase:.6g}; derivatives are known "
+                    f"through kinks and jumps at given phases alone"
+                )
+        return found, modes
 
-        def piece(y: Array, begin: float, wanted: Array) -> Array:
-            along = np.unique(np.append(begin, np.maximum(wanted, begin)))
-            last = spaced(along)
-            used, place = np.unique(last, return_inverse=True)
-            later = self._integrated(y, parameter, along[used], free, tolerance) if len(used) > 1 else y[:0]
-            values = np.concatenate([y[None], later.reshape(-1, len(y))])[place]
-            for k in np.flatnonzero(last != np.arange(len(along))):
-                way = along[k] - along[last[k]]
-                values[k] = self._carried(values[k], parameter, along[last[k]], way, free)
-            return values[np.searchsorted(along, wanted)]
+    def _given(self, parameter: Array, modes: Modes) -> Array:
+        """Parameters and sides of the jumps."""
+        return np.concatenate([parameter, Switching(self.system, parameter, 0.0).side(modes)])
 
-        size = self.expressions.state.size1() + self.expressions.algebraic.size1()
-        kinks = self._crossings.follow(sweep, start[:size], phase, parameter).crossings if self.kinks else []
-        found, y, begin, done = [], start, float(phase[0]), -np.inf
-        for crossing in kinks:
-            near = ASIDE * tolerance / abs(crossing.rate) if crossing.rate else np.inf
-            end = max(crossing.before - near, (begin + crossing.before) / 2)
-            inside = np.append(phase[(phase > done) & (phase <= crossing.before)], crossing.before)
-            values = piece(y, begin, np.append(inside[inside < end], end))
-            late = [self._carried(values[-1], parameter, end, at - end, free) for at in inside[inside >= end]]
-            found += [values[:-1], np.array(late[:-1]).reshape(-1, len(y))]
-            y, begin, done = np.append(crossing.y, late[-1][size:]), crossing.after, crossing.before
-        return np.concatenate([*found, piece(y, begin, phase[phase > done])])
-
-    def _carried(self, y: Array, parameter: Array, phase: float, way: float, free: tuple[int, ...]) -> Array:
+    def _carried(self, y: Array, given: Array, phase: float, way: float, free: tuple[int, ...]) -> Array:
         """y and its derivatives a short way on, by the equations linearised where they are."""
-        e = self.expressions
-        size, width = e.state.size1() + e.algebraic.size1(), e.state.size1() + len(free)
+        field, n = self._field, self.expressions.state.numel()
+        size, width = field.y.numel(), n + len(free)
         if free not in self._slopes:
-            known = [ca.vertcat(e.state, e.algebraic), e.phase, e.parameter]
-            slopes = [self._rates, ca.jacobian(self._rates, known[0])]
-            slopes.append(ca.jacobian(self._rates, self._chosen(free)))
-            self._slopes[free] = ca.Function("slopes", known, slopes)
-        rate, jacobian, by_free = (np.array(a) for a in self._slopes[free](y[:size], phase, parameter))
+            slopes = [ca.jacobian(field.rates, v) for v in (field.y, self._chosen(free))]
+            known = [field.y, self.expressions.phase, field.given]
+            self._slopes[free] = ca.Function("slopes", known, [field.rates, *slopes])
+        rate, jacobian, by_free = (np.array(a) for a in self._slopes[free](y[:size], phase, given))
         generator = np.zeros((size + len(free), size + len(free)))
         generator[:size] = way * np.hstack([jacobian, by_free])
-        both = np.vstack([y[size:].reshape(width, size).T, np.eye(width)[e.state.size1() :]])
+        both = np.vstack([y[size:].reshape(width, size).T, np.eye(width)[n:]])
         gradient = (scipy.linalg.expm(generator) @ both)[:size]
         return np.append(y[:size] + way * rate.ravel(), gradient.T.ravel())
 
     def _integrated(
-        self, start: Array, parameter: Array, phase: Array, free: tuple[int, ...] | None, tolerance: float
+        self, start: Array, given: Array, phase: Array, free: tuple[int, ...], tolerance: float
     ) -> Array:
-        """All but the first values, a row each; those of y alone where `free` is None.
+        """y and its derivatives at all phases, a row each.
 
         CVODES gives up where a step runs too far into a sudden touch-down. A tighter tolerance shortens it.
         """
+        if free not in self._sensitive:
+            self._sensitive[free] = Cvodes(self._problem(free))
         for factor in TIGHTER:
-            later = integrated(self._cvodes(free, tuple(phase), factor * tolerance), start, parameter)
-            if later is not None and np.isfinite(later).all():
-                return later.T
+            found = self._sensitive[free].run(start, phase, given, factor * tolerance)
+            if found is not None:
+                return found
         raise IntegrationError(f"CVODES failed between tau = {phase[0]:.6g} and {phase[-1]:.6g}")
 
     def _start(
@@ -187,33 +216,19 @@ class SensitiveFlow:
     def _chosen(self, free: tuple[int, ...]) -> ca.SX:
         return ca.vertcat(ca.SX(0, 1), *[self.expressions.parameter[i] for i in free])
 
-    def _cvodes(
-        self, free: tuple[int, ...] | None, phase: tuple[float, ...], tolerance: float
-    ) -> ca.Function:
-        key = (free, phase, tolerance)
-        return kept(self._integrators, key, lambda: integrator(self._problem(free), phase, tolerance))
-
     @cached_property
-    def _crossings(self) -> SwitchCrossings:
-        return SwitchCrossings(self.expressions, self._rates, self.kinks)
+    def _field(self) -> VectorField:
+        return VectorField(self.expressions, EPSILON)
 
-    @cached_property
-    def _rates(self) -> ca.SX:
-        return explicit_rates(self.expressions, EPSILON)
-
-    def _problem(self, free: tuple[int, ...] | None) -> dict[str, ca.SX]:
-        """The ODE of y and, unless `free` is None, its derivatives."""
-        e, rates = self.expressions, self._rates
-        y = ca.vertcat(e.state, e.algebraic)
-        if free is None:
-            return {"x": y, "t": e.phase, "p": e.parameter, "ode": rates}
-        in_state = ca.SX(y.size1(), e.state.size1())
-        in_free = ca.jacobian(rates, self._chosen(free))
-        gradient = ca.SX.sym("gradient", y.size1(), e.state.size1() + len(free))
-        moved = ca.jacobian(rates, y) @ gradient + ca.horzcat(in_state, in_free)
+    def _problem(self, free: tuple[int, ...]) -> dict[str, ca.SX]:
+        """The ODE of y and its derivatives."""
+        y, rates, n = self._field.y, self._field.rates, self.expressions.state.numel()
+        in_free = ca.horzcat(ca.SX(y.numel(), n), ca.jacobian(rates, self._chosen(free)))
+        gradient = ca.SX.sym("gradient", y.numel(), n + len(free))
+        moved = ca.jacobian(rates, y) @ gradient + in_free
         return {
             "x": ca.vertcat(y, ca.vec(gradient)),
-            "t": e.phase,
-            "p": e.parameter,
+            "t": self.expressions.phase,
+            "p": self._field.given,
             "ode": ca.vertcat(rates, ca.vec(moved)),
         }

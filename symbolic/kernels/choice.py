@@ -1,9 +1,9 @@
 """Which back end evaluates a kernel: generated NumPy code, which needs no compiler, or C.
 
-AUTO takes C where the library is kept from before. Else it takes NumPy until C would have saved the time
-that compiling takes: it counts calls and looks at no clock, so that the change comes at the same call in
-every run. Both back ends agree to rounding only: results are the same bit for bit from run to run with NUMPY
-or C, with AUTO where the cache holds the same kernels.
+AUTO takes C where the compiled library is in the cache. Else it takes NumPy until C would have saved the
+time that compiling takes. It counts calls and looks at no clock, so that the change comes at the same call
+in every run. Both back ends agree to rounding only: results are the same bit for bit from run to run with
+NUMPY or C, with AUTO where the cache holds the same kernels.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ SAVED = 0.25e-6
 """Seconds that C saves for each instruction of a call; per point both take the same time."""
 
 ITERATION = 1.5e-4
-"""... and for each call of a kernel around which a whole iteration then runs in C."""
+"""... and for each call where with this kernel the whole Newton iteration runs in C."""
 
 COMPILER, STATEMENT = 0.08, 0.5e-3
-"""Seconds that compiling costs: at all, and for each instruction."""
+"""Seconds that compiling costs: for each library, and for each instruction."""
 
 VARIABLE = "ORBITRACE_KERNELS"
 """The environment's choice, where the program makes none."""
@@ -53,7 +53,7 @@ class Kernels(Enum):
 
 
 def chosen(kernels: Kernels | str | None) -> Kernels:
-    """Return the choice made, by default the environment's ORBITRACE_KERNELS, by default AUTO.
+    """Return the back end asked for; without one, that of the environment's ORBITRACE_KERNELS, else AUTO.
 
     Raises ValueError for another word, symbolic.CompilerError for C without a
     working compiler.
@@ -145,7 +145,7 @@ class ChosenKernel:
         return math.ceil((COMPILER + STATEMENT * self.instructions) / saved)
 
     def _count(self) -> None:
-        """Compile when it has paid; only then, whatever comes of it."""
+        """Count a call, and compile once compiling has paid; it is tried a single time."""
         self._calls += 1
         if self._calls == self.pays:
             self._compiled = self._function(native.attempted(self.source))

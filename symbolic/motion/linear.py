@@ -24,13 +24,13 @@ from symbolic.checks import one_of, refusal, sequence
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
-BALANCED = 1e-12
+BALANCED_RESIDUAL = 1e-12
 """Scaled residual up to which a point with a singular stiffness counts as an equilibrium."""
 
-MET = 1e-9
+FREQUENCIES_MEET = 1e-9
 """Relative difference of the two frequencies up to which they count as met."""
 
-ROUNDING = 1e-7
+REAL_EIGENVALUE = 1e-7
 """Imaginary parts up to this, of the largest eigenvalue, are rounding: of a double zero its square root."""
 
 
@@ -68,7 +68,7 @@ class Modes:
     @property
     def oscillating(self) -> Complex:
         """One eigenvalue of each conjugate pair (positive imaginary part), in rad/s, slowest first."""
-        return self.eigenvalues[self.eigenvalues.imag > ROUNDING * np.abs(self.eigenvalues).max()]
+        return self.eigenvalues[self.eigenvalues.imag > REAL_EIGENVALUE * np.abs(self.eigenvalues).max()]
 
     @property
     def frequencies(self) -> Array:
@@ -126,7 +126,7 @@ class RestFinder:
             if not np.isfinite(stiffness).all() or not np.isfinite(residual).all():
                 break
             if np.linalg.matrix_rank(stiffness) < len(point):
-                if np.abs(residual).max() < BALANCED:
+                if np.abs(residual).max() < BALANCED_RESIDUAL:
                     return point
                 break
             change = np.linalg.solve(stiffness, residual)
@@ -218,7 +218,7 @@ def resonance(
         return None
     # An infinite excess inside has a sign to bisect by; what is found then may be a jump.
     root = float(scipy.optimize.brentq(excess, *ends, xtol=1e-13 * max(map(abs, ends)), rtol=1e-13))
-    return root if abs(excess(root)) < MET else None
+    return root if abs(excess(root)) < FREQUENCIES_MEET else None
 
 
 def varying(

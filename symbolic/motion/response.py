@@ -24,7 +24,7 @@ from symbolic.motion.linear import Modes, RestFinder, varying
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
-SINGULAR = 1e14
+RESONANT = 1e14
 """Condition number, rows and columns equilibrated, from which there is an undamped resonance."""
 
 
@@ -170,7 +170,7 @@ def _answer(k: int, rate: Array, unknown: Array, forced: Complex, unknowns: int)
     n = rate.shape[1]
     dynamic, size = unknown.astype(np.complex128), n + unknowns
     dynamic[:, :n] += 1j * k * rate
-    if np.linalg.cond(equilibrated(dynamic[:size])) > SINGULAR:
+    if np.linalg.cond(equilibrated(dynamic[:size])) > RESONANT:
         return np.full(len(forced) - size, complex(np.inf))
     motion = np.linalg.solve(dynamic[:size], -forced[:size])
     return dynamic[size:] @ motion + forced[size:]

@@ -10,11 +10,12 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.checks import numbers, typed, whole
+from symbolic.equations.surfaces import Kind
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.modes import Event, Modes
 from symbolic.meter import counted
-from symbolic.motion.linear import RestFinder
+from symbolic.motion.linear import NoRestError, RestFinder
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
@@ -45,6 +46,8 @@ class Simulation:
         Algebraic unknowns.
     events : tuple of Event
         What happens at the system's surfaces on the way, in order.
+    modes : tuple of int
+        Those of the surfaces at its end, where they are followed: relays go on in them.
     """
 
     system: CompiledSystem
@@ -53,6 +56,7 @@ class Simulation:
     state: Array
     algebraic: Array
     events: tuple[Event, ...] = ()
+    modes: Modes = ()
 
     @property
     def time(self) -> Array:
@@ -63,7 +67,8 @@ class Simulation:
         """Return an output or a state by name, SI, shape (N,)."""
         outputs, states = ([v.name for v in some] for some in (self.system.outputs, self.system.states))
         if name in outputs:
-            n, trajectory = len(states), Trajectory(self.phase, self.state, self.algebraic)
+            n, followed = len(states), (self.events, self.modes)
+            trajectory = Trajectory(self.phase, self.state, self.algebraic, *followed)
             rate = Flow(self.system).rates(trajectory, self.parameter)[:, :n]
             at = (rate, self.state, self.algebraic, self.phase, self.parameter)
             return self.system.output(*at)[:, outputs.index(name)]
@@ -116,7 +121,8 @@ def simulate(
     knock : mapping of str to float, optional
         What is added to states (SI) at the beginning, by name; x' is the velocity dx/dt.
     start : Simulation, optional
-        Motion from whose end the new one begins; by default the system begins at rest.
+        Motion from whose end the new one begins; by default the system begins at rest, one that jumps and
+        has none where the search for it begins.
     settle : int
         Excitation periods before those that are returned.
     periods : int
@@ -151,17 +157,18 @@ def simulate(
     state = state + _knocked(system, parameter, {} if knock is None else knock)
     ends, phase = np.array([0.0, PERIOD]), np.linspace(0, PERIOD * periods, samples * periods + 1)
     modes: Modes | None = None
+    earlier = None if start is None else _kept(system, start.modes)
     done, largest = 0, DIVERGED * max(1.0, float(np.abs(state).max(initial=0.0)))
     try:
         for _ in counted(settle, "settling", "periods"):
-            end = flow.run(state, algebraic, parameter, ends, modes)
+            end = flow.run(state, algebraic, parameter, ends, modes, earlier)
             state, algebraic, modes, done = end.state[-1], end.algebraic[-1], end.modes, done + 1
             _check_bounded(system, state, largest, 0.0)
-        found = flow.run(state, algebraic, parameter, phase, modes)
+        found = flow.run(state, algebraic, parameter, phase, modes, earlier)
         for row, tau in zip(found.state, found.phase, strict=True):
             _check_bounded(system, row, largest, float(tau))
     except KeyboardInterrupt:
-        last = Trajectory(np.zeros(1), state[None], algebraic[None])
+        last = Trajectory(np.zeros(1), state[None], algebraic[None], modes=modes or earlier or ())
         raise SimulationInterrupted(_simulation(system, parameter, last), done) from None
     except IntegrationError as error:
         time = (PERIOD * done + error.phase) / system.omega(parameter)
@@ -177,7 +184,16 @@ def _simulation(system: CompiledSystem, parameter: Array, found: Trajectory) -> 
         state=found.state,
         algebraic=found.algebraic,
         events=found.events,
+        modes=found.modes,
     )
+
+
+def _kept(system: CompiledSystem, modes: Modes) -> Modes | None:
+    """The modes of relays, in which a motion goes on whatever knocks it."""
+    if not modes:
+        return None
+    both = zip(system.surfaces, modes, strict=True)
+    return tuple(mode if surface.kind == Kind.RELAY else 0 for surface, mode in both)
 
 
 def _check_bounded(system: CompiledSystem, state: Array, largest: float, phase: float) -> None:
@@ -193,7 +209,12 @@ def _beginning(system: CompiledSystem, parameter: Array, start: Simulation | Non
     if start is not None:
         given = typed("start", start, Simulation, "a Simulation, as symbolic.simulate returns it")
         return _in_scales(system, given), given.algebraic[-1]
-    rest = RestFinder(system).modes(parameter)
+    try:
+        rest = RestFinder(system).modes(parameter)
+    except NoRestError:
+        if not system.jumps:  # equations that jump need not have one
+            raise
+        return system.rest(parameter)
     return rest.state, rest.algebraic
 
 

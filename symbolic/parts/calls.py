@@ -21,7 +21,7 @@ ARGUMENTS = ("x", "p", "wave")
 
 
 def called(name: str, function: Function, arguments: Sequence[object]) -> dict[str, ca.SX]:
-    """Return what a function called `name` makes of symbols. Raises ValueError for no expressions."""
+    """Return what a user's function returns for symbols. Raises ValueError for other than expressions."""
     check_taken(name, function, len(arguments))
     with explained(name):
         found: object = function(*arguments)

@@ -20,12 +20,9 @@ from symbolic.equations.terms import Place
 from symbolic.equations.variables import Coordinate
 from symbolic.parts.stiffness import stiffness
 from symbolic.structures.damping import ModalDamping
-from symbolic.structures.matrices import DENSE, Matrices, dense
+from symbolic.structures.matrices import DENSE, RELATIVE_STEP, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
 from symbolic.structures.modalslope import ModalSlope, modal_slope
-
-SPEED_STEP = 1e-5
-"""Relative step of differences in the speed."""
 
 Freedoms = int | Sequence[int]
 Given = Any
@@ -387,7 +384,7 @@ def _steepness(given: Given, speed: float, size: int) -> Array:
     """The derivative of a matrix in the speed, (n, n)."""
     if not callable(given):
         return np.zeros((size, size))
-    step = SPEED_STEP * max(abs(speed), SPEED_STEP)
+    step = RELATIVE_STEP * max(abs(speed), RELATIVE_STEP)
     after, before = (dense(given(speed + sign * step)) for sign in (1, -1))
     return np.asarray((after - before) / (2 * step))
 

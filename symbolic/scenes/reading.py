@@ -9,20 +9,20 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symbolic.scenes.changing import Steps, Value, address, complaint, keys_of, set_value
 from symbolic.scenes.errors import LONGEST_QUOTE, InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.names import built_in, scene_names
+from symbolic.scenes.overrides import Steps, Value, address, complaint, keys_of, set_value
 from symbolic.scenes.schema import Scene, schema_of
 
 Override = tuple[str, Value]
 """A key (dotted, or its last component alone) and its value (perhaps as text); None removes the key."""
 
 
-LARGEST = 32768
-"""Most bytes of a scene file: Python's reader of TOML may take for ever with larger ones."""
+LARGEST_FILE = 32768
+"""Most bytes of a scene file: Python's reader of TOML may take very long with larger ones."""
 
 
 def ends(scene: Scene) -> list[str]:
@@ -51,7 +51,7 @@ def keys_of_scene(source: str) -> list[str]:
 
 
 def _address(schema: type[Scene], key: str, tables: dict[str, Any], folder: Path) -> Steps:
-    """Where a key stands; a parameter of a model by its name goes to its [values]."""
+    """The place of a key; the name of a parameter of a model stands for its entry in [values]."""
     if not issubclass(schema, ModelScene):
         return address({k: list(k.split(".")) for k in keys_of(schema)}, key, tables)
     keys = model_keys(tables)
@@ -83,9 +83,9 @@ def _text(source: str) -> str:
         if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never come to an end
             raise InputError("scene", f'file "{source}" is no regular file', f"it must be {names}")
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
-        if len(content) > LARGEST:
-            found = f'file "{source}" is larger than {LARGEST} bytes'
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            found = f'file "{source}" is larger than {LARGEST_FILE} bytes'
             raise InputError("scene", found, "it must be a TOML file like those built in")
         return content.decode("utf-8-sig")
     except (FileNotFoundError, ValueError) as error:

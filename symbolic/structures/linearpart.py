@@ -11,12 +11,9 @@ import numpy as np
 
 from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, refusal
-from symbolic.structures.matrices import index
+from symbolic.structures.matrices import RELATIVE_STEP, index
 from symbolic.structures.modal import ModalForm
 from symbolic.structures.modalslope import ModalSlope
-
-SPEED_STEP = 1e-5
-"""Relative step of differences in the speed."""
 
 
 class Modal(Protocol):
@@ -233,7 +230,7 @@ class LinearPart:
     def _difference(self, omega: float, rate: float) -> Modes:
         """The same by differences, the modes of the two sides matched and normalised alike."""
         middle = self._at(omega)
-        step = SPEED_STEP * omega
+        step = RELATIVE_STEP * omega
         ends = [like(middle, self._at(omega + sign * step)) for sign in (-1, 1)]
         parts = [
             rate * (getattr(ends[1], name) - getattr(ends[0], name)) / (2 * step)

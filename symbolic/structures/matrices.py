@@ -24,6 +24,9 @@ Matrix = Any
 DENSE = 500
 """Up to this size eigenproblems of symmetric matrices are solved in full."""
 
+RELATIVE_STEP = float(np.finfo(float).eps) ** (1 / 3)
+"""Of central differences of matrices, over the argument: there h^2 is the rounding eps / h."""
+
 SYMMETRY = 1e-8
 """Largest difference of an entry of M or K from its mirror image, relative to the largest entry."""
 

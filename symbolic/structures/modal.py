@@ -2,8 +2,8 @@
 
     dz_j/dt = lambda_j z_j + sum_d input_jd f_d,   q_d = Re sum_j shape_dj z_j + sum_e residual_de f_e
 
-One of each conjugate pair stands for both. The rest of the modes, if they are not all kept, follow with
-their static flexibility.
+One mode of each conjugate pair stands for both. Modes that are not kept contribute their static
+flexibility, the residual.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ MODES = 200
 RIGID = 1e-14
 """Ratio of omega^2 to the largest below which a mode is a rigid-body mode."""
 
-APART = 3e-6
+CRITICAL_DISTANCE = 3e-6
 """Relative distance to which the two exponents of a critically damped mode are moved apart. It changes the
 square of its frequency by 1e-11, as much as rounding then costs."""
 
 DEFECTIVE = 1e-12
-"""Reciprocal condition of the eigenvectors below which they are not enough to span the motion."""
+"""Reciprocal condition of the eigenvectors below which they do not span the motion."""
 
 
 class LooseError(ValueError):
@@ -52,9 +52,9 @@ class ModalForm:
     matrices : Matrices
         The matrices that they are of.
     own : bool
-        Whether they are of M, C and K (and G) alone, nothing damped mode by mode.
+        Whether they are modes of M, C, K and G as given, without modal damping.
     undamped : ndarray, shape (n, J), optional
-        The undamped modes phi, phi' M phi = 1, where they are not all.
+        The undamped modes phi, phi' M phi = 1, where some modes are left out.
     """
 
     exponents: Complex
@@ -73,9 +73,9 @@ class ModalForm:
         return self._residuals[key]
 
     def _residual(self, freedoms: tuple[int, ...]) -> Array:
-        """What K^-1 makes of loads without any part in the modes that are kept.
+        """K^-1 applied to loads from which the kept modes have been projected out.
 
-        The difference of whole and modal flexibility would be rounding: the lowest modes are most of it.
+        The difference of whole and modal flexibility would cancel: the lowest modes are most of both.
         """
         n, k = len(self.shapes), len(freedoms)
         if self.undamped is None:
@@ -199,7 +199,9 @@ def _uncoupled(name: str, matrices: Matrices, squares: Array, rates: Array, shap
             f"do not hold; add a stiffness to K, or compile it with condense=False"
         )
     root = np.sqrt((rates / 2) ** 2 - squares + 0j)
-    root = np.where(np.abs(root) < APART * np.sqrt(squares), APART * np.sqrt(squares), root)
+    root = np.where(
+        np.abs(root) < CRITICAL_DISTANCE * np.sqrt(squares), CRITICAL_DISTANCE * np.sqrt(squares), root
+    )
     first, second = -rates / 2 + root, -rates / 2 - root
     oscillates = root.imag != 0
     single = np.flatnonzero(~oscillates)

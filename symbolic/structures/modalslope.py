@@ -18,7 +18,7 @@ from symbolic.arrays import Array, Complex
 from symbolic.structures.matrices import dense
 from symbolic.structures.modal import DEFECTIVE, ModalForm
 
-NOTHING = 1e-12
+NOT_COUPLED = 1e-12
 """Relative size of T_ij below which two modes of one exponent do not turn into each other."""
 
 
@@ -59,7 +59,7 @@ def modal_slope(form: ModalForm, mass: Array, damping: Array, stiffness: Array) 
     inputs = np.concatenate([form.inputs, form.inputs[paired].conj()])
     turned = -inputs @ (mass @ shapes * values**2 + damping @ shapes * values + stiffness @ shapes)
     gaps = values - values[:, None]
-    apart = np.abs(turned) > NOTHING * np.abs(turned).max(initial=0.0)
+    apart = np.abs(turned) > NOT_COUPLED * np.abs(turned).max(initial=0.0)
     mixed = np.where(apart & (gaps != 0), turned / np.where(gaps == 0, 1.0, gaps), 0.0)
     np.fill_diagonal(mixed, 0.0)
     met = apart & (gaps == 0)

@@ -12,19 +12,14 @@ from numpy.typing import NDArray
 from symbolic.arrays import Array, Complex
 from symbolic.checks import refusal
 from symbolic.structures.linearpart import Modes
-from symbolic.structures.matrices import index
+from symbolic.structures.matrices import RELATIVE_STEP, index
+from symbolic.structures.modal import DEFECTIVE
 
-PARAMETER_STEP = 1e-6
-"""Relative step of differences in a parameter."""
-
-NOTHING = 1e-9
+NOT_MIXED = 1e-9
 """Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
 
-SAME = 16 * np.finfo(float).eps
+SAME_MATRIX = 16 * np.finfo(float).eps
 """Largest difference of equal matrices by rounding, as a part of the largest coefficient."""
-
-DEFECTIVE = 1e12
-"""Condition of the eigenvectors above which they do not span the motion."""
 
 
 @dataclass(frozen=True)
@@ -173,7 +168,7 @@ class RowsPart:
         """
         if index not in self.varying:
             return None
-        step, ends = PARAMETER_STEP * max(abs(float(parameter[index])), PARAMETER_STEP), []
+        step, ends = RELATIVE_STEP * max(abs(float(parameter[index])), RELATIVE_STEP), []
         for sign in (1, -1):
             moved = parameter.copy()
             moved[index] += sign * step
@@ -182,10 +177,10 @@ class RowsPart:
         at = self._solved(parameter)
         turned = at.inverse @ state @ at.vectors
         gaps = at.values - at.values[:, None]
-        apart = np.abs(turned) > NOTHING * np.abs(turned).max(initial=0.0)
+        apart = np.abs(turned) > NOT_MIXED * np.abs(turned).max(initial=0.0)
         mixed = np.where(apart & (gaps != 0), turned / np.where(gaps == 0, 1.0, gaps), 0.0)
         np.fill_diagonal(mixed, 0.0)
-        if not np.abs(mixed).max(initial=0.0) < DEFECTIVE:
+        if not np.abs(mixed).max(initial=0.0) < 1 / DEFECTIVE:
             raise ArithmeticError("modes of the linear part cannot be followed: two of them meet")
         inputs = at.inverse @ rates - mixed @ (at.inverse @ at.rates)
         kept, twice = at.kept, at.twice
@@ -241,7 +236,7 @@ def _modes(state: Array, rates: Array) -> Eigen:
         inverse = np.linalg.inv(vectors)
     except np.linalg.LinAlgError as error:
         raise ArithmeticError(f"the linear part has no modes: {error}") from None
-    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < DEFECTIVE:
+    if not np.linalg.norm(vectors) * np.linalg.norm(inverse) < 1 / DEFECTIVE:
         raise ArithmeticError("the modes of the linear part do not span its motion")
     return Eigen(values + 0j, vectors + 0j, inverse + 0j, rates)
 
@@ -249,6 +244,6 @@ def _modes(state: Array, rates: Array) -> Eigen:
 def _same(given: tuple[Array, Array], other: tuple[Array, Array]) -> bool:
     """Whether equations are the same but for rounding."""
     return all(
-        bool((np.abs(a - b) <= SAME * np.abs(b).max(initial=0.0)).all())
+        bool((np.abs(a - b) <= SAME_MATRIX * np.abs(b).max(initial=0.0)).all())
         for a, b in zip(given, other, strict=True)
     )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from symbolic.arrays import Array
 from symbolic.equations.branches import nodes
 
-ROUNDED = 1e-13
+CANCELLED = 1e-13
 """Part of what was added up below which a number is what rounding left."""
 
 RANK = 1e-10
@@ -107,7 +107,7 @@ class _Terms:
         self.numbers = np.zeros((len(sums), len(self.terms)))
         for i, each in enumerate(sums):
             for term, (number, size) in each.items():
-                self.numbers[i, at[term]] = number if abs(number) > ROUNDED * size else 0.0
+                self.numbers[i, at[term]] = number if abs(number) > CANCELLED * size else 0.0
 
     def depend(self, moving: ca.SX) -> NDArray[np.bool_]:
         """Whether each term depends on symbols, (t,)."""

@@ -13,6 +13,7 @@ from symbolic.equations.model import Model, Part
 from symbolic.equations.variables import SwitchInfo, Variable
 from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
+from symbolic.structures.matrices import DENSE
 from symbolic.system.compiled import CompiledSystem
 from symbolic.system.split import condensed
 
@@ -104,10 +105,6 @@ class Valued:
         return self.recipe.parts
 
 
-LARGEST = 500
-"""Degrees of freedom of a structure up to which its states are all laid down."""
-
-
 def all_states(system: CompiledSystem) -> CompiledSystem:
     """Return a system with all states, where its linear part is condensed; else itself.
 
@@ -117,10 +114,10 @@ def all_states(system: CompiledSystem) -> CompiledSystem:
     if not typed("system", system, CompiledSystem, "a CompiledSystem, as symbolic.compile returns it").held:
         return system.whole
     for structure in {id(place.structure): place.structure for place in system.held}.values():
-        if structure.size > LARGEST:
+        if structure.size > DENSE:
             raise ValueError(
                 f"structure {structure.name!r} has {structure.size} degrees of freedom; for all its states "
-                f"it must have {LARGEST} at the most, as symbolic.craig_bampton leaves of it"
+                f"it must have {DENSE} at the most, as symbolic.craig_bampton leaves of it"
             )
     assert isinstance(system.recipe, Recipe | Valued)
     return system.recipe.whole()
@@ -158,7 +155,9 @@ def _system(assembly: Assembly, recipe: Recipe) -> CompiledSystem:
 def _releases(assembly: Assembly, expressions: Expressions) -> list[SwitchInfo]:
     """The switches at which motions stop sliding along jumps."""
     names = [assembly.switches[k][0].name for k, *_ in expressions.sided.slides]
-    return [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
+    found = [SwitchInfo(f"{name}: slips {way}", d) for name in names for way, d in (("up", 1), ("down", -1))]
+    walls = [assembly.switches[k][0].name for k in expressions.resting]
+    return [*found, *(SwitchInfo(f"{name}: leaves", 1) for name in walls)]
 
 
 def _held(assembly: Assembly) -> tuple[Held, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,9 +14,10 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
 from symbolic.equations.expressions import Expressions
-from symbolic.equations.surfaces import Kind, Surface, surfaces
+from symbolic.equations.surfaces import Surface, surfaces
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.integration.field import VectorField
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.integration.sensitivity import SensitiveFlow, Sensitivities
 from symbolic.kernels.choice import Kernels
@@ -28,10 +29,10 @@ from symbolic.system.generated import Generated
 from symbolic.system.overview import overview
 from symbolic.tables import listed
 
-MANY, PLACES = 40, 20
+CONDENSED_FROM, STATES_PER_PLACE = 40, 20
 """A linear part is condensed unasked from so many states on, with a place in so many at the most."""
 
-STRUCK, BETWEEN = 12, 10
+KINKED_FROM, KINKED_PER_PLACE = 12, 10
 """The same where motion has kinks, which excite modes far faster than the motion."""
 
 
@@ -181,7 +182,9 @@ class CompiledSystem:
 
     def condensed(self, *, always: bool = False) -> CompiledSystem | None:
         """Return the system of the nonlinear places alone: see `periodic.system.Condensable`."""
-        least, between = (STRUCK, BETWEEN) if self.switches else (MANY, PLACES)
+        least, between = (
+            (KINKED_FROM, KINKED_PER_PLACE) if self.switches else (CONDENSED_FROM, STATES_PER_PLACE)
+        )
         if not always and len(self.states) < least:
             return None
         found = self._condensed
@@ -256,7 +259,7 @@ class CompiledSystem:
     def slides(self) -> dict[int, tuple[int, int]]:
         """Of each jump along which motions can slide, and of sliders, the switches at which that ends."""
         switches = [k for k, *_ in self.expressions.sided.slides]
-        first = len(self.switches) - 2 * len(switches)
+        first = len(self.switches) - 2 * len(switches) - len(self.expressions.resting)
         found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(switches)}
         found |= {k: held.releases for k, held in self.expressions.sliders.items()}
         return dict(sorted(found.items()))
@@ -265,18 +268,15 @@ class CompiledSystem:
     def surfaces(self) -> tuple[Surface, ...]:
         """What happens where the switches vanish; each of them belongs to one surface."""
         e = self.expressions
-        return surfaces(self.switches, self.resets, self.jumps, self.slides, e.sliders, self._places)
+        own = (self.switches, self.resets, self.jumps, self.slides, e.sliders)
+        leaves = {k: resting.leaves for k, resting in e.resting.items()}
+        return surfaces(*own, self._places, e.relays, e.sided.alone, leaves)
 
     @property
     def _places(self) -> dict[int, tuple[int, tuple[float, ...]]]:
         """Of what may be held all along, the parameter that says where, and the weights of its deflection."""
         names = [parameter.name for parameter in self.parameters]
         return {k: (names.index(name), weights) for k, (name, weights) in self.expressions.places.items()}
-
-    @property
-    def kinks(self) -> tuple[int, ...]:
-        """Indices of the switches at whose level 0 the equations have a kink, and no more than that."""
-        return tuple(surface.switch for surface in self.surfaces if surface.kind == Kind.KINK)
 
     def linearise_beside(
         self,
@@ -397,14 +397,26 @@ class CompiledSystem:
         return self._flow.run(state, algebraic, parameter, phase, free, tolerance)
 
     def motion(
-        self, state: Array, algebraic: Array, parameter: Array, phase: Array, tolerance: float
+        self,
+        state: Array,
+        algebraic: Array,
+        parameter: Array,
+        phase: Array,
+        tolerance: float,
+        modes: Sequence[int] | None = None,
     ) -> Trajectory:
         """Integrate, through impacts too: see `periodic.system.Moving`. Raises ArithmeticError."""
-        return Flow(self, tolerance).run(state, algebraic, parameter, phase)
+        earlier = None if modes is None else tuple(modes)
+        return Flow(self, tolerance).run(state, algebraic, parameter, phase, earlier=earlier)
+
+    @cached_property
+    def field(self) -> VectorField:
+        """The rates, and the integrators along them."""
+        return VectorField(self.expressions)
 
     @cached_property
     def _flow(self) -> SensitiveFlow:
-        return SensitiveFlow(self.expressions, self.move, self.kinks)
+        return SensitiveFlow(self, self.move)
 
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""

@@ -18,6 +18,9 @@ Kernel = Callable[..., None]
 ITERATED_UP_TO = 60
 """Number of states up to which the engine iterates in C."""
 
+ITERATED = {"linearise": "residual", "linearise_beside": "beside"}
+"""Methods of a system whose kernels whole iterations then call, and the rows that they evaluate."""
+
 
 @dataclass(frozen=True, eq=False)
 class Generated:
@@ -132,7 +135,7 @@ class Generated:
             chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
             variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
             results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            iterated = name == "residual" and e.state.numel() <= ITERATED_UP_TO
+            iterated = name in ITERATED.values() and e.state.numel() <= ITERATED_UP_TO
             self._derivatives[name, free] = build([*self._arguments, *more], results, self.choice, iterated)
         return self._derivatives[name, free]
 
@@ -146,7 +149,7 @@ class Generated:
     @property
     def compiled(self) -> bool:
         """Whether derivatives of the residual are evaluated in C by now."""
-        made = [kernel for (name, _), kernel in self._derivatives.items() if name == "residual"]
+        made = [kernel for (name, _), kernel in self._derivatives.items() if name in ITERATED.values()]
         return any(isinstance(kernel, ChosenKernel) and kernel.compiled for kernel in made)
 
     def library(self, source: str) -> ctypes.CDLL | None:
@@ -161,7 +164,8 @@ class Generated:
         Where derivatives are compiled the others are too, when they are asked for.
         """
         if (name, free) not in self._addresses:
-            kernel = self.derivatives("residual", free) if name == "linearise" else getattr(self, name)
+            rows = ITERATED.get(name)
+            kernel = getattr(self, name) if rows is None else self.derivatives(rows, free)
             where = kernel.address(self.compiled) if isinstance(kernel, ChosenKernel) else None
             if where is None:
                 return None

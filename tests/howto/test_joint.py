@@ -58,7 +58,8 @@ def test_it_gets_through(branch: per.Branch) -> None:
 
 def test_orbits_close(branch: per.Branch) -> None:
     """Assert the orbit against integration from where the belt lets go, to 1e-7."""
-    for point in branch[:: max(len(branch) // 3, 1)]:
+    sticking = [p for p in branch if any(event.switch != 0 for event in p.orbit.mesh.events)]
+    for point in sticking[:: max(len(sticking) // 3, 1)]:
         release = next(
             (phase, event)
             for phase, event in zip(point.orbit.phases, point.orbit.mesh.events, strict=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from support.drawn.joints import DOWN, UP
 
-from survey.rows import JUDGED, NEWTON, POINTS, SECONDS, SEEDS, TOL, Row
+from survey.rows import FEW, JUDGED, MANY, SEEDS, TOL, Row
 
 FATES = ("to the end", "limit of work", "friction holds", "other")
 
@@ -18,10 +18,12 @@ before a stop, and contacts whose force jumps, damped or preloaded (`tests/suppo
 is a model); and two to six masses or a beam with two to eight joints, dry friction, exact sliders, stops,
 some with cubic springs, each from both ends of its range (`tests/support/drawn/joints.py`). Each is traced
 through a resonance at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of
-CPU. {judged} points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution
-in closed form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py`
-with `closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
-than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey` runs
+CPU; those with several joints at most {many_points}, {many_newton} and {many_seconds:g} s, limits of work
+and none of accuracy. {judged} points of each, drawn at random, are judged: orbit and multipliers by an
+event-exact solution in closed form or by Taylor's series, that shares nothing with the packages
+(`tests/reference/contact.py` with `closer.py` in extended precision, `tests/reference/joints`). A point is
+wrong where an error is more than ten times what the point claims and more than 1e-5, or where its stability
+is not so. `make survey` runs
 them, in some
 20 minutes on two cores.
 
@@ -35,9 +37,12 @@ def page(rows: Sequence[Row], commit: str) -> str:
         count=len(rows),
         commit=commit,
         tol=TOL,
-        points=POINTS,
-        newton=NEWTON,
-        seconds=SECONDS,
+        points=FEW.points,
+        newton=FEW.newton,
+        seconds=FEW.seconds,
+        many_points=MANY.points,
+        many_newton=MANY.newton,
+        many_seconds=MANY.seconds,
         judged=JUDGED,
     )
     parts = [begun, _summary(rows), _table(rows)]

@@ -20,10 +20,26 @@ import periodic as per
 from reports.studies.extremes.survey import within
 
 TOL = 1e-6
-POINTS, NEWTON, SECONDS = 400, 4000, 40.0
-"""Points, Newton iterations and CPU seconds that a branch may take."""
 
-CONTROL = per.ArclengthControl(max_points=POINTS, max_newton=NEWTON)
+
+@dataclass(frozen=True)
+class Limits:
+    """Points, Newton iterations and CPU seconds that a branch may take."""
+
+    points: int
+    newton: int
+    seconds: float
+
+    @property
+    def control(self) -> per.ArclengthControl:
+        """As the trace takes them."""
+        return per.ArclengthControl(max_points=self.points, max_newton=self.newton)
+
+
+FEW = Limits(400, 4000, 40.0)
+
+MANY = Limits(1000, 12000, 150.0)
+"""Of models with several joints: a period has tens of events, and each two that change places are a point."""
 
 JUDGED = 8
 """Points of a branch that are judged, drawn at random."""
@@ -89,7 +105,13 @@ def drawn(kind: str, seed: int) -> Case | JointCase:
 
 def traced(case: Case | JointCase) -> per.Branch:
     """Return the branch of a model."""
-    return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=CONTROL)
+    control = limits(case).control
+    return per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=control)
+
+
+def limits(case: Case | JointCase) -> Limits:
+    """Return how much work the branch of a model may be."""
+    return FEW if isinstance(case, Case) else MANY
 
 
 def _as_far(case: Case | JointCase) -> per.Branch:
@@ -102,14 +124,15 @@ def _as_far(case: Case | JointCase) -> per.Branch:
 
 def row(kind: str, seed: int, count: int = JUDGED) -> Row:
     """Trace a model and judge as many points. Any warning or exception is recorded as wrong."""
-    begun = time.process_time()
+    begun, most = time.process_time(), FEW.seconds
     try:
         case = drawn(kind, seed)
-        with warnings.catch_warnings(), within(SECONDS):
+        most = limits(case).seconds
+        with warnings.catch_warnings(), within(most):
             warnings.simplefilter("error")
             branch = _as_far(case)
     except KeyboardInterrupt:
-        return Row(kind, seed, "INTERRUPTED", "time is up before there is a branch", seconds=SECONDS)
+        return Row(kind, seed, "INTERRUPTED", "time is up before there is a branch", seconds=most)
     except Exception as error:
         return Row(kind, seed, "RAISED", str(error), wrong=(f"{type(error).__name__}: {error}",))
     seconds = time.process_time() - begun

@@ -2,7 +2,7 @@
 
 from symbolic.equations.variables import SwitchInfo
 from symbolic.system.overview import overview
-from symbolic.tables import MANY, listed, table
+from symbolic.tables import MOST_LISTED, listed, table
 
 
 def test_table() -> None:
@@ -12,14 +12,14 @@ def test_table() -> None:
     assert all(cell in found for cell in (">name<", ">unit<", ">x&lt;y<", ">m/s<"))
     assert found.startswith("<details open>")
     assert table(["name"], []) == ""
-    assert table(["name"], [["x"]] * (MANY + 1)).startswith("<details>")
+    assert table(["name"], [["x"]] * (MOST_LISTED + 1)).startswith("<details>")
 
 
 def test_names_in_a_line() -> None:
     """Assert that many names are cut, with how many there are, and none are listed."""
     assert listed(["a", "b"]) == "a, b"
     assert listed([]) == "none"
-    assert listed(str(k) for k in range(MANY + 1)).endswith(f", ... ({MANY + 1})")
+    assert listed(str(k) for k in range(MOST_LISTED + 1)).endswith(f", ... ({MOST_LISTED + 1})")
 
 
 def test_switches_say_how_they_are_passed() -> None:

@@ -144,17 +144,17 @@ def marginal(problem: Problem) -> bool:
 
 def along(solution: Solution) -> tuple[TestFunction, ...]:
     """Return all tests for special points on the branch or curve of a solution."""
-    return (FOLD, *sought(solution, turned=False))
+    return (FOLD, *sought(solution, folded=False))
 
 
-def sought(solution: Solution, turned: bool) -> tuple[TestFunction, ...]:
-    """Return the tests for special points in a step to a solution; `turned` if the parameter turns in it.
+def sought(solution: Solution, folded: bool) -> tuple[TestFunction, ...]:
+    """Return the tests for special points in a step to a solution; `folded` if the parameter turns in it.
 
     On a curve of orbits at a level, or of peaks, they are those of the branches that it crosses.
     """
     condition, decides = picked(solution.problem), solution.discretisation.stability
     if condition is None:
-        return TESTS[decides] + (() if turned else BESIDE_FOLDS[decides])
+        return TESTS[decides] + (() if folded else BESIDE_FOLDS[decides])
     known = CURVES if decides is Stability.MULTIPLIERS else OF_EQUILIBRIA
     return known.get(type(condition), CONTOUR[decides])
 
@@ -181,8 +181,8 @@ def _critical(solution: Solution, held: float) -> Array:
     return solution.spectrum.fundamental @ vector
 
 
-def turn(found: Solution, base: Solution, new: Solution) -> Label:
-    """Return what a turn of the parameter is on a curve: a cusp where its other parameter turns too."""
+def fold_on_curve(found: Solution, base: Solution, new: Solution) -> Label:
+    """Return what a fold in the parameter is on a curve: a cusp where its other parameter turns too."""
     problem = found.problem
     if not isinstance(picked(problem), FoldCondition):
         return Label.NONE

@@ -2,7 +2,7 @@
 
 Both are where a multiplier is 1: there the branches in one parameter that the curve crosses turn (LP), or
 another such curve crosses it (BP), as that of lopsided orbits crosses one of symmetric orbits. With K the
-orbit's linearised equations, closed over the period, c what determines it besides and t the curve's tangent,
+orbit's linearised equations, closed over the period, c the further conditions and t the curve's tangent,
 
     det [K K_y; c_u c_y; t]
 
@@ -50,16 +50,16 @@ def side(solution: Solution) -> float:
 
 
 def crosses(solution: Solution) -> float:
-    """|prod (mu - 1)| with the sign of the determinant."""
+    """|prod (mu - 1)| times the sign of the determinant: it changes sign at a BP alone."""
     return abs(solution.once(branching)) * solution.once(side)
 
 
-def turns(solution: Solution) -> float:
-    """prod (mu - 1) times that sign: one of the two passes 0."""
+def folds(solution: Solution) -> float:
+    """prod (mu - 1) times the sign of the determinant: it changes sign at an LP alone."""
     return solution.once(branching) * solution.once(side)
 
 
-def rests(solution: Solution) -> float:
+def equilibrium_folds(solution: Solution) -> float:
     """prod lambda of an equilibrium times the sign of its determinant."""
     return stationary.product(solution) * float(np.sign(solution.once(stationary.branching)))
 
@@ -69,12 +69,14 @@ CONTOUR = {
         DOUBLING,
         TORUS,
         TestFunction(label=Label.BRANCH, value=crosses, genuine=known, singular=True),
-        TestFunction(label=Label.FOLD, value=turns, genuine=lambda found: not crossing(_matrix(found)[:-1])),
+        TestFunction(label=Label.FOLD, value=folds, genuine=lambda found: not crossing(_matrix(found)[:-1])),
     ),
     Stability.EIGENVALUES: (
         HOPF,
         TestFunction(label=Label.BRANCH, value=stationary.branching, singular=True),
-        TestFunction(label=Label.FOLD, value=rests, genuine=lambda found: not stationary.is_crossed(found)),
+        TestFunction(
+            label=Label.FOLD, value=equilibrium_folds, genuine=lambda found: not stationary.is_crossed(found)
+        ),
     ),
 }
 """Test functions of the special points of a curve, by what decides stability."""

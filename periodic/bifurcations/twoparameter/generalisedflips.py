@@ -1,4 +1,4 @@
-"""GPD: generalised period doublings, beyond which the doubled orbits are born on the other side.
+"""GPD: generalised period doublings, where the doubling changes from supercritical to subcritical.
 
 There the cubic coefficient of the period map vanishes; a fold of doubled orbits begins.
 """
@@ -11,17 +11,17 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
+from periodic.condensed.method import mesh_method
 from periodic.conditions.flip import flip_coefficient
 from periodic.correction.outcome import FAILURES
 from periodic.correction.solution import Solution
-from periodic.system import linear_of
 
 SIMPLE = 1e-3
-"""Distance of a second multiplier from -1 up to which the coefficient is not known: it is infinite at R2."""
+"""With a second multiplier as near to -1 the coefficient is not computed: it is infinite at R2."""
 
 
-ROUNDING = 1e-8
-"""What is left of the coefficient of a linear system, about, in norms of the monodromy matrix."""
+LEAST_COEFFICIENT = 1e-8
+"""Smaller coefficients, in norms of the monodromy matrix, are 0: rounding leaves as much."""
 
 
 def _simple(solution: Solution) -> bool:
@@ -33,11 +33,11 @@ def _simple(solution: Solution) -> bool:
 def _coefficient(solution: Solution) -> float:
     """The cubic coefficient; 0 where it is not known: beside kinks, of condensed and of autonomous systems.
 
-    Of these the branch says so in a remark; where the coefficient cannot be computed a warning does.
+    A remark of the branch says so; where the computation fails, a warning does.
     """
     problem, orbit = solution.problem, solution.orbit
     system, known = problem.system, _simple(solution) and not problem.autonomous
-    if len(orbit.phases) or linear_of(system) is not None or not known:
+    if len(orbit.phases) or not mesh_method(system).all_states or not known:
         return 0.0
     try:
         found = flip_coefficient(system, orbit)
@@ -45,7 +45,7 @@ def _coefficient(solution: Solution) -> float:
         place = f"{solution.problem.parameter} = {solution.value:.6g}"
         warnings.warn(f"GPD is not looked for about {place}: {error}", RuntimeWarning, stacklevel=2)
         return 0.0
-    return found if abs(found) > ROUNDING * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
+    return found if abs(found) > LEAST_COEFFICIENT * np.linalg.norm(solution.spectrum.monodromy, 2) else 0.0
 
 
 GENERALISED = TestFunction(label=Label.GENERALISED_DOUBLING, value=_coefficient, genuine=_simple)

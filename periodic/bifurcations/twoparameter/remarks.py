@@ -11,8 +11,8 @@ from periodic.bifurcations.label import Label
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import Complex
 
-HELD = 1e-6
-"""How far a product that is held at 1, or a sum held at 0, of two numbers of size 1 may be from it."""
+ON_CURVE = 1e-6
+"""Error up to which, on a curve that holds it, a product of two multipliers is 1, a sum of eigenvalues 0."""
 
 CONDENSED = ("CondensedCollocation", "SplitHarmonicBalance")
 
@@ -35,7 +35,7 @@ class Point(Protocol):
 
 
 def noted(points: Sequence[Point], made: Mapping[str, Any], parameter: str) -> Iterator[str]:
-    """Yield what is to be said of a curve, of a branch in one parameter nothing.
+    """Yield the remarks on a curve in two parameters; a branch in one parameter has none.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def _neutral(points: Sequence[Point], what: str, parameter: str) -> str:
 
 
 def _corner(point: Point) -> bool:
-    """Whether the pair becomes real there."""
+    """Whether the critical pair becomes real at a point."""
     return point.label in (Label.RESONANCE_1, Label.RESONANCE_2, Label.BOGDANOV_TAKENS)
 
 
@@ -83,11 +83,11 @@ def _real(found: Complex, equilibrium: bool) -> bool:
     if not len(off):
         return False
     k = int(off.argmin())
-    return bool(off[k] < HELD and a[k].imag == 0)
+    return bool(off[k] < ON_CURVE and a[k].imag == 0)
 
 
 def _flips(points: Sequence[Point], made: Mapping[str, Any]) -> str:
-    """Say of which orbits the cubic coefficient is not known."""
+    """Say for which orbits the cubic coefficient of the doubling is not computed."""
     kinked = sum(len(p.orbit.phases) > 0 for p in points)
     if made.get("method", {}).get("is") in CONDENSED:
         where = "of a condensed system"

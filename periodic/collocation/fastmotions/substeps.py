@@ -2,9 +2,9 @@
 
 A slow motion beside a repelling equilibrium of the fast states, as of a canard, is smooth, and few intervals
 have it to all digits; perturbations grow by exp(z) in one of them, z the interval's width times an eigenvalue
-of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So what
-grows by more than GROWING in an interval is followed on shorter ones along the same polynomials, and what
-decays fast with it, as both may cancel.
+of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So
+where a perturbation grows by more than exp(GROWING) in an interval, all are followed on shorter intervals
+along the same polynomials: those that decay fast too, as growth and decay may cancel.
 """
 
 from __future__ import annotations
@@ -24,15 +24,13 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.system import System, jumps_of, resets_of
+from periodic.system.precision import EPSILON
 
 GROWING = 1.0
 """Motions whose rate times interval z has a real part beyond this are followed in substeps."""
 
 EACH, FASTEST = 0.7, 2.0
 """Largest Re z of a growing motion in a substep, and largest |z| of any other motion there."""
-
-ROUNDING = float(np.finfo(float).eps)
-"""Part of the fastest rate that growth is known to, times the number of states; those of stick reach 1e16."""
 
 MOST_SUBSTEPS = 64
 """Most substeps of an interval."""
@@ -42,14 +40,14 @@ Equations = Callable[[System, Orbit, tuple[int, ...]], Operator]
 
 @dataclass(frozen=True)
 class SteppedCorrection(Correction):
-    """A correction that knows how perturbations pass from place to place, on intervals that resolve them."""
+    """A correction with the propagation of perturbations, on intervals that resolve it."""
 
     system: System | None = None
     equations: Equations | None = None
 
     @cached_property
     def stepping(self) -> Operator | None:
-        """The linearised equations, in substeps where there is fast growth; None where no more is known."""
+        """The linearised equations, in substeps where growth is fast; None where it is not."""
         assert self.system is not None and self.equations is not None
         if self.gentle:
             return self.operator
@@ -70,14 +68,14 @@ def stepping(
 
 
 def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int_]:
-    """Return into how many each interval is to be divided, shape (N,); one each where nothing grows fast."""
+    """Return the number of substeps of each interval, shape (N,): 1 where nothing grows fast."""
     one = np.ones(orbit.mesh.ntst, dtype=int)
     jacobian = jacobians(system, orbit) * (finer * orbit.grid.width[:, None, None])
     if not np.isfinite(jacobian).all() or np.abs(jacobian).sum(axis=2).max() <= GROWING:
         return one
     exponents = np.linalg.eigvals(jacobian)
     growth = exponents.real.max(axis=1)
-    growth[growth <= ROUNDING * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
+    growth[growth <= EPSILON * jacobian.shape[1] * np.abs(exponents).max(axis=1)] = 0.0
     if growth.max() <= GROWING:
         return one
     needed = np.maximum(growth / EACH, np.abs(exponents).max(axis=1) / FASTEST)

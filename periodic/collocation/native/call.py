@@ -6,7 +6,7 @@ import ctypes
 import math
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from periodic.collocation.fastmotions.substeps import GROWING
 from periodic.collocation.native.elimination import ELIMINATION, LARGE, full
 from periodic.correction.newton import NewtonSettings
+from periodic.events.modes import sides
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.native.arrays import address, plain, source
@@ -26,15 +27,25 @@ MOST_STATES = 60
 
 _SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
 
-_SIZES = ("count", "ncol", "n", "m", "k", "parameters", "switches", "exact", "free", "most")
-_MARKS = ("segment", "starts", "switch_of", "ends")
-_MESH = ("left", "width", "left_gradient", "width_gradient", "levels")
+_SIZES = ("count", "ncol", "n", "m", "k", "e", "parameters", "switches", "exact", "free", "most")
+_MARKS = ("segment", "starts", "switch_of", "ends", "ties")
+_MESH = ("left", "width", "left_gradient", "width_gradient", "tied_left", "tied_width", "levels")
 _SCHEME = ("points", "differentiation", "end", "weights")
-_SYSTEM = ("rows", "move", "switch_values", "switch_slopes")
+_SYSTEM = {
+    "rows": "linearise",
+    "beside": "linearise_beside",
+    "move": "move",
+    "switch_values": "switch",
+    "switch_slopes": "switch_gradient",
+    "guards": "guards",
+    "guard_slopes": "guards_gradient",
+}
+"""Functions of a system in C, and the kernels that they are."""
+
 _CONSTRAINT = ("weighted", "origin_nodes")
 ORIGIN = ("node_rates", "knots", "knot_rates", "phases", "left", "width")
 FOUND = ("nodes", "stages", "algebraic", "phases", "parameter")
-SOLVED = ("maps", *(f"{of}_{part}" for of in ("step", "kernel") for part in (*FOUND[:3], "outer")))
+SOLVED = ("maps", "steps", *(f"{of}_{part}" for of in ("step", "kernel") for part in (*FOUND[:3], "outer")))
 _SETTINGS = (
     "period",
     "nominal",
@@ -49,7 +60,7 @@ _SETTINGS = (
 _MEASURED = ("residual", "size", "length", "stretch", "depth")
 _NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", *_MEASURED, "growing")
 
-_GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
+_GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, "side", *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
 _ADDRESSES = (*_GIVEN, "lengths", *FOUND, *SOLVED)
 
 Routine = Callable[..., int]
@@ -63,22 +74,36 @@ class Call(ctypes.Structure):
         *((name, ctypes.c_ssize_t) for name in _SIZES),
         *((name, ctypes.c_void_p) for name in _ADDRESSES),
         *((name, ctypes.c_double) for name in _NUMBERS),
-        *((name, ctypes.c_ssize_t) for name in ("iterations", "gentle")),
+        *((name, ctypes.c_ssize_t) for name in ("iterations", "columns", "jumping", "gentle")),
     )
+
+
+class Prepared(NamedTuple):
+    """A call, the library, and the modes of the surfaces at the collocation points, (points, columns)."""
+
+    call: Call
+    library: ctypes.CDLL
+    side: Array
+
+    def holds(self, system: System, orbit: Orbit) -> bool:
+        """Whether these are the modes of an orbit that was found with them."""
+        own = self.side[:: orbit.mesh.scheme.ncol]
+        return own.size == 0 or np.array_equal(own, sides(system, orbit))
 
 
 def prepared(
     system: System, orbit: Orbit, mesh: Mesh, free: tuple[int, ...], settings: NewtonSettings
-) -> tuple[Call, ctypes.CDLL] | None:
+) -> Prepared | None:
     """A call for an orbit on a mesh, with what belongs to mesh, system and settings, and the library.
 
-    None where NumPy is to do: it takes small systems without impacts and sliding whose kernels are compiled,
-    in one free parameter.
+    The modes are those of the orbit. None where NumPy is to do: it takes small systems without impacts whose
+    kernels are compiled, in one free parameter.
     """
     n = orbit.nodes.shape[1]
-    if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system) or jumps_of(system):
+    if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system):
         return None
-    with_compiler, functions = compiling(system), _functions(system, free)
+    own = sides(system, orbit)
+    with_compiler, functions = compiling(system), _functions(system, free, bool(own.any()))
     if with_compiler is None or functions is None or (n >= LARGE and _full(system, orbit)):
         return None
     library = with_compiler.library(source(*_SOURCES))
@@ -91,9 +116,12 @@ def prepared(
     call.tolerance, call.close, call.max_change = settings.tolerance, settings.close, settings.max_change
     call.shortest = 0.5**settings.max_halvings
     call.narrow, call.negligible = settings.short, settings.negligible
-    for name, where in zip(_SYSTEM, functions, strict=True):
+    for name, where in functions.items():
         setattr(call, name, where)
-    return call, library
+    call.jumping = bool(jumps_of(system))
+    side = plain(np.repeat(own, mesh.ntst // orbit.mesh.ntst * mesh.scheme.ncol, axis=0))
+    call.columns, call.side = side.shape[1], address(side) if side.size else None
+    return Prepared(call, library, side)
 
 
 def _full(system: System, orbit: Orbit) -> bool:
@@ -102,14 +130,17 @@ def _full(system: System, orbit: Orbit) -> bool:
     return full(system.linearise(*at, orbit.parameter).d_state)
 
 
-def _functions(system: System, free: tuple[int, ...]) -> tuple[int, ...] | None:
-    """Where the kernels are that are needed, 0 for others; None where some of them are not compiled."""
-    rows = address_of(system, "linearise", free)
-    needed = {"move": bool(system.algebraics), "switch": bool(system.switches)}
-    needed["switch_gradient"] = needed["switch"]
-    found = [address_of(system, name) if there else 0 for name, there in needed.items()]
-    functions = tuple(where for where in (rows, *found) if where is not None)
-    return functions if len(functions) == len(_SYSTEM) else None
+def _functions(system: System, free: tuple[int, ...], sided: bool) -> dict[str, int] | None:
+    """Where the kernels are that are needed, with given modes or without; None where one is not compiled."""
+    depend = getattr(system, "guards_depend", False)
+    values = ("guards", "guard_slopes") if depend else ("switch_values", "switch_slopes")
+    needed = ["beside" if sided else "rows"]
+    needed += ["move"] if system.algebraics else []
+    needed += values if system.switches else []
+    chosen = {"rows": free, "beside": free}
+    found = {name: address_of(system, _SYSTEM[name], chosen.get(name, ())) for name in needed}
+    functions = {name: where for name, where in found.items() if where is not None}
+    return functions if len(functions) == len(needed) else None
 
 
 def given(call: ctypes.Structure, names: Sequence[str], arrays: Sequence[Array]) -> list[Array]:
@@ -139,13 +170,15 @@ def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
     """A call with what belongs to a mesh and its scheme, and the arrays that it has addresses of."""
     if mesh not in _meshes:
         segment, left, width = mesh.segments
-        marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends)
-        numbers = (left, width, *mesh.gradients, np.array([event.level for event in mesh.events]))
+        marks = (segment, mesh.starts, [event.switch for event in mesh.events], mesh.exact_ends, mesh.ties)
+        levels = np.array([event.level for event in mesh.events])
+        numbers = (left, width, *mesh.gradients, *mesh.tie_gradients, levels)
         scheme = mesh.scheme
         of_scheme = (scheme.points, scheme.differentiation, scheme.end, scheme.barycentric)
         kept: list[Any] = [np.array(mark, dtype=np.intp) for mark in marks]
         kept += map(plain, (*numbers, *of_scheme))
         call = Call(count=mesh.ntst, ncol=scheme.ncol, k=len(mesh.events), exact=len(mesh.exact_ends))
+        call.e = mesh.ties.shape[1]
         for name, array in zip((*_MARKS, *_MESH, *_SCHEME), kept, strict=True):
             setattr(call, name, address(array))
         call.period, call.growth, call.growing = mesh.period, GROWTH, GROWING

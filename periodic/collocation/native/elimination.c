@@ -1,8 +1,9 @@
 
 /* What `periodic.collocation.elimination` and `periodic.linear.bordering` do, point by point and interval by interval.
 
-   Arrays are contiguous, row by row; the names and shapes are those of the Python code.
-   w1 = 1 + 2n + q columns of a point's rows, w = 1 + n + q columns of an interval's. */
+   Arrays are contiguous, row by row; the names and shapes are those of the Python code. Of k phases e at the most
+   move an interval: ties (count, e) says which. w1 = 1 + 2n + e + p columns of a point's rows, w = 1 + n + e + p of
+   an interval's stages, 1 + n + k + p of its step. */
 
 /* Rows c (w1) of a point: residual, d rate, d state, dy; without the unknowns, which `algebraic` has.
    local is room for m (m + w1) numbers. */
@@ -172,8 +173,18 @@ static void integrate(whole ncol, const double *stage_rates, double *integral, d
         memcpy(integral + l * ncol, both + l * 2 * ncol + ncol, ncol * sizeof(double));
 }
 
+/* The columns of a row in (1, dx_j, dy): those of the phases are where they belong. */
+static void place(whole n, whole e, whole k, whole p, const whole *ties, const double *own, double *row)
+{
+    memcpy(row, own, (1 + n) * sizeof(double));
+    memset(row + 1 + n, 0, k * sizeof(double));
+    for (whole a = 0; a < e; a++)
+        row[1 + n + ties[a]] = own[1 + n + a];
+    memcpy(row + 1 + n + k, own + 1 + n + e, p * sizeof(double));
+}
+
 /* work holds ncol (n+m) w1 + m (m + w1) + ncol n (ncol n + w + 1) + 3 ncol ncol numbers, marks 4n. */
-int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p,
+int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole e, whole p, const whole *ties,
                      const double *line_residual, const double *d_rate, const double *d_state,
                      const double *d_algebraic, const double *d_phase, const double *d_parameter,
                      const double *width, const double *left_gradient, const double *width_gradient,
@@ -182,7 +193,7 @@ int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p
                      double *step, double *stages, double *algebraic, double *residual, double *work,
                      whole *marks)
 {
-    const whole q = k + p, rows = n + m, w1 = 1 + 2 * n + q, w = 1 + n + q;
+    const whole rows = n + m, w1 = 1 + 2 * n + e + p, w = 1 + n + e + p, wide = 1 + n + k + p;
     double *columns = work, *integral = columns + ncol * n * w1 + m * w1;
     double *local = integral + ncol * ncol, *both = local + m * (m + w1);
     double largest = 0;
@@ -202,12 +213,12 @@ int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p
                 memcpy(c + 1 + n, d_state + row * n, n * sizeof(double));
                 for (whole s = 0; s < n; s++)
                     along += c[1 + s] * rate[s];
-                for (whole a = 0; a < k; a++) {
-                    const double stretch = width_gradient[j * k + a];
-                    const double shift = left_gradient[j * k + a] + stretch * points[l];
+                for (whole a = 0; a < e; a++) {
+                    const double stretch = width_gradient[j * e + a];
+                    const double shift = left_gradient[j * e + a] + stretch * points[l];
                     c[1 + 2 * n + a] = d_phase[row] * shift - along * (stretch / width[j]);
                 }
-                memcpy(c + 1 + 2 * n + k, d_parameter + row * p, p * sizeof(double));
+                memcpy(c + 1 + 2 * n + e, d_parameter + row * p, p * sizeof(double));
             }
             if (!finite_all(rows * w1, own) || !finite_all(rows * m, unknown))
                 return NOT_FINITE;
@@ -219,7 +230,7 @@ int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p
             return SINGULAR;
         for (whole r = 0; r < n; r++) {
             const double *own = knots + j * (ncol + 1) * n + r; /* differences are exact */
-            double *s = step + (j * n + r) * w, gap = own[0] - nodes[(j + 1) * n + r];
+            double *s = columns, gap = own[0] - nodes[(j + 1) * n + r];
             memset(s, 0, w * sizeof(double));
             for (whole l = 0; l < ncol; l++)
                 if (end[1 + l] != 0)
@@ -229,6 +240,7 @@ int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole p
                 gap += end[l] * (own[l * n] - own[0]);
             s[1 + r] += end[0];
             s[0] += gap;
+            place(n, e, k, p, ties + j * e, s, step + (j * n + r) * wide);
         }
     }
     *residual = largest;
@@ -255,23 +267,26 @@ void chain(whole count, whole n, whole w, const double *step, double *restrict m
 
 /* Increments of stages (count, ncol, n) and unknowns (count, ncol, m) from those of mesh points and y.
 
-   rate is room for n numbers. */
-void recover(whole count, whole ncol, whole n, whole m, whole q, double constant,
+   rate is room for n numbers, own for e + p. */
+void recover(whole count, whole ncol, whole n, whole m, whole k, whole e, whole p, double constant, const whole *ties,
              const double *stage_map, const double *algebraic_map, const double *stage_rates,
              const double *width, const double *nodes, const double *outer,
-             double *restrict stages, double *restrict algebraic, double *restrict rate)
+             double *restrict stages, double *restrict algebraic, double *restrict rate, double *restrict own)
 {
-    const whole w = 1 + n + q, w1 = w + n;
+    const whole q = e + p, w = 1 + n + q, w1 = w + n;
+    memcpy(own + e, outer + k, p * sizeof(double));
     for (whole j = 0; j < count; j++) {
         const double *start = nodes + j * n;
         double *inside = stages + j * ncol * n;
+        for (whole a = 0; a < e; a++)
+            own[a] = outer[ties[j * e + a]];
         for (whole i = 0; i < ncol * n; i++) {
             const double *row = stage_map + (j * ncol * n + i) * w;
             double sum = row[0] * constant;
             for (whole s = 0; s < n; s++)
                 sum += row[1 + s] * start[s];
             for (whole s = 0; s < q; s++)
-                sum += row[1 + n + s] * outer[s];
+                sum += row[1 + n + s] * own[s];
             inside[i] = sum;
         }
         for (whole l = 0; m && l < ncol; l++) {
@@ -288,7 +303,7 @@ void recover(whole count, whole ncol, whole n, whole m, whole q, double constant
                 for (whole s = 0; s < n; s++)
                     sum += row[1 + s] * rate[s] + row[1 + n + s] * state[s];
                 for (whole s = 0; s < q; s++)
-                    sum += row[1 + 2 * n + s] * outer[s];
+                    sum += row[1 + 2 * n + s] * own[s];
                 algebraic[(j * ncol + l) * m + i] = -sum;
             }
         }

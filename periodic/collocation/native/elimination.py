@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from periodic.collocation.residual import Evaluated
 from periodic.orbit.native.arrays import plain, source
@@ -44,9 +45,9 @@ class Routines:
 
     def __post_init__(self) -> None:
         size, array, lib = ctypes.c_ssize_t, ctypes.c_void_p, self.library
-        lib.eliminate_stages.argtypes, lib.eliminate_stages.restype = [size] * 6 + [array] * 21, ctypes.c_int
+        lib.eliminate_stages.argtypes, lib.eliminate_stages.restype = [size] * 7 + [array] * 22, ctypes.c_int
         lib.chain.argtypes, lib.chain.restype = [size] * 3 + [array] * 2, None
-        lib.recover.argtypes, lib.recover.restype = [size] * 5 + [ctypes.c_double] + [array] * 9, None
+        lib.recover.argtypes, lib.recover.restype = [size] * 7 + [ctypes.c_double] + [array] * 11, None
 
     def eliminate_stages(self, orbit: Orbit, line: LinearisationLike) -> tuple[Array, Array, Array, float]:
         """Return step, stages, algebraic and residual of the equations linearised at an orbit.
@@ -58,9 +59,9 @@ class Routines:
         step: Array | None = None
         for part, own in _parts(orbit, line):
             k, p = len(orbit.phases), own.d_parameter.shape[2]
-            w = 1 + n + k + p
+            w = 1 + n + min(k, 2) + p
             if step is None:
-                step, stages = np.empty((count, n, w)), np.empty((count, ncol, n, w))
+                step, stages = np.empty((count, n, 1 + n + k + p)), np.empty((count, ncol, n, w))
                 algebraic = np.empty((count, ncol, m, w + n))
             _check(own, (part.stop - part.start) * ncol, n, m)
             into = step[part], stages[part], algebraic[part]
@@ -73,14 +74,17 @@ class Routines:
     ) -> float:
         """Condense some intervals; return their largest residual."""
         (ncol, n), m, residual = orbit.stages.shape[1:], orbit.algebraic.shape[2], np.empty(1)
-        w, nodes = into[0].shape[2], orbit.nodes[part.start : part.stop + 1]
+        w, nodes = into[1].shape[3], orbit.nodes[part.start : part.stop + 1]
         room = (ncol * n + m) * (w + n) + m * (m + w + n) + ncol * n * (ncol * n + w + 1) + 3 * ncol**2
-        grid, scheme = orbit.grid, orbit.mesh.scheme
+        mesh, scheme = orbit.mesh, orbit.mesh.scheme
+        left_gradient, width_gradient = mesh.tie_gradients
         code = self.library.eliminate_stages(
-            *(part.stop - part.start, ncol, n, m, len(orbit.phases), line.d_parameter.shape[2]),
+            *(part.stop - part.start, ncol, n, m),
+            *(len(orbit.phases), mesh.ties.shape[1], line.d_parameter.shape[2]),
+            *_marks(mesh.ties[part]),
             *_given(line.residual, line.d_rate, line.d_state),
             *_given(line.d_algebraic, line.d_phase, line.d_parameter),
-            *_given(grid.width[part], grid.left_gradient[part], grid.width_gradient[part]),
+            *_given(orbit.grid.width[part], left_gradient[part], width_gradient[part]),
             *_given(scheme.points, scheme.stage_rates, scheme.end),
             *_given(orbit.knots[part], orbit.knot_rates[part], nodes),
             *_given(*into, residual, np.empty(room), np.empty(4 * n)),
@@ -109,11 +113,13 @@ class Routines:
     ) -> tuple[Array, Array]:
         """Return the increments of stages and unknowns from their maps."""
         (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
+        ties, k = orbit.mesh.ties, len(orbit.phases)
         stages, algebraic = np.empty((count, ncol, n)), np.empty((count, ncol, m))
         self.library.recover(
-            *(count, ncol, n, m, len(outer), constant),
+            *(count, ncol, n, m, k, ties.shape[1], len(outer) - k, constant),
+            *_marks(ties),
             *_given(by_stage, by_unknown, orbit.mesh.scheme.stage_rates),
-            *_given(orbit.grid.width, nodes, outer, stages, algebraic, np.empty(n)),
+            *_given(orbit.grid.width, nodes, outer, stages, algebraic, np.empty(n), np.empty(len(outer))),
         )
         return stages, algebraic
 
@@ -166,3 +172,7 @@ def _check(line: LinearisationLike, points: int, n: int, m: int) -> None:
 
 def _given(*arrays: Array) -> list[ctypes.Array[ctypes.c_char]]:
     return [_Address.from_buffer(plain(array).data) for array in arrays]
+
+
+def _marks(array: NDArray[np.int_]) -> list[ctypes.Array[ctypes.c_char]]:
+    return [_Address.from_buffer(np.array(array, dtype=np.intp).data)]

@@ -7,8 +7,8 @@ struct estimate {
     const double *nodes, *stages, *algebraic, *phases, *parameter; /* the orbit, on its own mesh */
     const double *profile;                                         /* of its branch's direction, (count / 2 + 1, n) */
     const double *stages_of, *unknowns_of, *middle;                /* the scheme's halves */
-    double *fundamental;                                           /* matrices of the halved mesh, (count + 1, n, n) */
-    double *monodromy;                                             /* that of the better orbit, (n, n) */
+    double *fundamental, *steps;                                   /* matrices of the halved mesh, (count + 1, n, n) */
+    double *monodromy, *better_steps;                              /* that of the better orbit, (n, n) */
     double *better_nodes, *better_stages, *better_algebraic, *better_phases, *better_parameter; /* that itself */
     double along, scale, unit; /* the direction's parameter, the units of arclength in parameter and states */
     double reach, straight, steep, rounding, digits, fast;         /* limits: see estimate.py */
@@ -118,7 +118,7 @@ static int linearised_beside(struct call *c, const struct estimate *e, struct ro
     for (whole a = 0; a < c->k; a++) {
         const double *state = c->nodes + c->starts[a] * n, *slope = r->by_state + c->switch_of[a] * n;
         double terms = 0;
-        c->switch_slopes(1, state, c->phases + a, c->parameter, r->by_state, r->by_phase, r->by_parameter);
+        slopes(c, r, a);
         for (whole s = 0; s < n; s++)
             terms += fabs(slope[s] * state[s]);
         beside[a] = levels[a] - e->rounding * terms;
@@ -283,6 +283,7 @@ static int estimated(struct call *c, struct estimate *e, struct room *r, double 
         return code;
     for (whole i = 0; i < (c->count + 1) * n; i++)
         memcpy(e->fundamental + i * n, c->maps + i * w + 1, n * sizeof(double));
+    hand_steps(c, r, e->steps);
     e->unresolved = unresolved(c, e, r, r->work);
     e->apart = moved_by(c, &c->increment);
     e->shift = fabs(c->increment.outer[k]);
@@ -294,6 +295,7 @@ static int estimated(struct call *c, struct estimate *e, struct room *r, double 
         move(c, r, 1);
     }
     hand_over(c, e);
+    hand_steps(c, r, e->better_steps);
     for (whole i = 0; i < n; i++)
         memcpy(e->monodromy + i * n, c->maps + (c->count * n + i) * w + 1, n * sizeof(double));
     return code;

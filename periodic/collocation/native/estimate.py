@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,18 +11,24 @@ import numpy as np
 
 from periodic.collocation.fastmotions.unresolved import FAST
 from periodic.collocation.native.call import FOUND, given, prepared, routine
-from periodic.collocation.rounding import EPSILON, TERMS
+from periodic.collocation.native.perturbations import carried, multiplied
+from periodic.collocation.rounding import TERMS
 from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
 from periodic.correction.newton import USUAL
+from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
+from periodic.events.impacts import jumping
 from periodic.linear.unknowns import STEEP, Increment, size_of
+from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
+from periodic.system import System
+from periodic.system.precision import EPSILON
 
 _HALVES = ("stages_of", "unknowns_of", "middle")
 _BETTER = tuple(f"better_{name}" for name in FOUND)
-_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "monodromy", *_BETTER)
+_ADDRESSES = (*FOUND, "profile", *_HALVES, "fundamental", "steps", "monodromy", "better_steps", *_BETTER)
 _NUMBERS = (
     "along",
     "scale",
@@ -66,23 +73,46 @@ def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spec
     ready = prepared(problem.system, orbit, orbit.mesh.bisected(), problem.free, USUAL)
     if ready is None:
         return None
-    call, library = ready
+    call = ready.call
     n, own = orbit.nodes.shape[1], Estimate()
     parts = [orbit.nodes, orbit.stages, orbit.algebraic, orbit.phases, orbit.parameter, tangent.profile]
-    fundamental: Array = np.empty((2 * orbit.mesh.ntst + 1, n, n))
-    monodromy: Array = np.empty((n, n))
-    better = _room(orbit)
-    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, fundamental, monodromy, *better])
+    count, better = 2 * orbit.mesh.ntst, _room(orbit)
+    matrices = [np.empty(shape) for shape in ((count + 1, n, n), (count, n, n), (n, n), (count, n, n))]
+    kept = given(own, _ADDRESSES, [*parts, *orbit.mesh.scheme.halves, *matrices, *better])
     own.along, own.scale, own.unit = tangent.parameter, problem.scale, size_of(orbit)
     own.reach, own.straight, own.steep, own.fast = REACH, STRAIGHT, STEEP, FAST
     own.rounding, own.digits = TERMS * EPSILON, LAST_DIGITS
-    code = routine(library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
+    code = routine(ready.library, "estimate", 2)(ctypes.addressof(call), ctypes.addressof(own))
     del kept
     if code:
         return None
+    refined = partial(_halved, orbit, better)
+    try:
+        fundamental, monodromy = _passing(problem.system, orbit, refined, *matrices)
+    except FAILURES:
+        return None
     halved = Halved(own.apart, own.shift, spectrum.apart(monodromy), fundamental, monodromy)
-    error = relative(problem, orbit, spectrum, halved, partial(_halved, orbit, better))
-    return Estimated(error, bool(own.unresolved))
+    error = relative(problem, orbit, spectrum, halved, refined)
+    return Estimated(error, bool(own.unresolved or ready.side.size))
+
+
+def _passing(
+    system: System,
+    orbit: Orbit,
+    better: Callable[[], Orbit],
+    fundamental: Array,
+    steps: Array,
+    monodromy: Array,
+    better_steps: Array,
+) -> tuple[Array, Array]:
+    """The fundamental matrices of the halved mesh, and the monodromy matrix of the better orbit.
+
+    Raises FAILURES where a jump has no rates.
+    """
+    if not jumping(system, orbit):
+        return fundamental, monodromy
+    own = carried(system, bisect(orbit), steps)
+    return multiplied(own), multiplied(carried(system, better(), better_steps))[-1]
 
 
 def _room(orbit: Orbit) -> list[Array]:

@@ -1,7 +1,7 @@
 """Newton's iteration of small systems in one call of C (`newton.c`), where their kernels are compiled.
 
-It takes orbits on arclength constraints. Where it does not come through (a singular matrix, event nodes that
-cross) it returns None: NumPy does it all.
+It takes orbits on arclength constraints, each surface in the modes of the guess. Where it does not come
+through (a singular matrix, event nodes that cross, other modes at the end) it returns None: NumPy does all.
 """
 
 from __future__ import annotations
@@ -12,10 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from periodic.collocation.native.call import FOUND, ORIGIN, SOLVED, Call, given, laid_out, prepared, routine
+from periodic.collocation.native.perturbations import carried, multiplied, tame
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
 from periodic.correction.newton import Correction, NewtonSettings
-from periodic.correction.outcome import Outcome
+from periodic.correction.outcome import FAILURES, Outcome
+from periodic.events.impacts import jumping
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -39,20 +41,34 @@ def corrected(
     ready = prepared(system, guess, guess.mesh, free, settings)
     if ready is None:
         return None
-    call, library = ready
+    call = ready.call
     call.most = settings.max_iterations
     kept = _constrained(call, constraint)
-    orbit, kernel, maps = _into(call, guess)
-    outcome = _OUTCOMES.get(routine(library, "newton")(ctypes.addressof(call)))
+    orbit, kernel, maps, steps = _into(call, guess)
+    outcome = _OUTCOMES.get(routine(ready.library, "newton")(ctypes.addressof(call)))
     del kept
-    if outcome is None:
+    if outcome is None or not ready.holds(system, orbit):
         return None
     ended = (outcome, int(call.iterations), call.size, call.residual)
     if outcome is not Outcome.CONVERGED:
         return Correction(orbit, *ended, np.full((1, call.n, call.n), np.nan), None)
     nodes, stages, algebraic, outer = kernel
     along = Increment.of(orbit, nodes, stages, algebraic, outer[: call.k], outer[call.k :])
-    return Correction(orbit, *ended, maps[:, :, 1 : 1 + call.n], along, gentle=bool(call.gentle))
+    fundamental = _fundamental(system, orbit, maps, steps)
+    if fundamental is None:
+        return None
+    return Correction(orbit, *ended, fundamental, along, gentle=bool(call.gentle))
+
+
+def _fundamental(system: System, orbit: Orbit, maps: Array, steps: Array) -> Array | None:
+    """The fundamental matrices, None where NumPy is to say what is wrong with them or with their growth."""
+    if not jumping(system, orbit):
+        return maps[:, :, 1 : 1 + orbit.nodes.shape[1]]
+    try:
+        own = carried(system, orbit, steps)
+    except FAILURES:
+        return None
+    return multiplied(own) if tame(own) else None
 
 
 def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
@@ -69,15 +85,16 @@ def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
     return given(call, names, arrays)
 
 
-def _into(call: Call, guess: Orbit) -> tuple[Orbit, list[Array], Array]:
-    """The orbit, which begins as the guess, the parts of the kernel, and the maps: where C writes them."""
+def _into(call: Call, guess: Orbit) -> tuple[Orbit, list[Array], Array, Array]:
+    """The orbit, which begins as the guess, the parts of the kernel, maps and steps: where C writes them."""
     begun = (guess.nodes, guess.stages, guess.algebraic, guess.phases, guess.parameter)
     shapes = [array.shape for array in begun]
     own = laid_out(call, FOUND, shapes)
     for array, value in zip(own, begun, strict=True):
         array[...] = value
     change = [*shapes[:3], (call.k + 1,)]
-    maps, *parts = laid_out(call, SOLVED, [(call.count + 1, call.n, 2 + call.n + call.k), *change, *change])
+    passing = [(call.count + 1, call.n, 2 + call.n + call.k), (call.count, call.n, call.n)]
+    maps, steps, *parts = laid_out(call, SOLVED, [*passing, *change, *change])
     nodes, stages, algebraic, phases, parameter = own
     orbit = Orbit(guess.mesh, nodes, stages, algebraic, phases, parameter, layout=guess.layout)
-    return orbit, parts[4:], maps
+    return orbit, parts[4:], maps, steps

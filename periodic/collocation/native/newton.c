@@ -15,6 +15,14 @@ typedef void rows_at(whole points, const double *rate, const double *state, cons
 typedef void move_to(whole points, const double *algebraic, const double *increment, double *moved);
 typedef void switch_at(whole points, const double *state, const double *phase, const double *parameter,
                        double *value);
+typedef void rows_beside(whole points, const double *rate, const double *state, const double *algebraic,
+                         const double *phase, const double *parameter, const double *side, double *residual,
+                         double *d_rate, double *d_state, double *d_algebraic, double *d_phase,
+                         double *d_parameter);
+typedef void guard_at(whole points, const double *state, const double *phase, const double *parameter,
+                      const double *side, double *value);
+typedef void guard_slope_at(whole points, const double *state, const double *phase, const double *parameter,
+                            const double *side, double *d_state, double *d_phase, double *d_parameter);
 typedef void slope_at(whole points, const double *state, const double *phase, const double *parameter,
                       double *d_state, double *d_phase, double *d_parameter);
 
@@ -25,25 +33,29 @@ struct change {
 
 /* As `periodic.collocation.native.call.Call` is filled. */
 struct call {
-    whole count, ncol, n, m, k, parameters, switches, exact;        /* sizes; exact: intervals before kinks */
+    whole count, ncol, n, m, k, e, parameters, switches, exact;     /* sizes; exact: intervals before kinks */
     whole free, most;                                               /* the free parameter, iterations allowed */
-    const whole *segment, *starts, *switch_of, *ends;               /* of the mesh */
-    const double *left, *width, *left_gradient, *width_gradient, *levels;
+    const whole *segment, *starts, *switch_of, *ends, *ties;        /* of the mesh */
+    const double *left, *width, *left_gradient, *width_gradient, *tied_left, *tied_width, *levels;
     const double *points, *differentiation, *end, *weights;         /* of the scheme */
-    rows_at *rows;                                                  /* of the system */
+    rows_at *rows;                                                  /* of the system; those on given sides are */
+    rows_beside *beside;                                            /* NULL where the state decides */
     move_to *move;
     switch_at *switch_values;
     slope_at *switch_slopes;
+    guard_at *guards;
+    guard_slope_at *guard_slopes;
+    const double *side;                                             /* modes at the points, (points, columns) */
     const double *weighted, *origin_nodes, *origin_node_rates;      /* of the arclength constraint */
     const double *origin_knots, *origin_knot_rates, *origin_phases, *origin_left, *origin_width, *lengths;
     double *nodes, *stages, *algebraic, *phases, *parameter;        /* the orbit: the guess, then what is found */
-    double *maps;                                                   /* of the last linearisation */
+    double *maps, *steps;                                           /* of the last linearisation */
     struct change increment, kernel;
     double period, nominal, tolerance, close, max_change, shortest, narrow, negligible, growth;
     double origin_parameter, slope, distance;
     double residual, size, length, stretch, depth;
     double growing;
-    whole iterations, gentle; /* whether no perturbation can grow by more than growing in an interval */
+    whole iterations, columns, jumping, gentle; /* whether no perturbation can grow by more than growing in an interval */
 };
 
 /* Room for one linearisation; the kernels write structural nonzeros only, so that derivatives begin as 0. */
@@ -66,12 +78,12 @@ static double *taken(double **from, whole size)
 static double *lay_out(const struct call *c, struct room *r)
 {
     const whole n = c->n, m = c->m, k = c->k, rows = n + m, points = c->count * c->ncol;
-    const whole w = 2 + n + k, w1 = w + n, ends = (c->count + 1) * n, last = n + k + 1;
+    const whole wide = 2 + n + k, w = 2 + n + c->e, w1 = w + n, ends = (c->count + 1) * n, last = n + k + 1;
     const whole zeroed = points * rows * (2 * n + m + 3) + c->switches * (2 + n + c->parameters);
     const whole room = (c->ncol * n + m) * w1 + m * (m + w1) + c->ncol * n * (c->ncol * n + w + 1)
                        + 3 * c->ncol * c->ncol;
     const whole other = 2 * c->count + 2 * c->count * (c->ncol + 1) * n + points * (1 + 2 * n + 2 * m) + 2 * ends
-                        + c->count * n * w + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + w + 2 * (ends + points * rows + k + 1) + 4 * n;
+                        + c->count * n * wide + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + 2 * wide + 2 * (ends + points * rows + k + 1) + 4 * n;
     double *all = malloc((zeroed + other) * sizeof(double)), *next = all;
     if (!all)
         return NULL;
@@ -97,12 +109,12 @@ static double *lay_out(const struct call *c, struct room *r)
     r->shift = taken(&next, points * m);
     r->origin = taken(&next, ends);
     r->origin_rate = taken(&next, ends);
-    r->step = taken(&next, c->count * n * w);
+    r->step = taken(&next, c->count * n * wide);
     r->stage_map = taken(&next, points * n * w);
     r->algebraic_map = taken(&next, points * m * w1);
     r->bordered = taken(&next, last * (last + 2));
     r->work = taken(&next, room);
-    r->few = taken(&next, n + c->ncol + 1 + w);
+    r->few = taken(&next, n + c->ncol + 1 + 2 * wide);
     r->kept = taken(&next, 2 * (ends + points * rows + k + 1));
     r->marks = (whole *)taken(&next, 4 * n);
     return all;
@@ -157,8 +169,12 @@ static void evaluate(const struct call *c, struct room *r)
         for (whole s = 0; s < n; s++)
             r->state[at * n + s] -= BEFORE * r->rate[at * n + s];
     }
-    c->rows(points, r->rate, r->state, c->algebraic, r->tau, c->parameter, r->residual, r->d_rate, r->d_state,
-            r->d_algebraic, r->d_phase, r->d_parameter);
+    if (c->beside)
+        c->beside(points, r->rate, r->state, c->algebraic, r->tau, c->parameter, c->side, r->residual, r->d_rate,
+                  r->d_state, r->d_algebraic, r->d_phase, r->d_parameter);
+    else
+        c->rows(points, r->rate, r->state, c->algebraic, r->tau, c->parameter, r->residual, r->d_rate,
+                r->d_state, r->d_algebraic, r->d_phase, r->d_parameter);
     for (whole e = 0; beside && e < c->exact; e++) {
         const whole at = c->ends[e] * ncol + ncol - 1;
         for (whole i = at * rows; i < (at + 1) * rows; i++) {
@@ -177,7 +193,7 @@ static double origin_end(const struct call *c, whole segment)
 }
 
 /* States and rates of the constraint's origin at the orbit's mesh points, where these have moved: within their
-   own segments, beyond them on the tangents at their ends, see arclength.py. */
+   own segments, beyond them on the tangents at their ends, of equations that jump on its own: see arclength.py. */
 static void origin_at(const struct call *c, struct room *r, const double **states, const double **rates)
 {
     const whole knots = c->ncol + 1, n = c->n;
@@ -185,7 +201,17 @@ static void origin_at(const struct call *c, struct room *r, const double **state
     for (whole a = 0; a < c->k; a++)
         moved |= c->phases[a] != c->origin_phases[a];
     *states = moved ? r->origin : c->origin_nodes;
-    *rates = moved ? r->origin_rate : c->origin_node_rates;
+    *rates = moved && !c->jumping ? r->origin_rate : c->origin_node_rates;
+    if (c->jumping) { /* on its tangents */
+        for (whole i = 0; moved && i < (c->count + 1) * n; i++) {
+            const double *gradient = c->left_gradient + i / n % c->count * c->k;
+            double way = 0;
+            for (whole a = 0; a < c->k; a++)
+                way += gradient[a] * (c->phases[a] - c->origin_phases[a]);
+            r->origin[i] = c->origin_nodes[i] + way * c->origin_node_rates[i];
+        }
+        return;
+    }
     for (whole j = 0; moved && j < c->count; j++) {
         whole segment = c->segment[j];
         double tau = r->left[j];
@@ -259,13 +285,34 @@ static void constrain(const struct call *c, struct room *r, double *row)
     row[1 + n + k] += c->slope;
 }
 
+/* The modes in the interval before an event node. */
+static const double *modes_before(const struct call *c, whole event)
+{
+    const whole node = c->starts[event];
+    return c->side + ((node ? node : c->count) - 1) * c->ncol * c->columns;
+}
+
+/* The derivatives of the switches at an event node, in the modes that lead there. */
+static void slopes(const struct call *c, struct room *r, whole event)
+{
+    const double *state = c->nodes + c->starts[event] * c->n, *phase = c->phases + event;
+    if (c->guard_slopes)
+        c->guard_slopes(1, state, phase, c->parameter, modes_before(c, event), r->by_state, r->by_phase,
+                        r->by_parameter);
+    else
+        c->switch_slopes(1, state, phase, c->parameter, r->by_state, r->by_phase, r->by_parameter);
+}
+
 /* The condition of an event node as a row (w) in (1, dx_0, dy). */
 static void tie(const struct call *c, struct room *r, whole event, double *row)
 {
     const whole n = c->n, k = c->k, w = 1 + n + k + 1, node = c->starts[event], own = c->switch_of[event];
     const double *state = c->nodes + node * n, *phase = c->phases + event;
-    c->switch_values(1, state, phase, c->parameter, r->value);
-    c->switch_slopes(1, state, phase, c->parameter, r->by_state, r->by_phase, r->by_parameter);
+    if (c->guards)
+        c->guards(1, state, phase, c->parameter, modes_before(c, event), r->value);
+    else
+        c->switch_values(1, state, phase, c->parameter, r->value);
+    slopes(c, r, event);
     memset(row, 0, w * sizeof(double));
     for (whole s = 0; s < n; s++)
         for (whole i = 0; i < w; i++)
@@ -291,9 +338,9 @@ static void spread(const struct call *c, struct room *r, double constant, const 
         to->nodes[i] = sum;
     }
     memcpy(to->outer, given + 1 + n, (k + 1) * sizeof(double));
-    recover(c->count, c->ncol, n, c->m, k + 1, constant, r->stage_map, r->algebraic_map,
+    recover(c->count, c->ncol, n, c->m, k, c->e, 1, constant, c->ties, r->stage_map, r->algebraic_map,
             c->differentiation + c->ncol + 1, r->width, to->nodes, to->outer, to->stages, to->algebraic,
-            given + w);
+            given + w, given + w + n);
 }
 
 static double largest(whole count, const double *values, double so_far)
@@ -356,9 +403,9 @@ static int linearised(struct call *c, struct room *r)
     if (code != DONE)
         return code;
     evaluate(c, r);
-    code = eliminate_stages(c->count, c->ncol, n, c->m, k, 1, r->residual, r->d_rate, r->d_state,
-                            r->d_algebraic, r->d_phase, r->d_parameter, r->width, c->left_gradient,
-                            c->width_gradient, c->points, c->differentiation + c->ncol + 1, c->end, r->knots,
+    code = eliminate_stages(c->count, c->ncol, n, c->m, k, c->e, 1, c->ties, r->residual, r->d_rate, r->d_state,
+                            r->d_algebraic, r->d_phase, r->d_parameter, r->width, c->tied_left, c->tied_width,
+                            c->points, c->differentiation + c->ncol + 1, c->end, r->knots,
                             r->rates, c->nodes, r->step, r->stage_map, r->algebraic_map, &c->residual, r->work,
                             r->marks);
     if (code != DONE)
@@ -498,6 +545,14 @@ static int gentle(const struct call *c, const struct room *r)
     return 1;
 }
 
+/* Give how the states follow from mesh point to mesh point, (count, n, n). */
+static void hand_steps(const struct call *c, const struct room *r, double *steps)
+{
+    const whole n = c->n, w = 2 + n + c->k;
+    for (whole i = 0; steps && i < c->count * n; i++)
+        memcpy(steps + i * n, r->step + i * w + 1, n * sizeof(double));
+}
+
 static int solved(struct call *c, struct room *r)
 {
     int code = iterate(c, r);
@@ -507,7 +562,8 @@ static int solved(struct call *c, struct room *r)
     if (code != DONE)
         return code;
     c->size = size;
-    c->gentle = gentle(c, r);
+    c->gentle = !c->beside && gentle(c, r);
+    hand_steps(c, r, c->steps);
     const whole last = c->n + c->k + 1;
     spread(c, r, 0, r->bordered + last + 1, last + 2, &c->kernel);
     return unfold(c, r);

@@ -55,11 +55,23 @@ def motion(
     if part is None:
         raise ValueError("system has no structure; motion elsewhere is that of its states, as orbit['x'](t)")
     orbit = _with_forces(system, as_read_by(system, orbit))
-    seen = part.observed(orbit.parameter, freedoms, structure)
+    observed_at = part.observed(orbit.parameter, freedoms, structure)
     phases = np.atleast_1d(np.asarray(tau, dtype=float))
     forces = np.ascontiguousarray(orbit.algebraic[:, :, list(part.forces)])
-    states = _states(seen, orbit, forces, phases)
+    states = _states(observed_at, orbit, forces, phases)
     return states[:, ::2], states[:, 1::2]
+
+
+def displacements(
+    system: System, orbit: Orbit, nodes: Sequence[tuple[str, int]], tau: Array, structure: str
+) -> Array:
+    """Return displacements (SI) of nodes of a structure, (K, nodes), whether it is condensed or not.
+
+    A node is a name among the outputs of a system with all states, and the index of a degree of freedom.
+    """
+    if linear_of(system) is None:
+        return np.stack([orbit[name](tau / orbit.omega) for name, _ in nodes], axis=1)
+    return motion(system, orbit, [k for _, k in nodes], tau, structure)[0]
 
 
 def _with_forces(system: System, orbit: Orbit) -> Orbit:

@@ -41,8 +41,8 @@ def corner(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | None
         return None
     for m in (segment, (segment + 1) % k):
         earlier, later = (m - 1) % k, (m + 1) % k
-        turns = events[earlier].direction != events[later].direction
+        returns = events[earlier].direction != events[later].direction
         same = events[earlier].switch == events[later].switch != events[m].switch
-        if m in impacts and same and turns:
+        if m in impacts and same and returns:
             return earlier, later
     return None

@@ -9,8 +9,9 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import bends, group, mode_after, surface_of
+from periodic.events.modes import group, mode_after, relays, returns, surface_of
 from periodic.events.rewrites.corners import corner
+from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.reversals import reversals, short_of
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strikes import last_impact
@@ -18,34 +19,40 @@ from periodic.events.rewrites.swaps import swapped, swaps
 from periodic.events.rewrites.table import (
     ADDING_ABOUT,
     ADDING_SLIDING,
+    AFTER_IMPACT,
+    BEFORE_IMPACT,
+    CAUGHT,
     CORNER,
     CROSSING_SLIDING,
+    FIRST_DEPARTURES,
+    FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
+    RELAY,
+    RELEASE_AT_IMPACT,
     REVERSAL,
     SWAP,
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import without
+from periodic.events.rewrites.together import without
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed, speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import BESIDE_EXTREMUM, SHALLOW
 from periodic.events.violations import largest
 from periodic.orbit.mesh import INSIDE
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System
-
-SHALLOW = 0.1
-"""Excess of what pulls over what holds in a slip that may end, as a part of the largest."""
 
 
 @dataclass(frozen=True)
 class Excursion:
     """What may end: its row, the event node at which it begins, and its size in the row's measure.
 
-    unit: of the row's sizes, 1 rad or how far the switch of an impact ranges. segments: those whose lengths
-    together are its size, where it is not the one that begins there.
+    unit: of the row's sizes, 1 rad or how far the switch of an impact or a relay ranges. segments: those
+    whose lengths together are its size, where it is not the one that begins there.
     """
 
     row: Row
@@ -56,40 +63,51 @@ class Excursion:
 
     def size(self, system: System, orbit: Orbit) -> float:
         """How long it lasts, or with which speed it arrives."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return speed(system, orbit, self.index)
         lengths = orbit.mesh.segment_lengths(orbit.phases)
         return float(lengths[list(self.segments or (self.index,))].sum())
 
     def held(self, size: float) -> SideCondition:
         """What keeps it as small as that, in its own unit."""
-        if self.row is IMPACT:
+        if self.row.by_speed:
             return Speed(self.index, size)
         return Lengths(self.segments, size) if self.segments else Length(self.index, size)
 
 
 def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
     """Yield all that may end on an orbit."""
-    events, k, own = orbit.mesh.events, len(orbit.phases), bends(system)
-    about = {i for turn in reversals(system, orbit) for i in (turn.begin, turn.inside[-1])}
-    for turn in reversals(system, orbit):
-        yield Excursion(REVERSAL, turn.begin)
-    for i in tied(system, orbit):
+    events, k, own = orbit.mesh.events, len(orbit.phases), returns(system)
+    about = {i for reversal in reversals(system, orbit) for i in (reversal.begin, reversal.inside[-1])}
+    for reversal in reversals(system, orbit):
+        yield Excursion(REVERSAL, reversal.begin)
+    switched = [i for i, event in enumerate(events) if event.switch in relays(system)]
+    struck = [i for i in tied(system, orbit) if (events[i].switch, STUCK) not in events[i].modes]
+    for row, i in [*((IMPACT, i) for i in struck), *((RELAY, i) for i in switched)]:
         dense = SwitchPolynomials(system, orbit)
-        yield Excursion(IMPACT, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
+        yield Excursion(row, i, float(np.abs(dense.knots[:, :, events[i].switch]).max()))
     for i, first in enumerate(events):
         second = events[(i + 1) % k]
         if first.switch == second.switch in own and i not in about:
             yield Excursion(GRAZING, i)
-        row = _held(system, orbit, i)
-        if row is not None:
-            yield Excursion(row, i)
+        both = only_slips(system, orbit, i)
+        if both and both[0].index == i:
+            row = FIRST_DEPARTURES if surface_of(system, events[i].switch).place is None else FIRST_SLIPS
+            yield Excursion(row, i, segments=tuple(j for slip in both for j in slip.segments))
+        between = _held(system, orbit, i)
+        if between is not None and not both:
+            yield Excursion(between, i)
         inner = slip_about(system, orbit, i)
-        if inner:
+        if inner and not both:
             yield Excursion(ADDING_ABOUT, i, segments=(i, inner[-1]))
         if corner(system, orbit, i) is not None and i not in about:
             yield Excursion(CORNER, i)
-        if swaps(system, orbit, i) and i not in about:
+        if i in about:
+            continue
+        meets = meeting(system, orbit, i)
+        if meets is not None:
+            yield Excursion(meets, i)
+        elif swaps(system, orbit, i):
             yield Excursion(SWAP, i)
 
 
@@ -97,8 +115,15 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
     """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
+    if excursion.row in (FIRST_SLIPS, FIRST_DEPARTURES):
+        return _first_slips(system, orbit, excursion.row, excursion.index)
+    if excursion.row is RELAY:
+        i = excursion.index
+        return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
+    if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
+        return [met(system, orbit, excursion.row, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]
 
 
@@ -113,7 +138,7 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         return _reversal(system, orbit, i)
     if row is ADDING_ABOUT:
         return _about(system, orbit, i)
-    return _stretch(system, orbit, row, i)
+    return _vanishing(system, orbit, row, i)
 
 
 def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
@@ -130,11 +155,11 @@ def _middle(orbit: Orbit, segment: int) -> float:
 
 def _reversal(system: System, orbit: Orbit, begin: int) -> Site:
     """An excursion about a reversal of friction."""
-    turn = next(turn for turn in reversals(system, orbit) if turn.begin == begin)
-    first, at = orbit.mesh.events[begin], turn.inside[0]
+    reversal = next(reversal for reversal in reversals(system, orbit) if reversal.begin == begin)
+    first, at = orbit.mesh.events[begin], reversal.inside[0]
     left = short_of(system, orbit, first.switch, float(orbit.phases[at]))
     held = Limit(at, first.switch, -first.direction, left)
-    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(turn.begin, turn.end))
+    return Site(REVERSAL, first.switch, at, held, 0.0, removed=(reversal.begin, reversal.end))
 
 
 def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
@@ -172,18 +197,57 @@ def _about(system: System, orbit: Orbit, begin: int) -> Site:
     return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, removed=gone)
 
 
+def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:
+    """Return all slips of a joint if they end at once, and one of them begins at an event; else [].
+
+    From its place a joint goes there and back. What slides all along has none: its slips are alike.
+    """
+    surface = surface_of(system, orbit.mesh.events[begin].switch)
+    if surface.releases is None or (surface.place is None and not surface.alone):
+        return []
+    own = group(system, orbit.mesh, surface.switch)
+    begun = [i for i in own if mode_after(surface, orbit.mesh.events[i]) != STUCK]
+    ways = {orbit.mesh.events[i].direction for i in begun}
+    if begin not in begun or len(own) != 2 * len(begun) or len(ways) != len(begun):
+        return []
+    found = [slip for slip in (_slip(system, orbit, i) for i in begun) if slip is not None]
+    sizes = [slip.size(system, orbit) for slip in found]
+    alike = bool(found) and np.ptp(sizes) < BESIDE_EXTREMUM * max(sizes)
+    at_once = alike if surface.place is None else len(begun) == 2
+    return found if len(found) == len(begun) and at_once else []
+
+
+def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
+    """The slip that begins at an event node and may end, by itself or about events at other surfaces."""
+    row = _held(system, orbit, begin)
+    if row in (ADDING_SLIDING, LIMIT_GRAZING):
+        return Excursion(row, begin, segments=(begin,))
+    inner = slip_about(system, orbit, begin)
+    return Excursion(ADDING_ABOUT, begin, segments=(begin, inner[-1])) if inner else None
+
+
+def _first_slips(system: System, orbit: Orbit, row: Row, begin: int) -> list[Site]:
+    """The only slips of a joint, without which it is held all along and touches where one was."""
+    each = [_end(system, orbit, slip.row, slip.index) for slip in only_slips(system, orbit, begin)]
+    removed = tuple(j for site in each for j in site.removed)
+    replaced = tuple(pair for site in each for pair in site.replaced)
+    return [replace(site, row=row, removed=removed, replaced=replaced) for site in each]
+
+
 def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
     """The surface both of whose neighbouring transitions a segment lies between, if any."""
     i, j = segment, (segment + 1) % len(orbit.phases)
     if i == j:
         return None
     surface = surface_of(system, orbit.mesh.events[i].switch)
-    ends = mode_after(surface, orbit.mesh.events[j]) is not None
+    second = orbit.mesh.events[j]
+    struck = surface_of(system, second.switch).kind == Kind.IMPACT
+    ends = mode_after(surface, second) is not None and not struck
     return surface if surface.releases is not None and ends else None
 
 
 def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
-    """The row of the stretch between an event node and the next one; None where it cannot vanish."""
+    """The row of the segment between an event node and the next one; None where it cannot vanish."""
     surface = _surface(system, orbit, segment)
     if surface is None:
         return None
@@ -192,7 +256,7 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     if surface.kind == Kind.SLIDER and stuck and second.direction != first.direction:
         return GRAZING_SLIDING
     if surface.kind == Kind.SLIDER:
-        return ADDING_SLIDING if then and not stuck else None
+        return LIMIT_GRAZING if then and not stuck else None
     if stuck:
         return CROSSING_SLIDING if second.direction == first.direction else GRAZING_SLIDING
     if then:
@@ -200,8 +264,8 @@ def _held(system: System, orbit: Orbit, segment: int) -> Row | None:
     return None
 
 
-def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
-    """A stretch of sticking or slipping."""
+def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
+    """A segment of sticking or slipping."""
     surface = _surface(system, orbit, i)
     assert surface is not None and surface.releases is not None
     j, guard = (i + 1) % len(orbit.phases), surface.switch
@@ -226,7 +290,7 @@ def _stretch(system: System, orbit: Orbit, row: Row, i: int) -> Site:
 
 
 def longest_slip(system: System, orbit: Orbit, switch: int) -> float:
-    """Return the length of the longest stretch without sticking at a guard."""
+    """Return the length of the longest slip at a guard."""
     own, surface = group(system, orbit.mesh, switch), surface_of(system, switch)
     pairs = zip(own, [*own[1:], *own[:1]], strict=True)
     slips = [(i, j) for i, j in pairs if mode_after(surface, orbit.mesh.events[i]) != STUCK]

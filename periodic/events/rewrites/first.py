@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.change import Change
-from periodic.events.modes import of_held, sliding, surface_of
+from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
 from periodic.events.rewrites.onsets import begins
 from periodic.events.rewrites.rewrite import Begins, Ends
@@ -18,6 +18,8 @@ from periodic.events.rewrites.table import (
     CORNER,
     GRAZING,
     IMPACT,
+    LIMIT_GRAZING,
+    RELAY,
     REVERSAL,
     ROOT,
     SHORT,
@@ -25,18 +27,13 @@ from periodic.events.rewrites.table import (
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, LONGEST, VANISHING
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
 from periodic.orbit.orbit import Orbit
-from periodic.system import System
-
-VANISHING = 0.5
-"""What a step would leave this part of, by its tangent, may end within the step."""
+from periodic.system import Kind, System
 
 ENDS_BELOW = SHORT[-1]
 """Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
-
-LAST = 1e-2
-"""Length (rad) of the last slips of a motion that will not slip any more."""
 
 
 def first_change(
@@ -44,8 +41,8 @@ def first_change(
 ) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
-    `after` may be a guess, its event nodes out of order. What begins is told before what ends: an orbit past
-    it is none of the system, on this mesh. A grazing that may be the end of an excursion is told as either.
+    `after` may be a guess, its event nodes out of order. What begins comes before what ends: an orbit past
+    it is none of the system, on this mesh. A grazing that may be the end of an excursion is given as both.
     """
     if not system.switches:
         return None
@@ -87,13 +84,20 @@ def _onsets(
         return []
     held = of_held(system)
     slips = any(end.site.row is not SWAP and sliding(system, end.site.switch) is not None for end in ending)
-    resting = {jump for jump in held if not SwitchPolynomials(system, before).knots[:, :, jump].any()}
+    dense = SwitchPolynomials(system, before)
+    loose = [k for k in held if not held_all_along(before.mesh, surface_of(system, k))]
+    resting = {jump for jump in loose if not dense.knots[:, :, jump].any()}
     found = list[Begins | WholeOrbit]()
     for violation in between_nodes(system, after, before):
         jump = sliding(system, violation.switch)
         if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
             continue
         part = _share(system, before, violation)
+        slider = surface_of(system, violation.switch).kind == Kind.SLIDER
+        if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
+            continue  # it stops at its limit there: what comes after is decided by the turn of its strain
+        if _at_end(after, violation, ending):
+            continue
         whole = whole_orbit(system, before, violation, part)
         site = begins(system, after, violation)
         if whole is not None:
@@ -101,6 +105,15 @@ def _onsets(
         elif site is not None:
             found.append(Begins(system, site, part, shortest))
     return found
+
+
+def _at_end(after: Orbit, violation: Violation, ending: list[Ends]) -> bool:
+    """Whether a relay goes past its threshold ahead of an event node that has come to lie past a graze."""
+    if not isinstance(violation.at, Extremum):
+        return False
+    segment = int(after.mesh.segments[0][violation.at.interval])
+    following = (segment + 1) % max(len(after.phases), 1)
+    return any(end.site.row is RELAY and end.excursion.index == following for end in ending)
 
 
 def _share(system: System, before: Orbit, violation: Violation) -> float:
@@ -113,7 +126,9 @@ def _share(system: System, before: Orbit, violation: Violation) -> float:
         clear = abs(dense.nearest(at.switch, violation.side, at.phase).value) / most
     else:
         surface = surface_of(system, violation.switch)
-        clear = next(abs(each.depth) for each in limits(system, before, surface) if each.at == at)
+        same = violation.switch, at, violation.arriving
+        each = limits(system, before, surface)
+        clear = next((abs(v.depth) for v in each if (v.switch, v.at, v.arriving) == same), 0.0)
     return float(clear / (clear + abs(violation.depth)))
 
 
@@ -135,14 +150,14 @@ def _ending(
         return None
     half = now if row.gradual else VANISHING * now
     size, last = row.size_below(half), False
-    if row is IMPACT and size >= half:
+    if row.by_speed and size >= half:
         return None
     site = ends(system, before, excursion)[0]
-    if row is ADDING_SLIDING:
+    if row in (ADDING_SLIDING, LIMIT_GRAZING):
         jump = sliding(system, site.switch)
         assert jump is not None
         last = longest_slip(system, before, jump) <= 2 * now
-        size = min(LAST, half) if last else size
+        size = min(LONGEST, half) if last else size
     if then > (max(half, size) if row.power == ROOT and not (last or row.gradual) else size):
         return None
     final = last or size <= row.least
@@ -159,9 +174,13 @@ def _name(system: System, site: Site, last: bool) -> str:
     name, jump = system.switches[site.switch].name, sliding(system, site.switch)
     if jump is not None:
         name = system.switches[jump].name
+        if last and surface_of(system, jump).alone:
+            return f"the motion slides along {name} = 0 all the time"
         return (
             f"{name} holds all along, at a place that is not determined" if last else f"a stop at {name} ends"
         )
+    if site.row is RELAY:
+        return f"{name} grazes the threshold at which it switches"
     if site.row is IMPACT:
         return f"the impact at {name} has no speed left"
     if site.row is REVERSAL:

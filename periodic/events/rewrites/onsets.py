@@ -7,34 +7,32 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.events.modes import group, mode_after, surface_of
+from periodic.events.modes import group, held_all_along, mode_after, surface_of
+from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
     ADDING_SLIDING,
     CROSSING_SLIDING,
+    FIRST_DEPARTURES,
+    FIRST_SLIPS,
     GRAZING,
     GRAZING_SLIDING,
     IMPACT,
+    LIMIT_GRAZING,
+    RELAY,
     SWITCHING_SLIDING,
+    Row,
 )
-from periodic.events.rewrites.twins import with_twins
+from periodic.events.rewrites.twins import leading, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
 from periodic.events.violations import Breach, Violation, largest, limits
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
-
-AT_ONCE = 1e-7
-"""Onsets whose switch is nearer to its level than this, in parts of its largest value, are taken together."""
-
-SHORT_OF = 1e-9
-"""How far from where something begins orbits without it are held, in the same part: rounding decides."""
-
-BESIDE = 1e-2
-"""Extrema that lie so near to each other (rad) are one: a switch may stay at its level for a while."""
 
 
 def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
@@ -52,7 +50,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
 
     Nothing where it is none on that orbit.
     """
-    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= AT_ONCE]
+    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
@@ -63,7 +61,11 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
         first = min(near, key=lambda site: _distance(own, site, orbit), default=None)
     if first is None:
         return []
-    found = [first]
+    found, guard = [first], surface_of(system, own.switch).switch
+    if own.row is FIRST_SLIPS:  # what slips one way alone would go on and on
+        back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
+        other = (site for site in back if surface_of(system, site.switch).switch == guard)
+        near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
@@ -75,34 +77,44 @@ def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
         for switch in (surface.switch, *(surface.releases or ())):
-            if row_of(surface, switch) == row:
+            if row_of(orbit, surface, switch) == row:
                 yield from _extrema(dense, surface, switch)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
-            yield from (site for site in each if site.row.name == row)
+            yield from (site for site in each if site is not None and site.row.name == row)
 
 
-def row_of(surface: SurfaceLike, switch: int) -> str:
+def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
     """Return the name of the row for an extremum of a switch."""
     if surface.kind in (Kind.KINK, Kind.JUMP):
         return GRAZING.name
     if surface.kind == Kind.IMPACT:
         return IMPACT.name
+    if surface.kind == Kind.RELAY:
+        return RELAY.name
     if surface.releases is not None:
-        return (GRAZING_SLIDING if switch == surface.switch else ADDING_SLIDING).name
+        return (GRAZING_SLIDING if switch == surface.switch else _slip(orbit, surface)).name
     return ""
+
+
+def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
+    """The row of a slip of what is held."""
+    if held_all_along(orbit.mesh, surface):
+        return FIRST_DEPARTURES if surface.place is None else FIRST_SLIPS
+    return LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
 
 
 def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
     """The extrema of a switch on the sides that it is on."""
     sides = dense.expected(switch, dense.side(switch))
     most = largest(dense, switch)
-    nodes = group(dense.system, dense.orbit.mesh, switch) if surface.releases is not None else []
+    tied = surface.releases is not None or surface.kind == Kind.RELAY
+    nodes = group(dense.system, dense.orbit.mesh, switch) if tied else []
     own = dense.orbit.phases[nodes]
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
             if sides[e.interval] == side and not any(
-                apart(e.phase, tau, dense.orbit) < BESIDE for tau in own
+                apart(e.phase, tau, dense.orbit) < SLOW_CROSSING for tau in own
             ):
                 yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
 
@@ -112,9 +124,14 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     k = at.switch
     if surface.kind == Kind.IMPACT:
         return first_impact(system, orbit, at, side, value)
+    if surface.kind == Kind.RELAY:
+        return Site(RELAY, k, at, Clearance(k, side, at.phase), value)
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:
+        surface = leading(system, surface)
+        assert surface.releases is not None
+        k, at = surface.switch, replace(at, switch=surface.switch)
         release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
         new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
@@ -124,12 +141,10 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         guard = surface.switch
         stop = EventNode(guard, side, modes=((guard, STUCK),))
         new = (EventNode(k, -side), early), (stop, late)
-        row, left = ADDING_SLIDING, SHORT_OF * largest(SwitchPolynomials(system, orbit), k)
+        row, left = _slip(orbit, surface), AT_LEVEL * largest(SwitchPolynomials(system, orbit), k)
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
-    if surface.kind == Kind.SLIDER:
-        return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
-    return Site(row, k, at, held_at, value, added)
+    return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
 
 
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:
@@ -147,9 +162,11 @@ def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float
     return Site(GRAZING, k, at, Clearance(k, side, at.phase, left), value, added)
 
 
-def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site:
+def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site | None:
     """The site at an event node where a passage may begin to be held, or a stop may break."""
     assert isinstance(limit.at, int)
+    if surface_of(system, orbit.mesh.events[limit.at].switch).kind == Kind.IMPACT:
+        return begun(system, orbit, surface, limit)
     node, event, guard = limit.at, orbit.mesh.events[limit.at], surface.switch
     phase, most = float(orbit.phases[node]), _largest_release(system, orbit, surface)
     others = tuple(pair for pair in event.modes if pair[0] != guard)
@@ -160,7 +177,7 @@ def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation)
     else:
         stops = replace(event, modes=((guard, STUCK), *others))
         row, changed, new = CROSSING_SLIDING, stops, EventNode(limit.switch, event.direction)
-    held_at = Limit(node, limit.switch, limit.side, SHORT_OF * most)
+    held_at = Limit(node, limit.switch, limit.side, AT_LEVEL * most)
     value = -limit.depth
     return Site(row, limit.switch, node, held_at, value, (Added(new, phase, 1.0),), (), ((node, changed),))
 
@@ -183,7 +200,7 @@ def _same(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
     if not (isinstance(one.at, Extremum) and isinstance(other.at, Extremum)):
         return one.at == other.at
     if one.row is not GRAZING:
-        return apart(one.at.phase, other.at.phase, orbit) < BESIDE
+        return apart(one.at.phase, other.at.phase, orbit) < SLOW_CROSSING
     begin, end = held(system, orbit, one.switch, one.at.phase)
-    later = np.mod(other.at.phase - begin + BESIDE, orbit.mesh.period)
-    return bool(later <= end - begin + 2 * BESIDE)
+    later = np.mod(other.at.phase - begin + SLOW_CROSSING, orbit.mesh.period)
+    return bool(later <= end - begin + 2 * SLOW_CROSSING)

@@ -11,22 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.modes import bends, group, of_held, sliding, sticks
+from periodic.events.modes import group, of_held, returns, sliding, sticks
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL
 from periodic.orbit.orbit import Orbit
 from periodic.system import System
-
-TURNING = 1e-6
-"""Rate of a switch at a node where it turns, as a part of its largest rate, at the most."""
-
-SAME = 1e-6
-"""Phases closer than this are the same."""
-
-SHORT_OF = 1e-9
-"""How far short of its level a switch is held that touches it at an event node, in parts of its largest.
-
-A collocation point lies there, and rounding would decide of what side it takes the equations.
-"""
 
 
 @dataclass(frozen=True)
@@ -40,7 +29,7 @@ class Reversal:
 
 def reversals(system: System, orbit: Orbit) -> list[Reversal]:
     """Return the excursions of an orbit that turn back at an event node of another switch."""
-    events, own, found = orbit.mesh.events, bends(system), list[Reversal]()
+    events, own, found = orbit.mesh.events, returns(system), list[Reversal]()
     if len(events) < 3:
         return []
     for i, first in enumerate(events):
@@ -51,7 +40,7 @@ def reversals(system: System, orbit: Orbit) -> list[Reversal]:
         inside = ahead[:1] if stuck_until(system, orbit, ahead[0]) is None else ahead[:2]
         last = ahead[len(inside)]
         closes = events[last].switch == first.switch and events[last].direction == -first.direction
-        if closes and _turns(system, orbit, inside[0], first.switch):
+        if closes and _is_stationary(system, orbit, inside[0], first.switch):
             found.append(Reversal(i, tuple(inside), last))
     return found
 
@@ -62,7 +51,7 @@ def stuck_until(system: System, orbit: Orbit, node: int) -> int | None:
     return sticks(system, orbit.mesh, switch, node) if switch in of_held(system) else None
 
 
-def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
+def _is_stationary(system: System, orbit: Orbit, node: int, switch: int) -> bool:
     """Whether a switch turns at an event node."""
     flat, at = (-1, orbit.stages.shape[2]), orbit.mesh.starts[node]
     states = np.concatenate([orbit.nodes[at : at + 1], orbit.stages.reshape(flat)])
@@ -70,7 +59,7 @@ def _turns(system: System, orbit: Orbit, node: int, switch: int) -> bool:
     tau = np.append(orbit.phases[node], orbit.stage_phases.ravel())
     by_state, by_phase, _ = system.switch_gradient(states, tau, orbit.parameter)
     slope = np.abs(by_phase[:, switch] + np.einsum("pn,pn->p", by_state[:, switch], rates))
-    return bool(slope[0] <= TURNING * slope.max())
+    return bool(slope[0] <= AT_EXTREMUM * slope.max())
 
 
 def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
@@ -81,8 +70,8 @@ def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float
             if release is None:
                 continue
             length = float((orbit.phases[release] - orbit.phases[j]) % orbit.mesh.period)
-            since = float((phase - orbit.phases[j] + SAME) % orbit.mesh.period) - SAME
-            if since <= length + SAME and _turns(system, orbit, j, switch):
+            since = float((phase - orbit.phases[j] + AT_EXTREMUM) % orbit.mesh.period) - AT_EXTREMUM
+            if since <= length + AT_EXTREMUM and _is_stationary(system, orbit, j, switch):
                 return phase - since, phase - since + length
     return phase, phase
 
@@ -92,9 +81,9 @@ def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
     begin, end = held(system, orbit, switch, phase)
     events = zip(orbit.mesh.events, orbit.phases, strict=True)
     apart = [abs(_wrapped(begin - tau, orbit)) for e, tau in events if sliding(system, e.switch) is not None]
-    if begin == end and min(apart, default=np.inf) > SAME:
+    if begin == end and min(apart, default=np.inf) > AT_EXTREMUM:
         return 0.0
-    return SHORT_OF * float(np.abs(SwitchPolynomials(system, orbit).knots[:, :, switch]).max())
+    return AT_LEVEL * float(np.abs(SwitchPolynomials(system, orbit).knots[:, :, switch]).max())
 
 
 def _wrapped(phase: float, orbit: Orbit) -> float:

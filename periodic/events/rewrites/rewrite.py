@@ -19,23 +19,19 @@ from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import SHORT_OF, at_once
-from periodic.events.rewrites.sites import Site, index_of, rewritten
-from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, SWAP
+from periodic.events.rewrites.onsets import at_once
+from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
+from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
+from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
 from periodic.events.violations import largest
-from periodic.orbit.mesh import EventNode, Mesh
+from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.refinement.equidistribution import MIN_INTERVALS, density, redistribute, spread
+from periodic.refinement.equidistribution import density, redistribute, spread
 from periodic.system import System
-
-ALIKE = 1e-3
-"""Excursions whose sizes differ by this part end at once."""
-
-BRIEF = 2.0
-"""Excursions at most so many times as long as one that ends end with it, or are about to."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +56,11 @@ class Begins:
         return self.site.row.touches
 
     @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
+
+    @property
     def condition(self) -> SideCondition:
         """What is 0 there."""
         return self.site.held
@@ -68,6 +69,8 @@ class Begins:
     def name(self) -> str:
         """What begins, in words."""
         surface = self.system.switches[self.site.switch].name
+        if self.site.row is RELAY:
+            return f"{surface} grazes the threshold at which it would switch"
         jump = sliding(self.system, self.site.switch)
         if jump is None or self.site.row is GRAZING_SLIDING:
             return f"{surface} is touched"
@@ -78,11 +81,11 @@ class Begins:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield orbits with what begins, small, and with what begins at once elsewhere by symmetry."""
-        sites = at_once(system, orbit, self.site)
         row = self.site.row
+        sites = [] if self.last else at_once(system, orbit, self.site)
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
-                events, phases = rewritten(orbit, chosen, size)
+                events, phases = rewritten(system, orbit, chosen, size)
                 if inconsistency(system, events):
                     continue
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
@@ -116,8 +119,17 @@ class Ends:
     shortest: float
     name: str
 
-    touches = False
     otherwise = None
+
+    @property
+    def touches(self) -> bool:
+        """Whether a switch just touches its level."""
+        return self.last
+
+    @property
+    def last(self) -> bool:
+        """Whether the branch ends there."""
+        return self.site.row.last
 
     @property
     def condition(self) -> SideCondition:
@@ -126,10 +138,12 @@ class Ends:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
+        if self.last:
+            return
         for own in ends(system, orbit, self.excursion):
             sites = self._alike(system, orbit, own)
             for chosen in (sites, [own])[: 2 if len(sites) > 1 else 1]:
-                events, phases = rewritten(orbit, chosen, self.size)
+                events, phases = rewritten(system, orbit, chosen, self.size)
                 if inconsistency(system, events):
                     continue
                 mesh = self._mesh(orbit, events, phases)
@@ -142,9 +156,9 @@ class Ends:
         """What ends of the same row, as small as this."""
         found = [own]
         for other in excursions(system, orbit):
-            if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < ALIKE:
-                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _touched(each)}
-                found += [site] if not gone & set(_touched(site)) else []
+            if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < BESIDE_EXTREMUM:
+                (site, *_), gone = ends(system, orbit, other), {j for each in found for j in _changed(each)}
+                found += [site] if not gone & set(_changed(site)) else []
         return found
 
     def _mesh(self, orbit: Orbit, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -158,19 +172,19 @@ class Ends:
 
     def _brief(self, orbit: Orbit) -> NDArray[np.bool_]:
         """Which intervals are those of excursions about as short as this one."""
-        brief = orbit.mesh.segment_lengths(orbit.phases) < BRIEF * self.size
+        brief = orbit.mesh.segment_lengths(orbit.phases) < self.size / VANISHING
         return np.repeat(brief, [len(breaks) - 1 for breaks in orbit.mesh.breaks])
 
     def _held(
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
         """What is 0 where it ends, but for what rounding decides."""
-        if own.row is SWAP:
-            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         held, left = own.held, 0.0
+        if isinstance(held, Length):
+            return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         jump = sliding(system, own.switch)
-        if jump is not None and not own.row.touches:
-            left = SHORT_OF * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
+        if jump is not None and own.row is not GRAZING_SLIDING:
+            left = AT_LEVEL * largest(SwitchPolynomials(system, orbit), *releases(system, jump))
             assert isinstance(held, Clearance | Limit)
             held = replace(held, level=left)
         if isinstance(held, Limit):
@@ -181,5 +195,12 @@ class Ends:
         return held
 
 
-def _touched(site: Site) -> Sequence[int]:
+def rewritten(
+    system: System, orbit: Orbit, sites: Sequence[Site], size: float
+) -> tuple[tuple[EventNode, ...], Array]:
+    """Return event nodes and phases of an orbit after the edits at some sites, in order."""
+    return ordered(together(system, in_order(edited(orbit, sites, size), orbit), size), orbit)
+
+
+def _changed(site: Site) -> Sequence[int]:
     return (*site.removed, *(j for j, _ in site.replaced))

@@ -67,14 +67,15 @@ class Site:
 
     def begin(self, orbit: Orbit, size: float) -> Node:
         """The event node with which what begins begins."""
-        if self.replaced:
+        early = any(each.part < 0 for each in self.added)
+        if self.replaced and isinstance(self.at, int) and not early:
             node, event = self.replaced[0]
             return event, float(orbit.phases[node])
         return self.added[0].at(size)
 
 
-def rewritten(orbit: Orbit, sites: Iterable[Site], size: float) -> tuple[tuple[EventNode, ...], Array]:
-    """Return event nodes and phases of an orbit after the edits at some sites, in order."""
+def edited(orbit: Orbit, sites: Iterable[Site], size: float) -> list[Node]:
+    """Return event nodes and phases of an orbit after the edits at some sites."""
     nodes = dict(enumerate(zip(orbit.mesh.events, map(float, orbit.phases), strict=True)))
     added = list[Node]()
     for site in sites:
@@ -83,15 +84,19 @@ def rewritten(orbit: Orbit, sites: Iterable[Site], size: float) -> tuple[tuple[E
         for index in site.removed:
             nodes.pop(index, None)
         added += [each.at(size) for each in site.added]
-    return ordered([*nodes.values(), *added], orbit)
+    return [*nodes.values(), *added]
 
 
 def ordered(both: Iterable[Node], orbit: Orbit) -> tuple[tuple[EventNode, ...], Array]:
     """Return event nodes and their phases in order, the first phase in [0, period)."""
-    period = orbit.mesh.period
-    wrapped = ((float(np.mod(phase, period)), event) for event, phase in both)
-    placed = sorted(wrapped, key=lambda pair: pair[0])
-    return tuple(event for _, event in placed), np.array([phase for phase, _ in placed])
+    placed = in_order(both, orbit)
+    return tuple(event for event, _ in placed), np.array([phase for _, phase in placed])
+
+
+def in_order(both: Iterable[Node], orbit: Orbit) -> list[Node]:
+    """Return event nodes in the order of their phases, these in [0, period)."""
+    wrapped = ((event, float(np.mod(phase, orbit.mesh.period))) for event, phase in both)
+    return sorted(wrapped, key=lambda node: node[1])
 
 
 def index_of(events: tuple[EventNode, ...], phases: Array, node: Node, orbit: Orbit) -> int:

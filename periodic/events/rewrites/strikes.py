@@ -12,12 +12,10 @@ from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import IMPACT
 from periodic.events.sideconditions import Clearance
 from periodic.events.switchpolynomials import Extremum
+from periodic.events.thresholds import AT_EXTREMUM
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, System, surfaces_of
-
-SAME = 1e-6
-"""Phases closer than this are the same."""
 
 SOON = 0.3
 """A stop that follows an impact within so many rad may be brought about by its rebound."""
@@ -29,7 +27,7 @@ def first_impact(system: System, orbit: Orbit, at: Extremum, side: int, value: f
     for j, event in enumerate(orbit.mesh.events):
         surface = surface_of(system, event.switch)
         own = surface.releases is not None and event.switch == surface.switch
-        if not own or apart(float(orbit.phases[j]), at.phase, orbit) > SAME:
+        if not own or apart(float(orbit.phases[j]), at.phase, orbit) > AT_EXTREMUM:
             continue
         removed.append(j)
         modes.append((surface.switch, event.direction))
@@ -46,8 +44,8 @@ def last_impact(system: System, orbit: Orbit, index: int) -> list[Site]:
     """Return the sites where an impact ends: what it reversed passes its level there instead, or stops."""
     event, phase = orbit.mesh.events[index], float(orbit.phases[index])
     held, found = Clearance(event.switch, -event.direction, phase), list[Site]()
-    passing = [Added(EventNode(k, mode), phase, 0.0) for k, mode in event.modes]
-    found.append(Site(IMPACT, event.switch, index, held, 0.0, tuple(passing), (index,)))
+    crossing = [Added(EventNode(k, mode), phase, 0.0) for k, mode in event.modes]
+    found.append(Site(IMPACT, event.switch, index, held, 0.0, tuple(crossing), (index,)))
     stopping, gone = list[Added](), [index]
     for k, mode in event.modes:
         after = _stop_after(system, orbit, index, k)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from periodic.events.impacts import tied
-from periodic.events.modes import of_kind, surface_of
+from periodic.events.modes import of_kind, surface_of, twins
 from periodic.events.rewrites.corners import reversed_by_impact
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
 from periodic.events.sideconditions import Length
 from periodic.orbit.orbit import Orbit
-from periodic.system import Kind, System
+from periodic.system import Kind, SurfaceLike, System
 
 
 def swaps(system: System, orbit: Orbit, segment: int) -> bool:
@@ -19,7 +19,15 @@ def swaps(system: System, orbit: Orbit, segment: int) -> bool:
     if {first.switch, second.switch} & marked or len(orbit.phases) < 2:
         return False
     one, other = (surface_of(system, event.switch) for event in (first, second))
-    return one.switch != other.switch and not reversed_by_impact(system, orbit, segment)
+    if one.switch == other.switch or _bound(system, one, other):
+        return False
+    return not reversed_by_impact(system, orbit, segment)
+
+
+def _bound(system: System, one: SurfaceLike, other: SurfaceLike) -> bool:
+    """Whether two surfaces are friction and a slider beside it, which is not strained where it holds."""
+    both = {one.kind, other.kind} == {Kind.SLIDING, Kind.SLIDER}
+    return both and other.switch in twins(system, one.switch)
 
 
 def swapped(system: System, orbit: Orbit, segment: int) -> Site:

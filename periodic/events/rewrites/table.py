@@ -7,38 +7,54 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     grazing of an impact   nothing             (+ +)             clearance        speed
     grazing-sliding        nothing             (+ 0)(0 +)        clearance        length
     adding-sliding         nothing, in 0       (0 +)(+ 0)        clearance        length
+    grazing of a limit     nothing, in 0       (0 +)(+ 0)        clearance        length
     crossing-sliding       (+ -)               (+ 0)(0 -)        limit            length
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
     the same about w       w, in 0             (0 +) w (+ 0)     limit            length
+    first slips            0 all along         (0 +)(+ 0) and    clearance        length
+                                               (0 -)(- 0)
+    first departures       0 all along         (0 +)(+ 0)        clearance        length
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    grazing of a relay     nothing             ends              clearance        speed
+    corner before impact   I from a            (a b) I from b    limit            length
+    corner after impact    I to b              I to a, (a b)     limit            length
+    release at an impact   I from 0            (0 b) I from b    limit            length
+    caught after impact    I to +, (+ 0)       I to -, (- 0)     length           length
 
+The grazing of a limit is adding-sliding of a slider: what slips forgets where it was held before, however
+briefly, and so the multipliers jump, which they do not where friction slips.
+
+I is an impact that throws the guard of another surface, as that of friction against a belt: it takes it
+from a mode to a mode. Where the guard is 0 just before or after it the orbit passes the corner of both.
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
-joint where one is pulled most. What begins is of no
+joint where one is pulled most. Where a relay just reaches its threshold a branch ends: past it the relay
+switches, and the motion is another one. What begins is of no
 size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
 
 References
 ----------
 Nordmark, J. Sound Vib. 145 (1991) 279. di Bernardo, Budd, Champneys & Kowalczyk, Piecewise-smooth Dynamical
-Systems, 2008, chapters 6 to 8.
+Systems, 2008, chapters 6 to 8. Corners: di Bernardo, Budd & Champneys, Physica D 154 (2001) 171.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from periodic.events.thresholds import LEAST_CROSSING, LEAST_GRAZING, LONGEST, decades
+
 ROOT, LINEAR = 0.5, 1.0
 """Powers of the size in the depth: of what touches, and of what passes."""
 
-SHORT = (1e-2, 1e-3, 1e-4)
-"""Lengths (rad) at which patterns are exchanged, tried in turn; of impacts speeds, as parts of the range."""
-
-SHORTER = (1e-5, 1e-6)
-"""Those tried where these lead to none, or lie beyond more folds than one."""
-
-FLAT = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
-"""The same of slips between two stretches of sticking, whose size falls as the cube of their length."""
+SHORT = decades(LONGEST, LEAST_GRAZING)
+SHORTER = decades(LONGEST, LEAST_CROSSING)[len(SHORT) :]
+FLAT = tuple(size ** (2 / 3) for size in decades(LONGEST, LEAST_GRAZING**1.5))
+"""Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: of what
+touches; the further ones of what passes; of slips between two sticking segments. The latter change the
+states by the cube of their length, what touches by its square: the sizes are those of one effect.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +63,8 @@ class Row:
 
     name: in the literature. touches: whether a switch just touches its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
-    gradual: whether steps shorten so much on the way that each size is looked at as it is passed.
+    gradual: whether steps shorten so much on the way that each size is looked at as it is passed. by_speed:
+    whether the size is the speed with which a level is passed. last: whether no orbits are near beyond it.
     """
 
     name: str
@@ -56,6 +73,8 @@ class Row:
     sizes: tuple[float, ...] = SHORT
     spare: tuple[float, ...] = ()
     gradual: bool = False
+    by_speed: bool = False
+    last: bool = False
 
     @property
     def least(self) -> float:
@@ -74,14 +93,32 @@ class Row:
 
 
 GRAZING = Row(name="grazing", touches=True, power=ROOT)
-IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER)
+IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER, by_speed=True)
 GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
 ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
 ADDING_ABOUT = Row(
     name="adding-sliding about another event", touches=False, power=ROOT, sizes=FLAT, gradual=True
 )
+FIRST_SLIPS = Row(
+    name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
+)
+FIRST_DEPARTURES = Row(
+    name="adding-sliding of what slides all along", touches=False, power=ROOT, sizes=FLAT, gradual=True
+)
+LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)
 CORNER = Row(name="grazing in the corner of an impact", touches=True, power=LINEAR)
+BEFORE_IMPACT = Row(
+    name="corner collision before an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+)
+AFTER_IMPACT = Row(
+    name="corner collision after an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+)
+RELEASE_AT_IMPACT = Row(name="release at an impact", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+CAUGHT = Row(name="caught after an impact", touches=False, power=LINEAR)
+RELAY = Row(
+    name="grazing of a relay", touches=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
+)
 SWAP = Row(name="two events change places", touches=False, power=LINEAR)

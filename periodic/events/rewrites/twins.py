@@ -1,26 +1,26 @@
-"""Elastic sliders side by side: those that slip stop together where their strain turns, at one event node."""
+"""Joints side by side: their guards are one function, so those that slip stop together, at one event node.
+
+Where they are let go together is said by `together`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.modes import mode_after, surface_of, twins
+from periodic.events.modes import mode_after, sticks, surface_of, twins
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
-from periodic.orbit.mesh import EventNode
+from periodic.events.thresholds import BESIDE_EXTREMUM
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, System
-
-SAME = 1e-3
-"""Phases closer than this (rad) are those of one turn of the strain."""
+from periodic.system import STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
-    """Return where a slider begins to slip, or to be held, with what its twins do at the same event nodes.
+    """Return where a joint begins to slip, or to be held, with what its twins do at the same event nodes.
 
-    One that begins to slip where the strain turns stops where the others do; where the strain turns back for
-    a while all that slip are held together, and let go together.
+    A slider that begins to slip where the strain turns stops where the others do; where the strain turns back
+    for a while all that slip are held together, and let go together.
     """
     assert isinstance(site.at, Extremum)
     guard = surface_of(system, site.switch).switch
@@ -29,12 +29,38 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
         return site
     if site.row is GRAZING_SLIDING:
         return _grazing(system, orbit, site, guard, both)
-    release, stop = site.added
+    if surface_of(system, guard).kind != Kind.SLIDER:
+        return site
+    turn = _turn(system, orbit, site.at, both)
+    if turn is None:
+        return site
+    joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))
+    release = replace(site.added[0], phase=float(orbit.phases[turn]))
+    return replace(site, added=(release,), replaced=((turn, joined),))
+
+
+def _turn(system: System, orbit: Orbit, at: Extremum, both: list[int]) -> int | None:
+    """The event node at which others stop where a strain turns: at that phase, or where friction holds it."""
     for j, event in enumerate(orbit.mesh.events):
-        if event.switch in both and apart(float(orbit.phases[j]), site.at.phase, orbit) < SAME:
-            joined = replace(event, modes=(*event.modes, (guard, STUCK)))
-            return replace(site, added=(release,), replaced=((j, joined),))
-    return site
+        if event.switch not in both:
+            continue
+        if apart(float(orbit.phases[j]), at.phase, orbit) < BESIDE_EXTREMUM:
+            return j
+        release = sticks(system, orbit.mesh, event.switch, j)
+        if release is not None and surface_of(system, event.switch).kind == Kind.SLIDING:
+            length, since = (
+                float((phase - orbit.phases[j]) % orbit.mesh.period)
+                for phase in (float(orbit.phases[release]) + BESIDE_EXTREMUM, at.phase)
+            )
+            if since <= length:
+                return j
+    return None
+
+
+def leading(system: System, surface: SurfaceLike) -> SurfaceLike:
+    """Return the surface whose grazing-sliding that of another one is: of dry friction beside sliders its."""
+    each = (surface_of(system, k) for k in twins(system, surface.switch))
+    return next((own for own in each if own.kind == Kind.SLIDING), surface)
 
 
 def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: list[int]) -> Site:
@@ -57,12 +83,3 @@ def _mode(system: System, orbit: Orbit, switch: int, interval: int) -> int:
     known = [(j, mode) for j, mode in changes if mode is not None]
     before = [mode for j, mode in known if j <= interval] or [mode for _, mode in known]
     return before[-1] if before else 0
-
-
-def without(system: System, event: EventNode, guard: int) -> EventNode | None:
-    """Return the event node of twins without one of them; None where it is its alone."""
-    others = tuple(pair for pair in event.modes if pair[0] != guard)
-    if not others:
-        return None
-    switch = event.switch if event.switch != guard else others[0][0]
-    return EventNode(switch, event.direction, event.level, others)

@@ -34,6 +34,7 @@ class WholeOrbit:
     touches = True
     strict = True
     final = True
+    last = False
     otherwise = None
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:

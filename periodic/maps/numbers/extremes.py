@@ -17,10 +17,10 @@ from periodic.results.branch import Branch
 
 @dataclass(frozen=True)
 class Extreme:
-    """The value of a functional that lies furthest up or down along the branch, and where it is.
+    """The highest or the lowest value of a functional along a branch, and where it is.
 
-    Between points the place is where the functional is stationary along the branch, found exactly; at an end
-    of the branch or of a stable stretch it is that end.
+    Between points that is where the functional is stationary along the branch, located to its tolerance; else
+    it is an end of the branch, or of a range of stable orbits.
 
     Parameters
     ----------

@@ -24,10 +24,10 @@ NAME = "stationary"
 ARCLENGTH_STEP = 1e-4
 """Arclength of the difference that stands for a derivative along the branch."""
 
-PRECISION = 1e-7
+PLACE_PRECISION = 1e-7
 """Error of the place along the branch, in steps; that of the functional is about its square."""
 
-FEW = 12
+STEPS_AGAIN = 12
 """Most steps in which the branch is followed again to its next points."""
 
 
@@ -78,8 +78,8 @@ def _between(branch: Branch, k: int, place: float) -> bool:
 def _along(task: Task, branch: Branch, k: int, functional: Functional) -> tuple[float, float] | None:
     """Follow the branch from the point before to the one behind, the derivative as a test function."""
     way = 1 if branch[k - 1].slope > 0 else -1
-    test = TestFunction(label=Label.USER, value=_slope(functional), precision=PRECISION, name=NAME)
-    control = replace(task.control or ArclengthControl(), max_points=FEW)
+    test = TestFunction(label=Label.USER, value=_slope(functional), precision=PLACE_PRECISION, name=NAME)
+    control = replace(task.control or ArclengthControl(), max_points=STEPS_AGAIN)
     run = continuation(
         task.problem,
         branch[k - 1].orbit,

@@ -23,8 +23,8 @@ FORMATS: dict[str, Callable[[Path, Content], list[Path]]] = {
 }
 """What writes a format, by the ending of its files."""
 
-FEWEST = 4
-"""Samples of a period."""
+FEWEST_SAMPLES = 4
+"""Fewest samples of a period."""
 
 
 def export(branch: Branch, path: str | Path, *, samples: int = 256) -> list[Path]:
@@ -56,7 +56,7 @@ def export(branch: Branch, path: str | Path, *, samples: int = 256) -> list[Path
     """
     if not isinstance(branch, Branch):
         raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
-    file, count = Path(path), whole("samples", samples, FEWEST)
+    file, count = Path(path), whole("samples", samples, FEWEST_SAMPLES)
     if file.suffix.lower() not in FORMATS:
         raise ValueError(f"path is {str(path)!r}; it must be a file that ends in {', '.join(FORMATS)}")
     return FORMATS[file.suffix.lower()](file, content(branch, count))

@@ -12,19 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from periodic.condensed.whole.motion import motion
+from periodic.condensed.whole.motion import displacements
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.units import prefixed
 from periodic.results.point import Point
-from periodic.system import System, linear_of
+from periodic.system import System
 
 LENGTHS = ("x", "y", "size", "depth")
 
-STEPS, MOST_NODES = 32, 20
+SHAPE_INSTANTS, MOST_NODES = 32, 20
 """Of the shape of a structure: instants in a period, and nodes."""
 
-LARGEST = 0.4
+LARGEST_MOVEMENT = 0.4
 """Magnified size of the largest movement, in units of the drawing."""
 
 
@@ -74,7 +74,7 @@ def drawing(
         "shapes": [{**s, "values": packed(s["values"])} if s["kind"] == "line" else s for s in shapes],
         "signals": {name: [*signals[name]] for name in names & set(signals)},
         "numbers": numbers,
-        "magnified": LARGEST / largest,
+        "magnified": LARGEST_MOVEMENT / largest,
         "bar": _bar(largest, units.get(shapes[0]["of"][0], "")),
     }
 
@@ -91,10 +91,8 @@ def _deflected(shape: Mapping[str, Any], points: Sequence[Point], system: System
 
 def _deflections(orbit: Orbit, nodes: Sequence[tuple[str, int]], structure: str, system: System) -> Array:
     """Displacements of nodes over a period (SI), shape (nodes, STEPS)."""
-    phases = np.linspace(0, orbit.mesh.period, STEPS, endpoint=False)
-    if linear_of(system) is not None:
-        return motion(system, orbit, [k for _, k in nodes], phases, structure)[0].T
-    return np.array([orbit[name](phases / orbit.omega) for name, _ in nodes])
+    phases = np.linspace(0, orbit.mesh.period, SHAPE_INSTANTS, endpoint=False)
+    return displacements(system, orbit, nodes, phases, structure).T
 
 
 def packed(values: Array) -> str:
@@ -107,4 +105,7 @@ def _bar(largest: float, unit: str) -> dict[str, Any]:
     power = 10.0 ** np.floor(np.log10(largest))
     length = max(step * power for step in (1, 2, 5) if step * power <= largest * (1 + 1e-9))
     shown = prefixed(unit, length)
-    return {"length": LARGEST * length / largest, "text": f"{length / shown.size:g} {shown.text}".strip()}
+    return {
+        "length": LARGEST_MOVEMENT * length / largest,
+        "text": f"{length / shown.size:g} {shown.text}".strip(),
+    }

@@ -14,7 +14,7 @@ from periodic.results.plots.units import Shown, Units
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDING = 1e-9
+NO_DAMPING = 1e-9
 """Damping ratios smaller than this are taken for none."""
 
 
@@ -74,17 +74,17 @@ def plot_campbell(
     across, up = shown.unit("speed"), shown.unit("frequency")
     axes, speeds = fresh(axes), diagram.speeds / across.size
     for k, column in enumerate(diagram.frequencies.T):
-        unstable = diagram.damping[:, k] < -ROUNDING
+        unstable = diagram.damping[:, k] < -NO_DAMPING
         axes.plot(speeds, column / up.size, color="C0", linewidth=1.6, label="natural frequencies")
         if unstable.any():
             axes.plot(speeds[unstable], column[unstable] / up.size, "x", color="C1", label="unstable")
     top = float(np.nanmax(diagram.frequencies)) / up.size
     for order in orders:
         line = order * diagram.speeds / up.size
-        seen = line <= top
-        axes.plot(speeds[seen], line[seen], color="black", linewidth=0.8, linestyle="--", label="orders")
-        if seen.any():
-            axes.annotate(f"{order:g}x", (speeds[seen][-1], line[seen][-1]), ha="right", va="bottom")
+        inside = line <= top
+        axes.plot(speeds[inside], line[inside], color="black", linewidth=0.8, linestyle="--", label="orders")
+        if inside.any():
+            axes.annotate(f"{order:g}x", (speeds[inside][-1], line[inside][-1]), ha="right", va="bottom")
         critical = diagram.critical(order)
         axes.plot(
             critical / across.size, order * critical / up.size, "o", color="black", label="critical speeds"

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 PER_SEGMENT = 8
-"""Parts that the curve is drawn in between two computed points."""
+"""Straight pieces that are drawn between two computed points."""
 
 
 def draw_curve(
@@ -23,7 +23,7 @@ def draw_curve(
     labels: tuple[str, str] = ("stable", "unstable"),
     linewidth: float = 1.8,
 ) -> str | None:
-    """Draw a curve through points, one line for each stretch of one stability, and return its colour.
+    """Draw a curve through points, one line for each run of equal stability, and return its colour.
 
     `stable` tells each segment's kind; an empty label leaves its lines out of the legend. Without a colour it
     is the next one of the axes.
@@ -51,7 +51,7 @@ def draw_curve(
 
 
 def runs(stable: np.ndarray) -> list[tuple[slice, bool]]:
-    """Cut a branch into stretches of one stability, as slices of points; neighbours share their end."""
+    """Cut a branch into runs of equal stability, as slices of points; neighbours share their end point."""
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1), len(stable)]
     return [
         (slice(begin, end + 1), bool(stable[begin]))
@@ -63,7 +63,7 @@ def runs(stable: np.ndarray) -> list[tuple[slice, bool]]:
 def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return a curve through the points, each segment in PER_SEGMENT parts.
 
-    Monotone cubics of the chord length: they turn in speed at the computed folds and nowhere else.
+    Monotone cubics in the chord length: they reverse in the parameter at the computed folds alone.
     """
     from scipy.interpolate import PchipInterpolator
 

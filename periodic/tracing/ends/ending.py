@@ -6,16 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.bifurcations.fold import VERTICAL
+from periodic.bifurcations.fold import LEAST_SLOPE
 from periodic.correction.problem import Problem
 from periodic.results.point import Point
 from periodic.results.stop import Stop
+from periodic.system.precision import EPSILON
 from periodic.tracing.ends import homoclinic
 
-ROUNDED = 1e2
+LEAST_MOTION = 1e2
 """Motion of so many units of rounding of its states is none."""
 
-SMALLER = 1e2
+COLLAPSED_BY = 1e2
 """How many times as large orbits were when the parameter was the same but for rounding."""
 
 
@@ -34,11 +35,11 @@ def vanished(problem: Problem, points: Sequence[Point]) -> bool:
     """
     last = points[-1]
     span = last.orbit.span()
-    if last.orbit.equilibrium or span > ROUNDED * np.finfo(float).eps * np.abs(last.orbit.nodes).max():
+    if last.orbit.equilibrium or span > LEAST_MOTION * EPSILON * np.abs(last.orbit.nodes).max():
         return False
     for point in reversed(points):
-        if abs(point.parameter - last.parameter) > VERTICAL * problem.scale:
+        if abs(point.parameter - last.parameter) > LEAST_SLOPE * problem.scale:
             return False
-        if point.orbit.span() > SMALLER * span:
+        if point.orbit.span() > COLLAPSED_BY * span:
             return True
     return False

@@ -14,16 +14,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.bifurcations.fold import VERTICAL
+from periodic.bifurcations.fold import LEAST_SLOPE
 from periodic.bifurcations.twoparameter import codim2
 from periodic.conditions.phase import PhaseCondition
 from periodic.correction.problem import Problem
 from periodic.results.point import Point
 
-LONGER = 10.0
+LONGER_PERIOD = 10.0
 """How many times as long orbits have become since the parameter changed by more than its error."""
 
-STILL = 1e-3
+LEAST_SPEED = 1e-3
 """Least speed on such an orbit, in peaks to peak a rad: a canard is slow, but does not stand still."""
 
 
@@ -42,14 +42,14 @@ def period(problem: Problem, points: Sequence[Point]) -> float | None:
         return None
     omega, last = problem.others[at[0]], points[-1]
     speeds = np.linalg.norm(last.orbit.node_rates, axis=1)
-    if speeds.min() > STILL * last.orbit.span():
+    if speeds.min() > LEAST_SPEED * last.orbit.span():
         return None
     longest = _period(last, omega)
     for point in reversed(points):
         blur = max(p.error.blur(p.parameter, problem.scale) for p in (point, last))
-        if abs(point.parameter - last.parameter) > max(blur, VERTICAL * problem.scale):
+        if abs(point.parameter - last.parameter) > max(blur, LEAST_SLOPE * problem.scale):
             return None
-        if longest > LONGER * _period(point, omega):
+        if longest > LONGER_PERIOD * _period(point, omega):
             return longest
     return None
 

@@ -14,7 +14,7 @@ from typing import cast
 import numpy as np
 
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.testfunction import LEFT, TestFunction
+from periodic.bifurcations.testfunction import PARABOLA_LEFT, TestFunction
 from periodic.conditions.functionals import Functional, Smooth, apart
 from periodic.correction.outcome import FAILURES
 from periodic.correction.predictor import difference
@@ -61,7 +61,7 @@ def comes_back(ends: tuple[float, float], rates: tuple[float, float]) -> bool:
     cubic = np.polynomial.Polynomial([a, slope, 3 * (b - a) - 2 * slope - last, 2 * (a - b) + slope + last])
     flat = np.asarray(cubic.deriv().roots(), dtype=np.complex128)
     inside = flat.real[(flat.imag == 0) & (flat.real > 0) & (flat.real < 1)]
-    return bool(cubic(inside).min(initial=np.inf) < LEFT * min(a, b))
+    return bool(cubic(inside).min(initial=np.inf) < PARABOLA_LEFT * min(a, b))
 
 
 def _rate_of(functional: Smooth) -> Callable[[Solution], float]:

@@ -14,21 +14,20 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
+from periodic.system.precision import CONVERGED
 
-LONGER = 1.2
+FARTHEST_AHEAD = 1.2
 """A change of pattern that lies within so many steps is where the step ends."""
-
-LAST_INCREMENT = 1e-8
-"""Newton's last increment there, before one more step."""
 
 CHANGE_ITERATIONS = 8
 """Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
 
 FARTHEST_BEYOND = 0.02
-"""Distance of the orbits on either side of a change, in the metric of continuation, at the most."""
+"""Distance of the orbits on either side of a change, in the metric of continuation, at the most,"""
 
-STANDING = 1e-8
-"""A change that is no farther than this part of a step is at its base."""
+ACROSS = 2.0
+"""... or in the last step, in which what ends has become half as large at least: beyond, two events that have
+changed places are as far apart again."""
 
 MESHES_BEYOND = 4
 """How often the mesh of the orbit beyond a change is made anew."""
@@ -50,7 +49,7 @@ def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
     """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
     guess = tangent(solver.problem, base, ds)
     change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
-    if change is None or not change.strict or change.part > STANDING:
+    if change is None or not change.strict or change.part > CONVERGED:
         return None
     return Reached(base, 0.0, change)
 
@@ -67,9 +66,9 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
-        if not 0 < along <= LONGER * ds:
+        if not 0 < along <= FARTHEST_AHEAD * ds:
             return None
-        if _comes_back(found, change, along <= STANDING * ds):
+        if _comes_back(found, change, along <= CONVERGED * ds):
             return None
         earlier = method.change(system, base.orbit, found.orbit)
         if earlier is None or (not change.strict and not earlier.strict):
@@ -98,7 +97,7 @@ def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> 
     """Solve on a condition so closely that rounding decides on which side of its level a switch is."""
     newton = solver.tolerance.newton
     most = min(most or newton.max_iterations, newton.max_iterations)
-    close = replace(newton, tolerance=min(LAST_INCREMENT, newton.tolerance), close=0.0, max_iterations=most)
+    close = replace(newton, tolerance=min(CONVERGED, newton.tolerance), close=0.0, max_iterations=most)
     return solver.on(guess, held, close)
 
 
@@ -157,10 +156,16 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
     moved = old if way.parameter is None else replace(old, parameter=way.parameter)
     for guess in solver.transfers(moved, way.mesh, way.phases):
         new = _accurate(solver, _held(solver, guess, Held(guess, way.condition)), way.condition)
-        if not new.ok or solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
+        if not new.ok or np.isinf(new.error.motion):  # it violates its word
+            continue
+        if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
-        if apart <= FARTHEST_BEYOND and problem.low <= new.value <= problem.high:
+        swaps = not (at.change.touches or way.touches)  # beside what touches a fold may be near
+        if (
+            apart <= (max(FARTHEST_BEYOND, ACROSS * at.ds) if swaps else FARTHEST_BEYOND)
+            and problem.low <= new.value <= problem.high
+        ):
             return Crossed(new, apart, way.touches)
     return None
 

@@ -1,4 +1,4 @@
-"""What bounds a step: how far the branch may turn and bend within it, and multipliers wind."""
+"""Bounds of a step: how far the branch may turn and bend in it, and how far multipliers may move."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.bifurcations.twoparameter import codim2
-from periodic.correction.error import LEAST_SPAN
 from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
+from periodic.orbit.orbit import LEAST_SPAN
 from periodic.stability.multipliers import Stability
-from periodic.stability.winding import Motion, turned
+from periodic.stability.winding import Motion, rotated
 from periodic.system import jumps_of, resets_of
 from periodic.tracing.steps.stepsize import ArclengthControl
 
 
 @dataclass(frozen=True)
 class BoundRatio:
-    """Turning, bending or winding of a step as a part of its bound; about linear in the length of the step.
+    """How far a step turns, bends or moves the multipliers, over its bound; about linear in its length.
 
-    size: of the step. ahead: expected of the next one, if it is as long. why: what is wrong with a step whose
-    ratio exceeds 1.
+    size: the ratio of this step. ahead: the one expected of the next step, if it is as long. why: the reason
+    for which a step is rejected whose ratio exceeds 1.
     """
 
     size: float
@@ -35,7 +35,7 @@ class BoundRatio:
 def bound_ratios(
     base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
 ) -> Iterator[BoundRatio]:
-    """Yield what a step between two solutions on one mesh makes of each of its bounds, the cheapest first."""
+    """Yield the ratio of a step, between two solutions on one mesh, to each bound, the cheapest first."""
     metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
     onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
     angle = _angle(base.tangent.dot(onward, *metric), control.turn)
@@ -44,8 +44,8 @@ def bound_ratios(
     bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
     yield BoundRatio(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
-        turn = turned(_motion(base, ds), _motion(new, ds), control.winding)
-        yield BoundRatio(turn.ratio, turn.ahead, "a resonance may pass unseen in the step")
+        rotation = rotated(_motion(base, ds), _motion(new, ds), control.winding)
+        yield BoundRatio(rotation.ratio, rotation.ahead, "a resonance may pass unseen in the step")
     angle = _angle(codim2.alignment(base, new), control.turn)
     yield BoundRatio(angle, angle, "the critical motion turns too far for the step")
 
@@ -60,7 +60,7 @@ def _angle(cosine: float, least: float) -> float:
 
 
 def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
-    """How far the step's end lies from where the mean of the tangents at its ends leads."""
+    """Distance of the step's end from its begin + ds times the mean of the tangents at both."""
     problem = base.problem
     mean = (base.tangent + onward).scaled(-ds / 2)
     way = difference(problem, base.orbit, new.orbit)
@@ -74,10 +74,11 @@ def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
     )
     metric = base.orbit, problem.units(base.orbit), size_of(base.orbit)
     moving = bend.dot(bend, *metric)
-    jumping = resets_of(problem.system) or jumps_of(problem.system)  # a node passes what jumps at fixed tau
+    jumping = resets_of(problem.system) or jumps_of(problem.system)  # then states jump at fixed tau
     if not len(base.orbit.mesh.exact_ends) or jumping:
         return float(np.sqrt(moving))
-    # an excursion's end moves as a root does, the motion at fixed tau smoothly; or, if hard, with its end
+    # The end of an excursion moves as the root of the parameter, the states at fixed tau smoothly; beside a
+    # hard stop they move with it. The smaller of the two distances is the one without the root.
     at = base.orbit.mesh.nodes(base.orbit.phases)
     bend = replace(bend, profile=new.orbit.state(at) - base.orbit.nodes + mean.profile)
     return float(np.sqrt(min(moving, bend.dot(bend, *metric))))

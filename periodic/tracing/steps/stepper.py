@@ -1,7 +1,7 @@
-"""One step of a continuation: its end on a mesh that suits it, or why it is rejected; the mesh of the next.
+"""One step of a continuation: its end on a mesh made for it, or why it is rejected; the mesh of the next.
 
 A step is rejected where Newton fails, where its end is not where its two tangents lead (a jump to another
-branch), where the tangent turns too much, where an event node is past the end of its excursion, or where
+branch), where the tangent turns by too much, where an orbit violates the word of its event nodes, or where
 the error estimate exceeds the tolerance on a mesh made for the new orbit.
 """
 
@@ -27,6 +27,10 @@ MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
 
 
+class WordError(RejectedError):
+    """A step to an orbit that violates its word."""
+
+
 class BeyondError(RejectedError):
     """A step to an orbit that the method's finest mesh does not resolve."""
 
@@ -34,7 +38,7 @@ class BeyondError(RejectedError):
 @dataclass(frozen=True)
 class Attempt:
     """A step that was tried: the base on the mesh of its end, the end, its length, and the largest ratio to a
-    bound that a step as long would have next."""
+    bound that is expected of a next step of that length."""
 
     base: Solution
     new: Solution
@@ -62,7 +66,7 @@ class Stepper:
         """Take one step.
 
         The mesh is made anew up to `meshes` times, while it changes; where then only the multipliers' error
-        still exceeds its bound the point stands, and tells it.
+        exceeds its bound, the step is accepted and the point says so.
 
         Parameters
         ----------
@@ -79,7 +83,7 @@ class Stepper:
         Raises
         ------
         RejectedError
-            Where it leads to no orbit, or to one that is not believed.
+            Where it leads to no orbit, or to one that fails a check.
         """
         tolerance = self.solver.tolerance.orbit
         for left in reversed(range(self.control.meshes + 1)):
@@ -87,6 +91,8 @@ class Stepper:
             new = tried.new
             if new.error.curable <= tolerance:
                 return tried
+            if not new.refinement.mendable:
+                raise WordError(new.refinement.shortfall)
             if collapsed(base.orbit, new):
                 raise RejectedError("the orbit shrinks to nothing in one step")
             mesh = new.refinement.refined()
@@ -103,16 +109,15 @@ class Stepper:
         """Solve a step away, or where the pattern of events changes before that. Raises RejectedError."""
         solver, control = self.solver, self.control
         new, change = self._end(base, ds)
-        if change is not None:
-            ds = change.ds
+        length = ds if change is None else change.ds
         furthest = 0.0
-        for ratio in bound_ratios(base, new, ds, control, solver.tolerance.orbit):
+        for ratio in bound_ratios(base, new, length, control, solver.tolerance.orbit):
             if not ratio.size <= 1:
                 raise RejectedError(ratio.why, control.shorter(ratio.size))
             furthest = max(furthest, ratio.ahead)
         if new.orbit.equilibrium:
-            self._check_middle(base, new, ds)
-        return Attempt(base, new, ds, furthest, change)
+            self._check_middle(base, new, length)
+        return Attempt(base, new, length, furthest, change)
 
     def _check_middle(self, base: Solution, new: Solution, ds: float) -> None:
         """Reject a step of equilibria round a corner where branches cross: its middle is off the cubic."""
@@ -149,7 +154,7 @@ class Stepper:
         return replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
 
     def _on_mesh(self, base: Solution, mesh: Mesh) -> Solution:
-        """Solve the base again on a mesh that suits the new orbit, with the base's own event nodes."""
+        """Solve the base again on the mesh made for the new orbit, with the base's own event nodes."""
         moved = carried(self.solver, base, mesh, base.orbit.phases)
         if not moved.ok:
             raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
@@ -158,7 +163,7 @@ class Stepper:
         return moved
 
     def remeshed(self, new: Solution, due: bool) -> Solution:
-        """A solution on a mesh for the step from it: right event nodes, an error inside its window.
+        """Return a solution on the mesh of the next step: its event nodes, an error within bounds.
 
         Parameters
         ----------

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 import periodic as per
 import symbolic as sym
+from periodic.correction.error import AT_WORST
 from periodic.orbit.scheme import Array
-from periodic.results.point import NOISE
 from periodic.system import index_of
 
 Spectrum = NDArray[np.complex128]
@@ -42,7 +42,7 @@ RANK = 1e-9
 PHASES = np.linspace(0, 2 * np.pi, 512, endpoint=False)
 
 TOLD = 1e-3
-"""Error of the multipliers' sums that no estimate needs to tell; larger ones it must, within NOISE."""
+"""Error of the multipliers' sums that no estimate needs to tell; larger ones it must, within AT_WORST."""
 
 SLACK = 10.0
 """How many tolerances, or estimates, a true error may have to count as confirmed."""
@@ -130,7 +130,7 @@ def compared(point: per.Point, error: float, multipliers: Spectrum, by: str) -> 
     scale = max(1.0, true)
     first, second = (abs(np.sum(point.multipliers**k) - np.sum(multipliers**k)) / scale**k for k in (1, 2))
     off = float(max(first, second / 2)) if point.trivial is None else point.trivial
-    told = off <= max(TOLD, NOISE * point.error.multiplier)
+    told = off <= max(TOLD, AT_WORST * point.error.multiplier)
     unsure = abs(ours - 1) <= max(point.floor, MARGINAL) or point.label.critical or point.trivial is not None
     stable = unsure or (ours < 1) == (true < 1)
     return Checked(

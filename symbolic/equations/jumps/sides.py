@@ -16,7 +16,8 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.jumps.operations import Operations
-from symbolic.equations.jumps.sliding import Slide, sliding
+from symbolic.equations.jumps.relays import in_modes
+from symbolic.equations.jumps.sliding import EQUAL, Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples
 
@@ -24,25 +25,24 @@ ZERO_ITERATIONS = 20
 """Newton steps from a sample point to the zero of a switch."""
 
 ZERO_VALUE = 1e-10
-"""Value of a switch that is as good as 0."""
-
-EQUAL = 1e-8
-"""Difference of residuals, relative to them, that is none."""
+"""Value of a switch that counts as 0."""
 
 
 @dataclass(frozen=True)
 class Sided:
     """The residual with sides: a symbol each for the switches with the indices `jumps`, among them sliders.
 
-    slides: those along which a motion can slide, with the two functions that pass 0 where it ends: s' on the
-    positive side and on the negative one, the other jumps on their given sides; between them the motion is
-    held.
+    slides: the switches along which a motion can slide, each with the two functions that pass 0 where sliding
+    ends: s' with the equations of the positive side and with those of the negative one, other jumps being on
+    their given sides. The motion is held as long as 0 lies between the two. alone: those at which
+    what is held all along is determined without a place.
     """
 
     residual: ca.SX
     side: ca.SX
     jumps: tuple[int, ...]
     slides: tuple[Slide, ...] = ()
+    alone: tuple[int, ...] = ()
 
 
 def sided(
@@ -53,6 +53,7 @@ def sided(
     moving: ca.SX | None = None,
     sliders: tuple[int, ...] = (),
     places: Mapping[int, ca.SX] | None = None,
+    relays: Mapping[int, tuple[ca.SX, ca.SX]] | None = None,
 ) -> Sided:
     """Return a residual with the side of every jump as an argument.
 
@@ -65,44 +66,56 @@ def sided(
     excluded : tuple of int
         Switches that are no jumps of the equations: impacts.
     moving : casadi.SX, optional
-        Rows that tell all rates, where those of the residual do not.
+        Rows that determine all rates, where those of the residual do not.
     sliders : tuple of int
-        Switches that have a side besides.
+        Further switches that have a side.
     places : mapping of int to casadi.SX, optional
-        Of the switches at which something may be held all along, how far it is from where it is.
+        Of switches at which something may be held all along: its distance from the place there.
+    relays : mapping of int to (casadi.SX, casadi.SX), optional
+        Of relays, by their guard: the symbol that stands for one in all of these, and its side.
 
     Returns
     -------
     Sided
         With no sides where nothing jumps.
     """
-    rows = residual if moving is None else ca.vertcat(residual, moving)
-    count = residual.numel()
-    operations = Operations(rows, _owned(packed, residual, switches, (*excluded, *sliders)))
+    given, count, none = relays or {}, residual.numel(), ca.SX(0, 1)
+    rows = in_modes(residual if moving is None else ca.vertcat(residual, moving), switches, given)
+    guards, own = in_modes(switches, switches, given), (*sliders, *given)
+    decided = ca.vertcat(none, *[side for _, side in given.values()])
+    operations = Operations(rows, _owned(packed, rows, guards, (*excluded, *own), decided))
+    symbols = {k: given[k][1] if k in given else ca.SX.sym(f"side_{k}") for k in range(switches.numel())}
     every = operations.switches
-    side = ca.SX.sym("side", len(every))
-    marked = operations.on({k: side[i] for i, k in enumerate(every)})[:count]
-    jumps = [k for i, k in enumerate(every) if _jumps(packed, marked, side, i, switches[k])]
-    columns = sorted({*jumps, *sliders})
-    kept = ca.SX.sym("side", len(columns))
-    sides = {k: kept[columns.index(k)] if k in jumps else ca.SX(0) for k in every}
+    marked = operations.on(symbols)[:count]
+    side = ca.vertcat(none, *symbols.values())
+    plain = _undecided(guards, decided)
+    jumps = [k for k in every if _jumps(packed, marked, side, k, plain[k])]
+    columns = sorted({*jumps, *own})
+    sides = {k: symbols[k] if k in jumps or k in given else ca.SX(0) for k in (*every, *given)}
     telling = slice(0 if moving is None else count, rows.numel())
-    slid, slides = sliding(packed, operations, sides, jumps, switches, telling, places or {})
-    return Sided(slid[:count], kept, tuple(columns), slides)
+    slid, slides, alone = sliding(packed, operations, sides, jumps, guards, telling, places or {})
+    return Sided(
+        slid[:count], ca.vertcat(none, *[symbols[k] for k in columns]), tuple(columns), slides, alone
+    )
+
+
+def _undecided(rows: ca.SX, sides: ca.SX) -> ca.SX:
+    """Rows where the state decides of relays."""
+    return ca.substitute(rows, sides, ca.SX.zeros(sides.numel()))
 
 
 def _owned(
-    packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...]
+    packed: Packed, residual: ca.SX, switches: ca.SX, excluded: tuple[int, ...], decided: ca.SX
 ) -> dict[int, tuple[ca.SX, int, float]]:
     """Jumping operations by hash, each with the switch that its argument is a multiple of, and the sign."""
-    given = ca.vertcat(packed.state, packed.phase, packed.parameter)
+    given = ca.vertcat(packed.state, packed.phase, packed.parameter, decided)
     usable = {given[i].element_hash() for i in range(given.numel())}
     operations = [node for node in nodes(residual) if node.op() in JUMPING]
     operations = [n for n in operations if {s.element_hash() for s in ca.symvar(n)} <= usable]
     if not operations or not switches.numel():
         return {}
     arguments = [n.dep(0) if n.op() == ca.OP_SIGN else n.dep(0) - n.dep(1) for n in operations]
-    values = Samples(packed).rows(ca.vertcat(*arguments, switches))
+    values = Samples(packed).rows(_undecided(ca.vertcat(*arguments, switches), decided))
     found = {}
     for node, own in zip(operations, values, strict=False):
         for k, other in enumerate(values[len(operations) :]):

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from symbolic.equations.jumps.isolated import isolated
 from symbolic.equations.jumps.operations import Operations
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples
@@ -39,7 +40,7 @@ def sliding(
     switches: ca.SX,
     telling: slice,
     places: Mapping[int, ca.SX],
-) -> tuple[ca.SX, tuple[Slide, ...]]:
+) -> tuple[ca.SX, tuple[Slide, ...], tuple[int, ...]]:
     """Return rows on sides of their jumps, sliding along them among these, and where sliding ends.
 
     Parameters
@@ -65,20 +66,24 @@ def sliding(
         On the sides 1, -1, STUCK, or 0 where the state decides.
     slides : tuple of Slide
         Those along which motions slide.
+    alone : tuple of int
+        Those of them along which a motion that slides all the time is determined, without a place.
     """
     plain, chosen = operations.on(sides), list(jumps)
     while chosen:
         forces = _forces(packed, operations, sides, chosen, telling)
         if forces is None:
-            return plain, ()
+            return plain, (), ()
         pull, push = forces.along(packed, switches[chosen], telling)
         left = [k for i, k in enumerate(chosen) if _attracts(packed, pull[i, i], forces.sigma, sides)]
         left = [k for k in left if k not in forces.crossed] if left == chosen else left
         if left == chosen:
             drawn = [_drawn(switches[k], places.get(k)) for k in chosen]
-            return _slid(packed, plain, sides, switches, chosen, forces, pull, push, drawn)
+            rows, slides = _slid(packed, plain, sides, switches, chosen, forces, pull, push, drawn)
+            free = [k for k in chosen if k not in places]
+            return rows, slides, tuple(k for k in free if isolated(packed, rows[telling], sides, k))
         chosen = left
-    return plain, ()
+    return plain, (), ()
 
 
 @dataclass(frozen=True)
@@ -127,7 +132,7 @@ def _unit(count: int, i: int) -> ca.SX:
 
 
 def _attracts(packed: Packed, pull: ca.SX, sigma: ca.SX, sides: Mapping[int, ca.SX]) -> bool:
-    """Whether both sides lead back to a jump: s' falls from one to the other, and never rises."""
+    """Whether both sides may lead back to a jump: somewhere s' falls from one to the other."""
     side = ca.vertcat(ca.SX(0, 1), *[s for s in sides.values() if s.is_symbolic()])
     free = ca.vertcat(sigma, side)
     for way in (1.0, -1.0):
@@ -135,14 +140,17 @@ def _attracts(packed: Packed, pull: ca.SX, sigma: ca.SX, sides: Mapping[int, ca.
         values = np.concatenate(Samples(packed).rows(ca.substitute(pull, free, given))[0], axis=None)
         values = values[np.isfinite(values)]
         largest = np.abs(values).max(initial=0.0)
-        if largest <= EQUAL or values.min() < -EQUAL * largest:
+        if largest <= EQUAL or values.max() <= EQUAL * largest:
             return False
     return True
 
 
 def _drawn(switch: ca.SX, place: ca.SX | None) -> ca.SX:
-    """How s falls where it is HELD: s' = -2 a s - a^2 u with u' = s, so that s and u vanish on an orbit."""
-    return ca.SX(0) if place is None else 2 * RETURN * switch + RETURN**2 * place
+    """How s falls where it is HELD: s' = -2 a s - a^2 u with u' = s, so that s and u vanish on an orbit.
+
+    Without a place s' = -a s.
+    """
+    return RETURN * switch if place is None else 2 * RETURN * switch + RETURN**2 * place
 
 
 def _slid(

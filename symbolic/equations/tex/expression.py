@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import casadi as ca
 
-from symbolic.equations.branches import NOTHING, nodes
+from symbolic.equations.branches import STANDS_FOR_ZERO, nodes
 from symbolic.equations.tex.products import Product, Sum, atom, one, parenthesised, scaled, written
 
 Leaf = Callable[[ca.SX], Sum]
@@ -88,7 +88,7 @@ def sums(expressions: ca.SX, leaf: Leaf) -> list[Sum]:
     def of(node: ca.SX) -> Sum:
         if node.is_constant():
             number = float(node)
-            return [] if abs(number) < NOTHING else [Product(number)]
+            return [] if abs(number) < STANDS_FOR_ZERO else [Product(number)]
         return leaf(node) if node.is_symbolic() else found[node.element_hash()]
 
     for node in nodes(expressions):

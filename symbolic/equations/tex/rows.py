@@ -14,7 +14,7 @@ from symbolic.equations.tex.names import dotted, tex
 from symbolic.equations.tex.products import Product, Sum, atom, one, scaled, written
 
 LONGEST_ROW = 4000
-"""Letters of an equation that are written out."""
+"""Longest equation (letters) that is written out."""
 
 OMEGA = r"\omega"
 
@@ -49,7 +49,7 @@ class Rows:
     Parameters
     ----------
     assembly : Assembly
-        The workbench of a model.
+        The assembly of a model.
     """
 
     def __init__(self, assembly: Assembly) -> None:
@@ -74,7 +74,7 @@ class Rows:
                 yield symbol, atom(rf"{function}\left({_times(harmonic)}{angle}\right)")
 
     @property
-    def _turning(self) -> str:
+    def _frequency(self) -> str:
         """The name of the one parameter that is the frequency of the excitation; empty if there is none."""
         frequency = self.assembly.excitation.frequency
         if frequency is None or not frequency.is_symbolic():
@@ -85,13 +85,13 @@ class Rows:
 
     @property
     def _angle(self) -> str:
-        return rf"{self._turning} \, t" if self._turning else r"\theta"
+        return rf"{self._frequency} \, t" if self._frequency else r"\theta"
 
     def every(self) -> list[tuple[str, str]]:
         """Return both sides of all equations, and what stands in them for the frequency."""
         rows = [*self._rows()]
         frequency = self.assembly.excitation.frequency
-        if frequency is not None and any(OMEGA in right for _, right in rows) and self._turning != OMEGA:
+        if frequency is not None and any(OMEGA in right for _, right in rows) and self._frequency != OMEGA:
             pace = float(self.assembly.excitation.fundamental)
             rows.append((OMEGA, written(scaled(self._sum(frequency), pace))))
         return rows
@@ -127,7 +127,7 @@ class Rows:
 
     def _frequencies(self) -> Iterator[tuple[str, str]]:
         frequency = self.assembly.excitation.frequency
-        if frequency is not None and not self._turning:
+        if frequency is not None and not self._frequency:
             yield r"\dot{\theta}", written(self._sum(frequency))
 
     def _sum(self, expression: ca.SX) -> Sum:

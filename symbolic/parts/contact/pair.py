@@ -146,8 +146,8 @@ class Junction:
         for q in self.pair.coordinates:
             assembly.suggest_scale(q, delta0)
         displacement = sum((assembly.motion(q).position.symbol for q in self.pair.coordinates), ca.SX(0))
-        felt = self.profile if self.ripple is None else self.profile * (1 - self.ripple(self.preload))
-        return Loaded(self.pair.name, self.preload, law, felt - displacement)
+        transmitted = self.profile if self.ripple is None else self.profile * (1 - self.ripple(self.preload))
+        return Loaded(self.pair.name, self.preload, law, transmitted - displacement)
 
     def _damping(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """2 zeta omega0 mu dX/dt, with omega0^2 = n Q / (delta0 mu), mu the reduced mass of the bodies."""

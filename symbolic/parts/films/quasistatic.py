@@ -15,7 +15,7 @@ from symbolic.parts.films.softplus import REST_XI, log_softplus, move_xi, softpl
 from symbolic.parts.films.squeeze import describe
 from symbolic.parts.films.thickness import ThicknessLaw
 
-LOST = 1e-3
+CONTACT_LOST = 1e-3
 """Deflection, relative to the steady one, that marks loss of contact under a film without squeeze."""
 
 
@@ -55,6 +55,6 @@ class QuasistaticFilm(Part):
         gap = 1 + (contact.compression - h0) / contact.delta0
         assembly.algebraic_rows.append(softplus(xi) - gap - h / contact.delta0)
         describe(assembly, contact, h, xi)
-        lifted = h0 * ca.exp(-contact.law.log_load(ca.SX(math.log(LOST))) / beta) / contact.delta0
-        assembly.switch(f"{contact.name}: lift-off", gap + lifted - LOST, 0)
+        lifted = h0 * ca.exp(-contact.law.log_load(ca.SX(math.log(CONTACT_LOST))) / beta) / contact.delta0
+        assembly.switch(f"{contact.name}: lift-off", gap + lifted - CONTACT_LOST, 0)
         return contact.preload * ca.exp(log_load)

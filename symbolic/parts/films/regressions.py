@@ -7,6 +7,7 @@ They use the groups of Mehdigoli et al. (1990), eq. (6), with a compliance E_x:
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -31,8 +32,8 @@ class Compliance(Enum):
     it over both discs, as Hertz theory does; REDUCED is 1/E' of Hamrock & Dowson.
     """
 
-    ONE_BODY = 0.3183098861837907
-    TWO_BODY = 0.6366197723675814
+    ONE_BODY = 1 / math.pi
+    TWO_BODY = 2 / math.pi
     REDUCED = 1.0
 
 

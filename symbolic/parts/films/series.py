@@ -38,8 +38,8 @@ class SeriesFilm:
     typical : float
         A load in N from which the equation is solved; the result does not depend on it.
     squeeze : float or Parameter, optional
-        s of h = H(W) exp(-s (dh/dt)/u), H the law's steady thickness and u the entraining speed, which the
-        part knows that holds the film: 123 for points (Mostofi 1981), 96.775 for lines. Without it the film
+        s of h = H(W) exp(-s (dh/dt)/u), H the law's steady thickness and u the entraining speed, which
+        the bearing or gear gives: 123 for points (Mostofi 1981), 96.775 for lines. Without it the film
         has no state.
 
     Raises
@@ -71,7 +71,7 @@ class SeriesFilm:
         Parameters
         ----------
         assembly : Assembly
-            The workbench of the model.
+            The assembly of the model.
         contact : ContactLaw
             F.
         approach : casadi.SX
@@ -121,7 +121,7 @@ def _balance(assembly: Assembly, delta: ca.SX, film: ca.SX, approach: ca.SX) -> 
 
 
 def _solved(rising: ca.SX, y: ca.SX) -> ca.SX:
-    """Where a function of y that rises nearly along a line is zero."""
+    """The zero of a function of y that is nearly linear."""
     step = y - rising / ca.jacobian(rising, y)
     found = ca.SX(0)
     for _ in range(LOAD_ITERATIONS):

@@ -13,7 +13,7 @@ REST_XI = math.log(math.e - 1)
 """xi at rest, where s(xi) = 1."""
 
 LEAST_LEFT = 0.1
-"""Part of the deflection that one Newton step leaves, as long as the step is taken in the deflection."""
+"""Least part of the deflection that a Newton step in the deflection leaves; a larger step is taken in xi."""
 
 EMPTY = -27.0
 """xi below which the deflection (1e-12 of the steady one) no longer matters to geometry."""

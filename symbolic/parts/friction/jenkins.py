@@ -17,7 +17,7 @@ from symbolic.parts.friction.load import NormalLoad, check_limit, limit_of
 from symbolic.parts.mechanics.ends import deflection, resist
 
 CREEP = 1e-2
-"""Default of the angle within which a slider comes to slip, in rad of the excitation's phase."""
+"""Angle (rad of the phase) in the row of an exact slider where no mode is given, as in a guess at rest."""
 
 LEAK = 1e-4
 """Part of its force by which a stuck slider yields, per rad of the phase: else its place is anything."""
@@ -27,15 +27,19 @@ LEAK = 1e-4
 class Jenkins(Part):
     """Elastic slider: force -f, f = k (u - z), a spring in series with a slider that gives way at F.
 
+        dz/dtau = 0 while it is held, |f| < F;  f = F or -F while it is carried, until du/dtau turns
+
+    One state z, the place of the slider, and two events in each slip, where it begins and where it ends. A
+    slider that never slips may stick anywhere: a parameter "place of z" says where.
+
+    With creep it is smooth but for kinks, and may be followed where modes are not, as by harmonic balance:
+
         k dz/dtau = (max(f - F, 0) + min(f + F, 0))/creep + LEAK f
 
-    One state z, the place of the slider, and two kinks in each slip, where it begins and where it ends. The
-    slider is Coulomb's but for the angle `creep` of the phase within which it comes to slip: f exceeds F by
-    creep k du/dtau, at any frequency (its loops do not depend on the rate, as Coulomb's do not). A stuck
-    slider may stick anywhere; the leak of 1e-4 per rad lets it settle where its mean force is 0.
-
-    Without creep the slider is exact: held, dz/dtau = 0, while |f| < F, and carried along with f = F or -F
-    until du/dtau turns. It has no leak then.
+    It then comes to slip within the angle `creep` of the phase: f exceeds F by creep k du/dtau, at any
+    frequency (its loops do not depend on the rate, as Coulomb's do not). That is an error of the model, which
+    no estimate of the orbit sees: 1e-2 takes 2.4 % of the peak of a resonance that sliders damp. The leak of
+    1e-4 per rad lets a stuck slider settle where its mean force is 0.
 
     Parameters
     ----------
@@ -48,7 +52,7 @@ class Jenkins(Part):
     to : Coordinate, optional
         The coordinate r at the other end, u = q - r; the ground where there is none.
     creep : float or Parameter, optional
-        In rad of the phase; None for the exact slider.
+        In rad of the phase; the exact slider where there is none.
 
     Raises
     ------
@@ -64,7 +68,7 @@ class Jenkins(Part):
     stiffness: Value
     limit: Value | NormalLoad
     to: Coordinate | None = None
-    creep: Value | None = CREEP
+    creep: Value | None = None
 
     def __post_init__(self) -> None:
         above_zero("stiffness of a slider", self.stiffness)
@@ -80,6 +84,8 @@ class Jenkins(Part):
 @dataclass(frozen=True)
 class Iwan(Part):
     """Elastic sliders side by side, the i-th of limit F_i: a joint that slips by degrees.
+
+    Sliders of equal F_i/k_i slip together: as exact sliders they are one, of the sums of both.
 
     Parameters
     ----------
@@ -109,7 +115,7 @@ class Iwan(Part):
     stiffness: Value | Sequence[Value]
     limits: Sequence[Value | NormalLoad]
     to: Coordinate | None = None
-    creep: Value | None = CREEP
+    creep: Value | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.stiffness, list | tuple):
@@ -127,17 +133,31 @@ class Iwan(Part):
 
     def contribute(self, assembly: Assembly) -> None:
         """Add the sliders."""
-        for count, (k, value) in enumerate(zip(self._each(assembly), self.limits, strict=True), 1):
-            slide(assembly, self, k, limit_of(assembly, value, f"F_slider_{count}"), f"z{count}")
+        for count, same in enumerate(self._together(), 1):
+            k = self._stiffness(assembly, same, count)
+            limit = self.limits[same[0]]
+            if len(same) > 1:
+                limit = sum(cast(float, self.limits[i]) for i in same)
+            slide(assembly, self, k, limit_of(assembly, limit, f"F_slider_{count}"), f"z{count}")
 
-    def _each(self, assembly: Assembly) -> list[ca.SX]:
-        """The stiffnesses of all sliders."""
+    def _together(self) -> list[list[int]]:
+        """The sliders that are one: of equal numbers F_i/k_i, without creep."""
+        found = dict[object, list[int]]()
+        share = self.stiffness if isinstance(self.stiffness, tuple) else (1.0,) * len(self.limits)
+        for i, (k, limit) in enumerate(zip(share, self.limits, strict=True)):
+            plain = self.creep is None and isinstance(k, int | float) and isinstance(limit, int | float)
+            found.setdefault(cast(float, limit) / cast(float, k) if plain else (i,), []).append(i)
+        return list(found.values())
+
+    def _stiffness(self, assembly: Assembly, same: Sequence[int], count: int) -> ca.SX:
+        """The stiffness of sliders that are one."""
         if isinstance(self.stiffness, tuple):
-            each = enumerate(self.stiffness, 1)
-            return [assembly.parameter(k, f"k_slider_{count}", "N/m", POSITIVE) for count, k in each]
-        count = len(self.limits)
+            own = self.stiffness[same[0]]
+            if len(same) > 1:
+                own = sum(cast(float, self.stiffness[i]) for i in same)
+            return assembly.parameter(own, f"k_slider_{count}", "N/m", POSITIVE)
         together = assembly.parameter(cast(Value, self.stiffness), "k_sliders", "N/m", POSITIVE)
-        return [together / count] * count
+        return together * len(same) / len(self.limits)
 
 
 def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name: str) -> None:
@@ -148,14 +168,14 @@ def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name
     creep = ca.SX(CREEP)
     if part.creep is not None:
         creep = assembly.parameter(part.creep, "creep", "rad", POSITIVE)
-    z, strain = assembly.state(name, q.unit, scale, ca.SX(0)), deflection(assembly, q, to)
-    force = k * (strain - z.symbol)
+    z, elongation = assembly.state(name, q.unit, scale, ca.SX(0)), deflection(assembly, q, to)
+    force = k * (elongation - z.symbol)
     over = ca.fmax(force - limit, 0) + ca.fmin(force + limit, 0)
     resist(assembly, q, to, force)
     assembly.output(f"force of {name}", "N", force)
     row = (creep * (z.derivative - LEAK * force / k) - over / k) / scale
     if part.creep is None:
-        assembly.slider(name, z, row, strain, limit / k)
+        assembly.slider(name, z, row, elongation, limit / k)
         return
     assembly.differential_rows.append(row)
     assembly.switch(f"{name}: f = F", (force - limit) / (k * scale), 0)

@@ -10,9 +10,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.interval import NOT_NEGATIVE, POSITIVE
 from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate, Value, above_zero, apart, not_negative
-
-CENTRE = 1e-12
-"""Radius, of the clearance, within which the direction of the contact fades."""
+from symbolic.parts.rotors.radius import radius
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,7 @@ class Rub(Part):
         g = assembly.parameter(self.clearance, "clearance", self.x.unit, POSITIVE)
         mu = assembly.parameter(self.friction, "mu", "", NOT_NEGATIVE)
         a, b = x.position.symbol, y.position.symbol
-        r = ca.sqrt(a**2 + b**2 + (CENTRE * g) ** 2)
+        r = radius(a, b, g)
         pressure = k * ca.fmax(r - g, 0) / r
         x.force -= pressure * (a - mu * b)
         y.force -= pressure * (b + mu * a)

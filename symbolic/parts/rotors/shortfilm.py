@@ -17,8 +17,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-STILL = 1e-12
-"""Size of the pressure, over what a turn at the speed gives, below which its place fades."""
+from symbolic.parts.rotors.radius import radius
 
 
 def resultant(
@@ -29,7 +28,7 @@ def resultant(
     x, y and their rates are over the clearance, turn is Omega; pace, in rad/s, is what speeds compare with.
     """
     along, across = turn * y + 2 * x_dot, 2 * y_dot - turn * x
-    size = ca.sqrt(along**2 + across**2 + (STILL * pace) ** 2)
+    size = radius(along, across, pace)
     cosine, sine = along / size, across / size
     a, b = ca.SX.sym("a"), ca.SX.sym("b")
     root = ca.sqrt(1 - a**2 - b**2)

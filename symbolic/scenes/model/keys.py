@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from symbolic.scenes.changing import Steps
 from symbolic.scenes.model.catalogue import KIND
 from symbolic.scenes.model.composing import NAME, entry_for
 from symbolic.scenes.model.structures import StructureTable
+from symbolic.scenes.overrides import Steps
 
 LATER = ("parameter", "from", "to", "axis")
 PLACE = ("unit", "scale", "start", "count")

@@ -18,7 +18,7 @@ from symbolic.scenes.model.bench import Bench
 
 NUMBERS = (int, float)
 
-LARGEST = 1e300
+LARGEST_NUMBER = 1e300
 """Numbers that are larger are none of physics."""
 
 ORDER = {int, float, str, Fraction}
@@ -55,7 +55,7 @@ class Plain:
     def read(self, bench: Bench, where: str, value: Any) -> Any:
         """Return the value, numbers finite."""
         wrong = not isinstance(value, self.kinds) or (bool not in self.kinds and isinstance(value, bool))
-        if wrong or (_is_number(value) and not -LARGEST < value < LARGEST):
+        if wrong or (_is_number(value) and not -LARGEST_NUMBER < value < LARGEST_NUMBER):
             raise refused(where, value, self.allowed)
         return float(value) if self.kinds == NUMBERS else value
 
@@ -93,7 +93,7 @@ class CoordinateName:
 
 
 @dataclass(frozen=True)
-class Touching:
+class PairOfCoordinates:
     """A contact pair: its coordinates, or a table with `coordinates` and `name`; the same is one pair."""
 
     allowed: str = 'a list of coordinates, or a table as {coordinates = ["x"], name = "upper"}'
@@ -264,6 +264,6 @@ PLAIN: dict[Any, Reader] = {
     str: Plain((str,), "a text", "a"),
     Parameter: Number(),
     Coordinate: CoordinateName(),
-    ContactPair: Touching(),
+    ContactPair: PairOfCoordinates(),
     Fraction: Plain((int, float, str), 'a positive rational number, or text as "1/2"', 1),
 }

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from periodic.bifurcations import locate, testfunction
+from periodic.bifurcations import location, testfunction
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.withinstep import RejectedError, WithinStep, _through, second_change
 
@@ -35,17 +35,17 @@ def named(value: Callable[[Any], float]) -> testfunction.TestFunction:
 @pytest.mark.parametrize("zero", [-0.01, 0.03, 0.3])
 def test_special_point_is_found_again(zero: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert the zero of a test function within half a step of where it was on a coarser mesh."""
-    monkeypatch.setattr(locate, "WithinStep", Line)
+    monkeypatch.setattr(location, "WithinStep", Line)
     test = named(lambda at: at.place - zero)
-    assert locate._again(Line(), Line().at(0.0), 1.0, test).place == pytest.approx(zero, abs=1e-11)  # type: ignore[arg-type, attr-defined]
+    assert location._again(Line(), Line().at(0.0), 1.0, test).place == pytest.approx(zero, abs=1e-11)  # type: ignore[arg-type, attr-defined]
 
 
 def test_special_point_that_is_lost_is_not_looked_for_afar(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that the step is rejected where the test function has no zero within half a step."""
-    monkeypatch.setattr(locate, "WithinStep", Line)
+    monkeypatch.setattr(location, "WithinStep", Line)
     test = named(lambda at: at.place - 0.8)
     with pytest.raises(RejectedError, match="not found again"):
-        locate._again(Line(), Line().at(0.0), 1.0, test)  # type: ignore[arg-type]
+        location._again(Line(), Line().at(0.0), 1.0, test)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("end", [0.0, 1.0])

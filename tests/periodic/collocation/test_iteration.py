@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support import traces
+from support import joints, traces
 from support.numpy_systems import LinearOscillator
 
 import periodic as per
@@ -40,7 +40,8 @@ def compiled(name: str, kernels: str = "c") -> sym.CompiledSystem:
     """A scene of the package with its kernels in C."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ORBITRACE_KERNELS", kernels)
-        return sym.compile(chain(20)) if name == "chain" else build(load(name))
+        models = {"chain": lambda: sym.compile(chain(20)), "joints": joints.friction_and_slider}
+        return models[name]() if name in models else build(load(name))
 
 
 def chain(count: int) -> sym.Model:
@@ -89,9 +90,16 @@ def lost_contact() -> Orbit:
 
 
 def brief_contact() -> Orbit:
-    """An orbit just beyond a touch, of whose excursion the constraint takes the length."""
+    """An orbit just beyond a touch, of whose excursion, a milliradian, the constraint takes the length."""
     orbits = [p.orbit for p in per.trace(compiled("stop"), "Omega", (0.7, 1.8)) if len(p.orbit.phases)]
-    return min(orbits, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())
+    brief = [orbit for orbit in orbits if orbit.mesh.segment_lengths(orbit.phases).min() > 5e-4]
+    return min(brief, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())
+
+
+def sticking() -> Orbit:
+    """An orbit of joints that stick and slip."""
+    one = per.ArclengthControl(max_points=1)
+    return per.trace(compiled("joints"), "Omega", (0.8, 1.2), control=one)[0].orbit
 
 
 CASES = {
@@ -99,6 +107,7 @@ CASES = {
     "vitrea79-810N": ("speed", lost_contact),
     "chain": ("Omega", lambda: begun("chain")),
     "stop": ("Omega", brief_contact),
+    "joints": ("Omega", sticking),
 }
 
 
@@ -111,7 +120,7 @@ def test_corrections_are_the_same(name: str, close_to: float) -> None:
     given = (system, guess, (constraint.index,), [constraint], replace(NEWTON, close=close_to))
     found, expected = iteration.corrected(*given), correct(METHOD.linearise, *given)
     assert found is not None and found.ok and expected.ok and expected.kernel is not None
-    few = 1 if name == "stop" else 2  # that one is linear between its events
+    few = 1 if name in ("stop", "joints") else 2  # these are linear between their events
     assert found.iterations == expected.iterations > few
     for part in ("nodes", "stages", "phases", "parameter"):
         close(getattr(found.orbit, part), getattr(expected.orbit, part), 1e-9)

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 from support.cantilevers import cantilever, cubic
+from support.joints import dry_friction, friction_and_slider
 
 import periodic as per
 import symbolic as sym
@@ -40,6 +41,8 @@ CASES: dict[str, tuple[Callable[[], sym.CompiledSystem], str, tuple[float, float
     "stop": (lambda: sym.scene("stop"), "Omega", (0.7, 1.8)),
     "chain": (lambda: chain(6), "Omega", (0.8, 1.6)),
     "beam, condensed": (lambda: beam(True), "Omega", (3.2, 4.2)),
+    "friction that sticks": (dry_friction, "Omega", (0.3, 1.5)),
+    "friction beside a slider": (friction_and_slider, "Omega", (0.8, 1.2)),
     "beam with all states": (lambda: beam(False), "Omega", (3.2, 3.4)),
 }
 

@@ -10,7 +10,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation import meshed
+from periodic.collocation import meshmethod
 from periodic.collocation import method as collocation
 from periodic.collocation.method import Collocation
 from periodic.correction.error import ErrorEstimate
@@ -48,7 +48,7 @@ def test_slip_by_less_than_the_error(
     own = method.error(problem, correction, tangent, spectrum)
     assert orbit.mesh.events and COARSE < 3 * own.orbit < FINE
     place = Violation(Breach.MODE, 0, 0, 1, part * own.orbit)
-    for module in (collocation, meshed):
+    for module in (collocation, meshmethod):
         monkeypatch.setattr(module, "mode_violations", lambda system, orbit: [place])
     found = method.error(problem, correction, tangent, spectrum)
     assert np.isfinite(found.orbit) == refined

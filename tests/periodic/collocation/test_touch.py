@@ -113,10 +113,10 @@ def test_excursion_between_collocation_points_is_seen() -> None:
     ends = 1.0 + 1e-4 - (orbit.mesh.nodes(orbit.phases) - middle) ** 2
     assert (bump < 1).all() and points[1] < 0.5 < points[2]
     orbit.stages[:, :, 0], orbit.nodes[:, 0] = bump, ends
-    (found,) = SwitchPolynomials(system, orbit).unseen(0, -1)
+    (found,) = SwitchPolynomials(system, orbit).unmarked(0, -1)
     assert (found.interval, found.theta) == (2, pytest.approx(0.5, abs=1e-9))
     assert found.value == pytest.approx(1e-4, abs=1e-12)
-    begin, end = (phase for _, phase in SwitchPolynomials(system, orbit).passages(0))
+    begin, end = (phase for _, phase in SwitchPolynomials(system, orbit).crossings(0))
     assert end - begin == pytest.approx(0.02, abs=1e-9)
 
 

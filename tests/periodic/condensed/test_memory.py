@@ -16,7 +16,7 @@ from periodic.condensed.memory import Memory
 
 def joint(tip: Any) -> list[sym.Part]:
     """An elastic element that slips: a state of its own."""
-    return [sym.Jenkins(tip, 30.0, 0.1)]
+    return [sym.Jenkins(tip, 30.0, 0.1, creep=1e-2)]
 
 
 @pytest.mark.parametrize(("parts", "own", "intervals"), [(cubic, 0, 200), (joint, 1, 400)])

@@ -27,7 +27,7 @@ def stop(tip: Any) -> Sequence[sym.Part]:
 
 def joint(tip: Any) -> Sequence[sym.Part]:
     """A joint that slips, with a state of its own, and a stop."""
-    return [sym.Jenkins(tip, 0.3, 0.004), sym.OneSidedSpring(tip, 30.0, 0.02)]
+    return [sym.Jenkins(tip, 0.3, 0.004, creep=1e-2), sym.OneSidedSpring(tip, 30.0, 0.02)]
 
 
 @cache

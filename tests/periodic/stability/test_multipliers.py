@@ -20,7 +20,7 @@ def test_turns_of_a_pair_are_counted_through_the_period(rate: float, growth: flo
     tau = np.linspace(0.0, 2 * np.pi, 41)
     turn = np.array([[np.cos(rate * tau), -np.sin(rate * tau)], [np.sin(rate * tau), np.cos(rate * tau)]])
     (pair,) = Spectrum(np.moveaxis(np.exp(growth * tau) * turn, -1, 0), 0).pairs
-    assert pair.turned == pytest.approx(2 * np.pi * rate, rel=1e-12)
+    assert pair.rotated == pytest.approx(2 * np.pi * rate, rel=1e-12)
 
 
 def turning(first: float, second: float, mixed: float = 0.0) -> Spectrum:
@@ -53,14 +53,14 @@ def test_each_of_many_pairs_leads_where_it_does_alone() -> None:
     def drawn(count: int) -> list[Pair]:
         both = random.uniform([0.0, -30.0], [np.pi, 30.0], (count, 2)).tolist()
         return [
-            Pair(argument, 1.0, 1.0, turned, np.array([1j]), k) for k, (argument, turned) in enumerate(both)
+            Pair(argument, 1.0, 1.0, rotated, np.array([1j]), k) for k, (argument, rotated) in enumerate(both)
         ]
 
     pairs, others = drawn(25), drawn(30)
     found, alone = nearest(pairs, others), [pair.nearest(others) for pair in pairs]
     assert {pair.place for pair in found if pair.argument < 0}
     for ours, theirs in zip(found, alone, strict=True):
-        assert (ours.place, ours.argument, ours.turned) == (theirs.place, theirs.argument, theirs.turned)
+        assert (ours.place, ours.argument, ours.rotated) == (theirs.place, theirs.argument, theirs.rotated)
         assert np.array_equal(ours.left, theirs.left)
 
 
@@ -77,7 +77,7 @@ def test_flow_that_does_not_come_back_as_itself_is_told() -> None:
     """Assert that multipliers of a graded orbit are known where its steps carry the flow along, not else."""
     steps, flow = np.array([np.diag([1.0, 1e-4])] * 2), np.array([[1.0, 0.0]] * 3)
     fundamental = np.array([np.eye(2), steps[0], steps[1] @ steps[0]])
-    for turned in (0.0, 0.5):
-        flow[1] = np.cos(turned), np.sin(turned)
+    for rotated in (0.0, 0.5):
+        flow[1] = np.cos(rotated), np.sin(rotated)
         spectrum = spectrum_of(fundamental, Joints(steps, flow), 1)
-        assert spectrum.known is (turned == 0.0)
+        assert spectrum.known is (rotated == 0.0)

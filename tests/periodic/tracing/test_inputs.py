@@ -11,7 +11,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.meshed import scheme_for
+from periodic.collocation.meshmethod import scheme_for
 
 NAN, INFINITE = math.nan, math.inf
 A_METHOD = "it must be Collocation(), Shooting(), HarmonicBalance() or Equilibrium()"

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from reference.judging import judged
 from support.drawn.contact import Case, drawn
-from survey.rows import CONTROL, TOL, row, traced, verdicts
+from survey.rows import FEW, TOL, row, traced, verdicts
 
 import periodic as per
 from periodic import Reason
-from periodic.bifurcations.locate import special_points
+from periodic.bifurcations.location import special_points
 from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
@@ -73,7 +73,7 @@ def test_stops_however_short(seed: int, begin: float, end: float, touches: int) 
     """
     case = drawn("friction", seed)
     bounds = (min(begin, end), max(begin, end))
-    branch = per.trace(case.system, "Omega", bounds, start=begin, tol=TOL, control=CONTROL)
+    branch = per.trace(case.system, "Omega", bounds, start=begin, tol=TOL, control=FEW.control)
     assert branch.stop.reason is Reason.BOUND
     assert len(branch.labelled(per.Label.GRAZING)) == touches
     for point in branch:
@@ -95,7 +95,7 @@ def test_goes_on_without_a_contact() -> None:
 def test_folds_beside_a_touch() -> None:
     """Assert both folds where the branch turns back at a first impact and on again 5e-5 beyond it."""
     case = drawn("impacts", 132)
-    branch = per.trace(case.system, "Omega", (0.75, 0.7556), start=0.75, tol=TOL, control=CONTROL)
+    branch = per.trace(case.system, "Omega", (0.75, 0.7556), start=0.75, tol=TOL, control=FEW.control)
     found = [(point.label.value, round(point.parameter, 4)) for point in branch.special_points]
     assert found == [("EP", 0.75), ("GR", 0.7547), ("LP", 0.7547), ("LP", 0.7546), ("EP", 0.7556)]
     assert wrong(case, branch, 132) == []

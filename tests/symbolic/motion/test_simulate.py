@@ -11,7 +11,8 @@ import pytest
 import periodic as per
 import symbolic as sym
 from symbolic import meter
-from symbolic.integration import flow
+from symbolic.integration import field, flow
+from symbolic.integration.cvodes import Cvodes
 
 RPM = 2 * np.pi / 60
 
@@ -120,11 +121,11 @@ def test_motion_that_cannot_be_followed(knock: float, monkeypatch: pytest.Monkey
 
 def test_lsoda_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that where CVODES gives up LSODA goes on, as accurate, and there only."""
-    integrated, followed = flow.integrated, flow.followed
+    run, followed = Cvodes.run, field.followed
     asked, by_lsoda = itertools.count(), []
 
     def gives_up(*arguments: Any) -> Any:
-        return None if next(asked) in (3, 4, 8) else integrated(*arguments)
+        return None if next(asked) in (3, 4, 8) else run(*arguments)
 
     def noted(*arguments: Any) -> Any:
         by_lsoda.append(arguments[3][-1])
@@ -133,8 +134,8 @@ def test_lsoda_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
     system = sym.compile(sym.combine([*PARTS, sym.CubicSpring(X, 3.0)]))
     settings: dict[str, Any] = {"settle": 8, "samples": 50, "tolerance": 1e-12}
     whole = sym.simulate(system, **settings)
-    monkeypatch.setattr(flow, "integrated", gives_up)
-    monkeypatch.setattr(flow, "followed", noted)
+    monkeypatch.setattr(Cvodes, "run", gives_up)
+    monkeypatch.setattr(field, "followed", noted)
     motion = sym.simulate(system, **settings)
     assert by_lsoda == [2 * np.pi] * 3
     for name in ("x", "x'"):

@@ -21,11 +21,13 @@ from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import motions, tying
-from periodic.events.modes import completed, group, of_held, of_kind
+from periodic.events.modes import completed, group, of_held, of_kind, relays
+from periodic.events.relays import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
+from periodic.linear.variation import Variations
 from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
@@ -35,9 +37,6 @@ from periodic.system import Kind, System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
 """Collocation points in each interval down to a tolerance."""
-
-FOLLOWED = 1e-8
-"""Tolerance with which motions are followed in time for their events."""
 
 WRONG = {
     Breach.GRAZED: Outcome.GRAZING,
@@ -66,6 +65,9 @@ class MeshMethod(Discretisation):
 
     ends_below: ClassVar[float] = ENDS_BELOW
     """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
+
+    all_states: ClassVar[bool] = True
+    """Whether mesh points have all states, so that the map from one to the next is known as it is."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -102,15 +104,26 @@ class MeshMethod(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
+        near = self._tied(system, self._worded(system, replace(near, parameter=parameter, equilibrium=False)))
         old = near.mesh
         mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
-        adopted = replace(transfer(near, mesh, near.phases), parameter=parameter, equilibrium=False)
-        return relax(system, self._tied(system, adopted))
+        return relax(system, transfer(near, mesh, near.phases))
+
+    @staticmethod
+    def _worded(system: System, orbit: Orbit) -> Orbit:
+        """A motion that sticks and slips, followed, with event nodes where it does: Newton needs them."""
+        held, mesh = of_held(system), orbit.mesh
+        if not held or any(group(system, mesh, k) or k in dict(mesh.modes) for k in held):
+            return orbit
+        try:
+            return motions.followed(system, orbit, motions.FOLLOWED) or orbit
+        except FAILURES:
+            return orbit
 
     def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, on a mesh with event nodes where it does: Newton needs them."""
-        held = of_held(system)
-        if not held or any(group(system, orbit.mesh, k) for k in held):
+        """A motion in which a relay switches, with event nodes where it does, as the orbit has it."""
+        own = [k for k in relays(system) if not group(system, orbit.mesh, k)]
+        if not any(switched(system, orbit, k) for k in own):
             return orbit
         settings = (self.kinks or KinkSettings()).at(self.tolerance)
         events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
@@ -144,10 +157,10 @@ class MeshMethod(Discretisation):
         own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
         return any(not group(system, orbit.mesh, switch) for switch in own)
 
-    def reworded(self, system: System, orbit: Orbit) -> Orbit | None:
+    def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
         """Return a guess with the events of the orbit's own motion, where that can be followed."""
         try:
-            motion = motions.followed(system, orbit, FOLLOWED)
+            motion = motions.followed(system, orbit, motions.FOLLOWED, before)
         except FAILURES:
             return None
         return None if motion is None else self.guess(system, motion.parameter, motion)
@@ -156,6 +169,10 @@ class MeshMethod(Discretisation):
         """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
+
+    def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations | None:
+        """Return the motions beside an orbit; None where they are those of all states."""
+        return None
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the event nodes where the equations change; None where the orbit passes others."""

@@ -12,20 +12,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from periodic.bifurcations.branchcrossing import crossing
-from periodic.bifurcations.fold import FOLD, moves, turns
+from periodic.bifurcations.fold import FOLD, VERTICAL, has_fold, moves
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import entry, gaps
-from periodic.bifurcations.testfunction import LEFT, Course, TestFunction
+from periodic.bifurcations.testfunction import PARABOLA_LEFT, Course, TestFunction
 from periodic.bifurcations.torus import TORUS
 from periodic.bifurcations.turningpoint import Found, is_one, named, shrinks, unstable
 from periodic.bifurcations.twoparameter import codim2
-from periodic.bifurcations.withinstep import TRIALS, RejectedError, WithinStep, second_change
+from periodic.bifurcations.withinstep import MINIMUM_TRIALS, RejectedError, WithinStep, second_change
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import refined
-
-STANDING = 1e-5
-"""A branch that begins with so small a part of its later slope begins at a turn."""
 
 SHORTER = 0.9
 """A step that would end at a special point is taken so much shorter: then it lies within the next."""
@@ -60,15 +57,15 @@ def special_points(solver: Solver, base: Solution, new: Solution, ds: float, sou
     A bound (EP) ends the list, as does an equilibrium to which orbits shrink (HB). Raises RejectedError.
     """
     within = WithinStep(solver, base, {0.0: base, ds: new}, ds)
-    from_turn = abs(base.tangent.parameter) < STANDING * abs(new.tangent.parameter)
-    folds = [] if from_turn else _folds(within, new, ds, sought)
-    begin = Found(Label.FOLD if from_turn else Label.NONE, 0.0, base)
+    from_fold = abs(base.tangent.parameter) < VERTICAL * abs(new.tangent.parameter)
+    folds = [] if from_fold else _folds(within, new, ds, sought)
+    begin = Found(Label.FOLD if from_fold else Label.NONE, 0.0, base)
     pieces = [begin, *folds, Found(Label.NONE, ds, new)]
     _check_ways(pieces)
-    found = turned = [named(within, turn, new, ds) for turn in folds]
-    for test in (*codim2.sought(new, bool(folds) or from_turn), *sought.tests):
+    found = named_folds = [named(within, fold, new, ds) for fold in folds]
+    for test in (*codim2.sought(new, bool(folds) or from_fold), *sought.tests):
         met = _where(within, new, ds, test, sought.course)
-        found = found + [point for point in met if not any(is_one(point, turn, ds) for turn in turned)]
+        found = found + [point for point in met if not any(is_one(point, fold, ds) for fold in named_folds)]
     found = _in_order(found + _at_values(within, pieces, sought))
     found = _in_order(found + _behind_saddle(within, new, ds, found))
     final = [k for k, item in enumerate(found) if item.label is Label.END or item.shrunk]
@@ -88,7 +85,7 @@ def _behind_saddle(within: WithinStep, new: Solution, ds: float, found: list[Fou
     if unstable(within.base) == unstable(new) or TORUS not in codim2.sought(new, False):
         return []
     named = [entry(point.solution, point.label) for point in found]
-    if not gaps([entry(within.base, Label.NONE), *named, entry(new, Label.NONE)], turns=False):
+    if not gaps([entry(within.base, Label.NONE), *named, entry(new, Label.NONE)], folds=False):
         return []
     between = _between_pair_and_saddle(within, new, ds)
     if between is None:
@@ -102,7 +99,7 @@ def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> fl
     (low, high), count, sign = (0.0, ds), unstable(within.base), within.base.once(TORUS.value)
     if sign * new.once(TORUS.value) <= 0:
         return None
-    for _ in range(TRIALS):
+    for _ in range(MINIMUM_TRIALS):
         middle = (low + high) / 2
         solution = within.at(middle)
         if sign * solution.once(TORUS.value) < 0:
@@ -114,7 +111,7 @@ def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> fl
 def _at_values(within: WithinStep, pieces: list[Found], sought: Sought) -> list[Found]:
     """The points at values of the parameter that were asked for, and at a bound."""
     problem, found = within.solver.problem, []
-    starts = [sought.since, *(turn.solution.value for turn in pieces[1:-1])]
+    starts = [sought.since, *(fold.solution.value for fold in pieces[1:-1])]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
         last = end.solution.value
         bound = problem.high if last > first else problem.low
@@ -143,11 +140,11 @@ def _folds(within: WithinStep, new: Solution, ds: float, sought: Sought) -> list
     One that cannot be told from the change of pattern at its end is there, or is named with what lies beyond.
     """
     base = within.base
-    if FOLD.value(base) * FOLD.value(new) < 0 and not turns(base, new, ds):
+    if FOLD.value(base) * FOLD.value(new) < 0 and not has_fold(base, new, ds):
         return []
     if sought.final and FOLD.value(base) != 0 and FOLD.value(new) == 0:
-        turned = base.tangent.parameter * new.tangent.parameter < 0
-        return [Found(Label.FOLD, ds, new)] if turned else []
+        named_folds = base.tangent.parameter * new.tangent.parameter < 0
+        return [Found(Label.FOLD, ds, new)] if named_folds else []
     return _where(within, new, ds, FOLD, sought.course)
 
 
@@ -161,7 +158,7 @@ def _where(within: WithinStep, new: Solution, ds: float, test: TestFunction, cou
     ends = [base.once(value), new.once(value)]
     if ends[0] * ends[1] < 0:
         return _located(within, (0.0, ds), ds, test)
-    if ends[0] != 0 and ends[1] == 0 and 0 < value(within.at(SHORTER * ds)) / ends[0] < LEFT:
+    if ends[0] != 0 and ends[1] == 0 and 0 < value(within.at(SHORTER * ds)) / ends[0] < PARABOLA_LEFT:
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not (test.twice(base, new) or course.returns(test, base, new, ds)):
         return []
@@ -191,8 +188,8 @@ def _located(within: WithinStep, span: tuple[float, float], ds: float, test: Tes
     solver, base, crossed = within.solver, within.base, test is not FOLD
     ends = [within.at(end) for end in span]
     distance, solution = _root(within, span, ds, test)
-    turned = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.units(solution.orbit))
-    if solution.orbit.equilibrium and turned < ALIGNED:
+    named_folds = base.tangent.dot(solution.tangent, solution.orbit, solver.problem.units(solution.orbit))
+    if solution.orbit.equilibrium and named_folds < ALIGNED:
         raise RejectedError("a special point of another branch was met")
     if not test.genuine(solution) or (test.name and _jumps(test.value, solution, ends)):
         return []

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 import periodic as per
 import symbolic as sym
+from periodic.condensed.method import mesh_method
+from periodic.correction.meanequilibrium import resting
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme
-from periodic.tracing.resting import resting
+from periodic.system import LinearPart
 
 CLEARANCE = 5e-5
 FILM = {"viscosity": 0.02, "radius": 0.025, "length": 0.025, "clearance": CLEARANCE}
@@ -38,7 +41,7 @@ def test_journal_rests_where_its_film_bears_the_weight(condense: bool) -> None:
     """
     system, Omega = rotor(condense), 100.0
     parameter = np.array([Omega if p.name == "speed" else p.value for p in system.parameters])
-    found = resting(system, at_rest(system, uniform(Scheme(), 4), parameter))
+    found = mesh_method(system).resting(system, at_rest(system, uniform(Scheme(), 4), parameter))
     assert found is not None
     names = [state.name for state in system.states]
     u, v = (found.nodes[0, names.index(f"journal {k}")] for k in (1, 2))
@@ -55,7 +58,7 @@ def test_what_rests_already_is_left() -> None:
     system = sym.compile(
         sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 1.0)
     )
-    assert resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+    assert mesh_method(system).resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
 
 
 def test_load_that_cannot_be_borne() -> None:
@@ -63,10 +66,10 @@ def test_load_that_cannot_be_borne() -> None:
     system = sym.compile(
         sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Damper(x, 1.0) + sym.ConstantForce(x, 1.0)
     )
-    assert resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+    assert mesh_method(system).resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
 
 
-def test_linear_part_without_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_linear_part_without_rest() -> None:
     """Assert that there is no rest, where a mode has no stiffness or modes are not found."""
 
     def lost(parameter: object) -> None:
@@ -78,8 +81,7 @@ def test_linear_part_without_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     start = at_rest(system, uniform(Scheme(), 4), system.nominal)
     for modes in (lambda parameter: drifting, lost):
         part = SimpleNamespace(modes=modes, states=(0,), forces=(0,))
-        monkeypatch.setattr("periodic.tracing.resting.linear_of", lambda _, part=part: part)
-        assert resting(system, start) is None
+        assert resting(system, start, cast(LinearPart, part)) is None
 
 
 def test_rotor_in_a_journal_bearing() -> None:

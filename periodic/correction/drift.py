@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import System
 
-SINGULAR = 1e-12
+FREE_MOTION = 1e-12
 """Least singular value of a stiffness, of the largest, below which nothing holds a motion."""
 
 TAKES_PART = 0.1
@@ -34,8 +34,6 @@ def drifting(system: System, parameter: Array) -> list[str]:
     list of str
         Their names.
     """
-    if linear_of(system) is not None:  # its modes tell
-        return []
     state, algebraic = system.rest(parameter)
     many = len(PHASES)
     places = state + AWAY * np.sin(1.0 + np.arange(many))[:, None] * np.ones_like(state)
@@ -47,7 +45,7 @@ def drifting(system: System, parameter: Array) -> list[str]:
     if not np.isfinite(stiffness).all():
         return []
     _, sizes, ways = np.linalg.svd(stiffness)
-    if len(sizes) == 0 or sizes[-1] > SINGULAR * sizes[0]:
+    if len(sizes) == 0 or sizes[-1] > FREE_MOTION * sizes[0]:
         return []
     way = np.abs(ways[-1, : len(state)])
     return [s.name for s, part in zip(system.states, way, strict=True) if part > TAKES_PART * way.max()]

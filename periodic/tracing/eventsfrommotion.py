@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.identity import distance
+from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -23,11 +24,15 @@ from periodic.tracing.steps.patternchange import Crossed
 MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
-AHEAD = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
+DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
 
-FARTHEST = 1.0
-"""How far from where the tangent leads it may be, in the length of the step."""
+BEFORE = (0, 3)
+"""Periods through which the motion is followed before its word is read: a joint that is held all along, and
+pulled past its limit, slips to another place, at which it is held again."""
+
+FARTHEST = 2.0
+"""How far from the base it may be, in the length of the step along the tangent."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
@@ -48,25 +53,29 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
 
     first: length of a first step.
     """
-    problem, (low, high) = solver.problem, solver.problem.bounds
     sign = float(np.sign(base.tangent.parameter))
-    if problem.free != (problem.index,) or sign == 0:
+    if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
-    for ds in (part * first for part in AHEAD):
+    each = (_read(solver, base, first, sign, before) for before in BEFORE)
+    return next((found for found in each if found is not None), None)
+
+
+def _read(solver: Solver, base: Solution, first: float, sign: float, before: int) -> Crossed | None:
+    """The same after some periods of the motion."""
+    problem, (low, high) = solver.problem, solver.problem.bounds
+    for ds in (part * first for part in DISTANCES_BEYOND):
         ahead = tangent(problem, base, ds)
-        value = float(np.clip(problem.value(ahead), low, high))
         parameter = ahead.parameter.copy()
-        parameter[problem.index] = value
-        changed = solver.discretisation.reworded(problem.system, replace(ahead, parameter=parameter))
+        parameter[problem.index] = float(np.clip(problem.value(ahead), low, high))
+        near = ahead if in_order(ahead) else base.orbit
+        changed = solver.discretisation.reworded(problem.system, replace(near, parameter=parameter), before)
         if changed is None:
             return None
         found = worded(solver, changed, sign)
         if not found.ok or found.error.motion > solver.tolerance.orbit:
             continue
-        if distance(problem, ahead, found.orbit) > FARTHEST * distance(problem, base.orbit, ahead):
-            continue
-        if found.tangent.parameter * sign > 0:
-            apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
+        apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
+        if apart <= FARTHEST * ds and found.tangent.parameter * sign > 0:
             return Crossed(found, apart, touches=False)
     return None
 

@@ -1,4 +1,4 @@
-"""The rest under the mean of all loads: about which a system vibrates, if its parts do not rest there."""
+"""The equilibrium under the mean of all loads over a period, about which a system vibrates."""
 
 from __future__ import annotations
 
@@ -11,32 +11,31 @@ from periodic.correction.outcome import FAILURES
 from periodic.orbit.construction import constant
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, linear_of
+from periodic.system import LinearPart, System
+from periodic.system.precision import MOST_ITERATIONS
 
 PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
-"""At which what excites is averaged."""
+"""Over which the excitation is averaged."""
 
-BALANCED = 1e-9
-"""Scaled residual, over the largest of states and unknowns, below which a system is at rest."""
-
-LOAD_ITERATIONS = 12
-"""Newton iterations for a load."""
+BALANCED_RESIDUAL = 1e-9
+"""Scaled residual, over the largest of states and unknowns, below which a system is in equilibrium."""
 
 LEAST_LOAD_STEP = 1e-4
 """Smallest part of the load that is added at once."""
 
 
-def resting(system: System, start: Orbit) -> Orbit | None:
+def resting(system: System, start: Orbit, part: LinearPart | None = None) -> Orbit | None:
     """Return the constant orbit with mean R(0, x, z, tau, p) = 0 over a period at the parameters of another.
 
     The load that is missing at the beginning of the other is added by and by, as far as Newton's method can
     follow: a film, say, has no stiffness where it has no load, and ends at its clearance. None where the
-    other is at rest already, and where the load cannot be added.
+    other is at rest already, and where the load cannot be added. `part` is the linear part of a system whose
+    rows do not say it.
     """
     point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
     try:
         with np.errstate(divide="raise", invalid="raise"):  # a mode that nothing holds has no rest
-            balance = _Balance.of(system, start.parameter)
+            balance = _Balance.of(system, start.parameter, part)
         missing = balance.rows(point)[0]
         if _balanced(missing, point):
             return None
@@ -60,8 +59,7 @@ class _Balance:
     flexibility: Array
 
     @classmethod
-    def of(cls, system: System, parameter: Array) -> _Balance:
-        part = linear_of(system)
+    def of(cls, system: System, parameter: Array, part: LinearPart | None) -> _Balance:
         if part is None:
             none = np.empty(0, dtype=int)
             return cls(system, parameter, none, none, np.empty((0, 0)))
@@ -89,7 +87,7 @@ class _Balance:
 
 
 def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
-    """Return where all of the load is borne; None where it cannot be added."""
+    """Return the point at which all of the load is carried; None where it cannot be added."""
     borne, step = 0.0, 1.0
     while borne < 1.0:
         part = min(1.0, borne + step)
@@ -102,9 +100,9 @@ def _loaded(balance: _Balance, point: Array, missing: Array) -> Array | None:
 
 
 def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
-    """Return where the rows have a value, by Newton's method; None where it does not converge."""
+    """Return the point at which the rows are `load`, by Newton's method; None where it does not converge."""
     before = np.inf
-    for _ in range(LOAD_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         residual, jacobian = balance.rows(point)
         residual = residual - load
         size = np.abs(residual).max(initial=0.0)
@@ -118,4 +116,6 @@ def _solved(balance: _Balance, point: Array, load: Array) -> Array | None:
 
 
 def _balanced(residual: Array, point: Array) -> bool:
-    return bool(np.abs(residual).max(initial=0.0) < BALANCED * (1.0 + np.abs(point).max(initial=0.0)))
+    return bool(
+        np.abs(residual).max(initial=0.0) < BALANCED_RESIDUAL * (1.0 + np.abs(point).max(initial=0.0))
+    )

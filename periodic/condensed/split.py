@@ -1,0 +1,74 @@
+"""What methods for systems with a linear part have in common: what they take, where first orbits begin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import ClassVar, Self
+
+import numpy as np
+
+from periodic.condensed.settling import settled
+from periodic.correction.discretisation import Discretisation
+from periodic.correction.meanequilibrium import resting
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array, Family
+from periodic.system import Kind, System, jumps_of, linear_of, resets_of, slides_of, surfaces_of
+
+
+class SplitMethod:
+    """A method for systems with a linear part (`periodic.system.Split`), in the place of one for all states.
+
+    `whole` is that one; the settings are the same.
+    """
+
+    whole: ClassVar[type[Discretisation]]
+
+    @classmethod
+    def takes(cls, system: System) -> bool:
+        """Return whether a system is one of those that the method is for, and that no other takes."""
+        return linear_of(system) is not None
+
+    @classmethod
+    def like(cls, method: Discretisation, system: System) -> Self:
+        """Return it with the settings of a method for all states that are not usual.
+
+        Raises ValueError for a scheme that does not suit it, and a system with events that it does not know.
+        """
+        _check_events(system)
+        scheme = getattr(method, "scheme", None)
+        if scheme is not None and scheme.family is not Family.RADAU:
+            raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
+        chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
+        usual = type(method)()
+        return cls(**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
+
+    def settled(self, system: System, start: Orbit) -> Iterator[Orbit]:
+        """Yield the motion to which a system with sliding jumps settles: `periodic.condensed.settling`."""
+        return settled(system, start) if slides_of(system) else iter(())
+
+    def drifting(self, system: System, parameter: Array) -> list[str]:
+        """Return none: that modes of a structure are held is asked where it is compiled."""
+        return []
+
+    def resting(self, system: System, start: Orbit) -> Orbit | None:
+        """Return the rest under the mean load, the linear part by the static flexibility of its modes."""
+        return resting(system, start, linear_of(system))
+
+
+def _check_events(system: System) -> None:
+    """Refuse states that are reset, and jumps of a motion whose sticking is not known. Raises ValueError."""
+    if resets_of(system):
+        raise ValueError(
+            "the states at the places are reset; a structure must be compiled with condense=False for that"
+        )
+    if any(surface.kind == Kind.RELAY for surface in surfaces_of(system)):
+        raise ValueError("the equations at the places have a relay; it must be compiled with condense=False")
+    unknown = [k for k in jumps_of(system) if k not in slides_of(system)]
+    state, _ = system.rest(system.nominal)
+    slopes = system.switch_gradient(state[None], np.zeros(1), system.nominal)[0][0]
+    if slopes[unknown].any():
+        raise ValueError(
+            "the equations at the places jump, and whether motion sticks there is known only of a "
+            "structure with all its modes; it must be compiled with condense=False"
+        )

@@ -1,0 +1,43 @@
+"""Where relays switch along an orbit whose mesh does not say it yet."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.events.modes import group, sides
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.system import MINUS, PLUS, SurfaceLike, System
+
+
+def switched(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, float]]:
+    """Return where a relay switches, with the phases: those of its event nodes, or what the orbit has it do.
+
+    On an orbit without them it goes on where it passes the upper threshold upwards, and off where it passes
+    the lower one downwards after that.
+    """
+    if group(system, orbit.mesh, switch):
+        return SwitchPolynomials(system, orbit).crossings(switch)
+    found = list[tuple[EventNode, float]]()
+    for mode in (MINUS, PLUS):
+        modes = (*(pair for pair in orbit.mesh.modes if pair[0] != switch), (switch, mode))
+        given = replace(orbit, mesh=replace(orbit.mesh, modes=modes))
+        passages = SwitchPolynomials(system, given).crossings(switch)
+        found += [passage for passage in passages if passage[0].direction == -mode]
+    found.sort(key=lambda passage: passage[1])
+    before = [*found[-1:], *found[:-1]]
+    return [own for own, last in zip(found, before, strict=True) if own[0].direction != last[0].direction]
+
+
+def mode_at(system: System, orbit: Orbit, relay: SurfaceLike, phase: Array) -> int:
+    """Return whether a relay is on or off at a phase (1,): by where it switches, or its modes."""
+    passages = switched(system, orbit, relay.switch)
+    if not passages:
+        assert relay.column is not None
+        return int(sides(system, orbit)[orbit.locate(phase)[0][0], relay.column])
+    since = [float((phase[0] - at) % orbit.mesh.period) for _, at in passages]
+    return passages[int(np.argmin(since))][0].direction

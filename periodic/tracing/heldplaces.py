@@ -1,0 +1,98 @@
+"""Where a joint that never slips is held, in a first orbit: amid the places at which it may be held.
+
+A motion determines that only within bounds. In the middle the pull on the joint is as far from its limit one
+way as the other, and along the branch both limits are reached at once: there slips there and back begin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.events.modes import held_all_along
+from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
+from periodic.refinement.adaptation import refined
+from periodic.system import SurfaceLike, System, surfaces_of
+
+DIFFERENCE = 1e-3
+"""Of a place, as a part of the largest range of a state: the pull is about linear in the place."""
+
+MOST_MOVES = 3
+"""How often the places are moved."""
+
+
+def amid(solver: Solver, guess: Orbit, found: Solution, sign: float) -> Solution:
+    """Return a first orbit with its joints held amid their bounds, those whose place the guess does not give.
+
+    The one found where there are none, or where no other orbit is.
+    """
+    system = solver.problem.system
+    loose = [s for s in _held(system, found.orbit) if not held_all_along(guess.mesh, s)]
+    tolerance = solver.tolerance.orbit
+    for _ in range(MOST_MOVES if loose else 0):
+        off = _off_centre(system, found.orbit, loose)
+        if np.abs(off).max() <= tolerance:
+            break
+        slopes = _slopes(solver, found, loose, off, sign)
+        if slopes is None:
+            break
+        step: Array = np.asarray(np.linalg.lstsq(slopes, -off, rcond=DIFFERENCE)[0], dtype=float)
+        moved = _moved(solver, found, loose, step, sign)
+        if not _better(moved, system, loose, off):
+            break
+        found = moved
+    return found
+
+
+def _held(system: System, orbit: Orbit) -> list[SurfaceLike]:
+    """What is held all along, at a place."""
+    each = (s for s in surfaces_of(system) if s.releases is not None and s.place is not None)
+    return [surface for surface in each if held_all_along(orbit.mesh, surface)]
+
+
+def _off_centre(system: System, orbit: Orbit, held: list[SurfaceLike]) -> Array:
+    """How much nearer to one limit than to the other each is pulled, as a part of the way between both."""
+    dense, found = SwitchPolynomials(system, orbit), list[float]()
+    for surface in held:
+        assert surface.releases is not None
+        up, down = surface.releases
+        apart = np.abs(dense.knots[:, :, down] - dense.knots[:, :, up]).max()
+        pulls = (dense.along(k, everywhere=True).value for k in (up, down))
+        found.append(float((next(pulls).max() + next(pulls).min()) / apart))
+    return np.array(found)
+
+
+def _slopes(
+    solver: Solver, found: Solution, held: list[SurfaceLike], off: Array, sign: float
+) -> Array | None:
+    """The derivatives of that in the places, by differences; None where there are none."""
+    step = DIFFERENCE * float(np.max(found.orbit.span()))
+    columns = list[Array]()
+    for k in range(len(held)):
+        beside = _moved(solver, found, held, step * np.eye(len(held))[k], sign)
+        if not beside.ok:
+            return None
+        columns.append((_off_centre(solver.problem.system, beside.orbit, held) - off) / step)
+    return np.array(columns).T
+
+
+def _moved(solver: Solver, found: Solution, held: list[SurfaceLike], step: Array, sign: float) -> Solution:
+    """The orbit with the places moved."""
+    parameter = found.orbit.parameter.copy()
+    for surface, way in zip(held, step, strict=True):
+        assert surface.place is not None
+        parameter[surface.place[0]] += way
+    near = solver.at_parameter(replace(found.orbit, parameter=parameter), sign)
+    return refined(solver, near, fixed=True)
+
+
+def _better(moved: Solution, system: System, held: list[SurfaceLike], off: Array) -> bool:
+    """Whether an orbit is one, with its joints nearer to the middle."""
+    if not moved.ok or not np.isfinite(moved.error.motion):
+        return False
+    return bool(np.abs(_off_centre(system, moved.orbit, held)).max() < np.abs(off).max())

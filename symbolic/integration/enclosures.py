@@ -1,0 +1,94 @@
+"""Where a guard falls to 0 along a motion: enclosures of cubics, and the root between two phases.
+
+The step control of an integrator sees a kink where it evaluates the rates beside it. A short excursion past a
+level - a stop that is just touched - lies between two evaluations, and the motion goes on as if there were
+none. So the guards are looked at along the motion. Between neighbouring phases each is the cubic with its
+values and rates at both ends, known to the error of such cubics over two of these intervals; its Bernstein
+coefficients enclose it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from symbolic.arrays import Array
+
+SAFE = 4.0
+"""How many times its estimate the error of a cubic may be."""
+
+RESOLVED = 1e-15
+"""Phases (rad) that are so near to each other are the same."""
+
+ITERATIONS = 50
+"""Most iterations for a root."""
+
+Motion = Callable[[float], Array]
+"""y at a phase."""
+
+Guard = Callable[[float, Array], tuple[float, float]]
+"""(tau, y) to the value of a guard and its derivative in tau."""
+
+
+def lowest(values: Array, rates: Array, phase: Array) -> Array:
+    """Return lower bounds of guards (K, guards) on the K-1 intervals between phases.
+
+    An error of s''''/24 (t - a)^2 (b - t)^2 changes only the middle one of the five Bernstein coefficients.
+    """
+    width = np.diff(phase)[:, None]
+    left, right = values[:-1] + width * rates[:-1] / 3, values[1:] - width * rates[1:] / 3
+    middle = (left + right) / 2 - SAFE * _fourth(values, rates, phase) * width**4 / 6
+    inner = [(values[:-1] + 3 * left) / 4, middle, (3 * right + values[1:]) / 4]
+    return np.min([values[:-1], *inner, values[1:]], axis=0)
+
+
+def _fourth(s: Array, rate: Array, phase: Array) -> Array:
+    """s''''/24 on the K-1 intervals, by what cubics over two of them miss in between.
+
+    A cubic is off by s''''/24 (t - a)^2 (b - t)^2; of a single interval nothing is known.
+    """
+    if len(phase) < 3:
+        return np.full((len(phase) - 1, s.shape[1]), np.inf)
+    a, b = (phase[1:-1] - phase[:-2])[:, None], (phase[2:] - phase[1:-1])[:, None]
+    t = a / (a + b)
+    left, right = (1 + 2 * t) * (1 - t) ** 2, t**2 * (3 - 2 * t)
+    slopes = (a + b) * (t * (1 - t) ** 2 * rate[:-2] - t**2 * (1 - t) * rate[2:])
+    fourth = np.abs(left * s[:-2] + right * s[2:] + slopes - s[1:-1]) / (a * b) ** 2
+    return np.maximum(np.concatenate([fourth[:1], fourth]), np.concatenate([fourth, fourth[-1:]]))
+
+
+@dataclass(frozen=True)
+class Root:
+    """Phases just before and just after a guard falls through its level, y at both, and its rate there."""
+
+    before: float
+    after: float
+    y_before: Array
+    y_after: Array
+    rate: float
+
+
+def root(motion: Motion, guard: Guard, begin: float, end: float, near: float) -> Root:
+    """Return where a guard falls through 0 between two phases, by Newton's method on either side.
+
+    Both sides are within `near` of 0 where the phases resolve that.
+    """
+    low, high, before, after = begin, end, motion(begin), motion(end)
+    (first, first_rate), (last, last_rate) = guard(low, before), guard(high, after)
+    roots = CubicHermiteSpline([low, high], [first, last], [first_rate, last_rate]).roots(extrapolate=False)
+    guess, found, slope = float(roots[0]) if len(roots) else low, [False, False], last_rate
+    for _ in range(ITERATIONS):
+        at = guess if low < guess < high else (low + high) / 2
+        y = motion(at)
+        now, slope = guard(at, y)
+        past = now < 0
+        found[past] = found[past] or abs(now) <= near
+        low, high, before, after = (low, at, before, y) if past else (at, high, y, after)
+        if all(found) or high - low <= RESOLVED:
+            break
+        aim = near / 2 if found[True] else -near / 2
+        guess = at + (aim - now) / slope if slope else low
+    return Root(low, high, before, after, slope)

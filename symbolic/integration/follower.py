@@ -1,0 +1,270 @@
+"""A motion followed from event to event: pieces in the same modes, from one zero of a guard to the next.
+
+A piece is integrated ahead, and the guards of its modes are looked at along it: where their enclosures do not
+say that they stay positive the phases are put closer, until that is known. Where one falls to 0 the motion
+is begun anew in the modes after the event, and mapped at an impact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symbolic.arrays import Array
+from symbolic.integration.cvodes import IntegrationError
+from symbolic.integration.enclosures import Root, lowest, root
+from symbolic.integration.interrupts import heard
+from symbolic.integration.modes import Event, Guard, Modes, Switching
+
+LONGEST = math.pi / 32
+"""Longest interval (rad) between two phases at which guards are looked at."""
+
+PERIOD = 2 * math.pi
+"""Of the excitation, in tau: no more is integrated at once before it is known whether a piece ends."""
+
+LEAST = 4
+"""Fewest intervals that are integrated at once."""
+
+PARTS = 16
+"""Into how many an interval is cut in which a guard may fall to 0."""
+
+SHORTEST = 1e-6
+"""Intervals (rad) that are cut no more: an excursion within one is as deep as rounding."""
+
+NOISE = 1e-12
+"""A guard that is as near to 0, as a part of its largest value, is at it."""
+
+SHARP = 1e-3
+"""The same in tolerances of the integration."""
+
+BESIDE = 1e-13
+"""How far beside its zero a guard is, in the same part, where a piece ends and the next begins."""
+
+MOST_EVENTS = 1000
+"""Most events in a period: after more they pile up in a point."""
+
+Sweep = Callable[[Modes, Array, Array], Array]
+"""Integrates in some modes from y (w,) at phase[0] to all of phase (K,): y at each, shape (K, w)."""
+
+Look = Callable[[Modes, Array, Array], tuple[Array, Array]]
+"""All switches and their derivatives in tau along a motion (K, w) in some modes, (K, switches) each."""
+
+
+@dataclass(frozen=True)
+class Passage:
+    """An event: where a guard falls to 0, y and the modes after it, and whether y was mapped at an impact."""
+
+    root: Root
+    y: Array
+    modes: Modes
+    mapped: bool
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A motion at the phases asked for, (K, w), the events on its way, and the modes at its end."""
+
+    values: Array
+    passages: list[Passage]
+    events: tuple[Event, ...]
+    modes: Modes
+
+    def with_impacts(self, phase: Array) -> tuple[Array, Array]:
+        """Return phases and values with each impact twice, before and after it."""
+        impacts = [p for p in self.passages if p.mapped]
+        at = [p.root.before for p in impacts]
+        places = np.repeat(np.searchsorted(phase, at), 2)
+        each = np.reshape([y for p in impacts for y in (p.root.y_before, p.y)], (-1, self.values.shape[1]))
+        return np.insert(phase, places, np.repeat(at, 2)), np.insert(self.values, places, each, axis=0)
+
+
+@dataclass(eq=False)
+class Follower:
+    """Follows one motion of y = (x, z).
+
+    Parameters
+    ----------
+    switching : Switching
+        The modes of its system.
+    sweep : callable
+        (modes, y, phase) to y along phases; raises IntegrationError.
+    look : callable
+        (modes, values, phase) to all switches and their derivatives in tau.
+    settle : callable
+        (y, tau) to the nearest y that fulfils the constraints.
+    states : int
+        How many of y are states.
+    """
+
+    switching: Switching
+    sweep: Sweep
+    look: Look
+    settle: Callable[[Array, float], Array]
+    states: int
+    _passages: list[Passage] = field(default_factory=list, init=False)
+    _events: list[Event] = field(default_factory=list, init=False)
+
+    def run(
+        self, start: Array, phase: Array, modes: Modes | None = None, earlier: Modes | None = None
+    ) -> Followed:
+        """Integrate from phase[0] to all of `phase`, which rises. Raises IntegrationError.
+
+        modes: those to begin with, by default as the state has them; earlier: those before, of which relays
+        and what slides keep theirs.
+        """
+        y = start
+        if modes is None:
+            state, modes = self.switching.begin(float(phase[0]), y[: self.states], earlier)
+            y = self._with(y, state, float(phase[0]))
+        self._most = MOST_EVENTS * math.ceil((phase[-1] - phase[0]) / PERIOD)
+        self._enter(modes)
+        with heard() as self._raised:
+            values = self._all(y, phase)
+        return Followed(values, self._passages, tuple(self._events), self._modes)
+
+    def _all(self, y: Array, phase: Array) -> Array:
+        """The motion at all phases."""
+        if not self._guards:
+            return self.sweep(self._modes, y, phase)
+        every, wanted = _filled(phase)
+        most = max(LEAST, math.ceil((len(every) - 1) * PERIOD / (every[-1] - every[0])))
+        found, i, begun, ahead = [y[None]], 0, 0, most
+        while i < len(every) - 1:
+            values = self._ahead(found[-1][-1], every[i : i + ahead + 1])
+            last, event = self._looked(values, every[i : i + len(values)])
+            found.append(values[1 : last + 1])
+            i += last
+            if event is None:
+                ahead = min(2 * ahead, most)
+            else:  # the next piece may be as long as this one
+                found.append(self._across(*event, every[i + 1])[None])
+                i += 1
+                ahead, begun = max(LEAST, _power_of_2((i - begun) // 2)), i
+        return np.concatenate(found)[wanted]
+
+    def _enter(self, modes: Modes) -> None:
+        """Begin a piece in some modes."""
+        self._modes, self._guards = modes, self.switching.guards(modes)
+        self._size = np.zeros(len(self._guards))
+        self._least: Array | None = None
+
+    def _ahead(self, y: Array, phase: Array) -> Array:
+        """The piece as far as it can be integrated at once: an event may come before the rest."""
+        count = len(phase)
+        while True:
+            if self._raised:
+                raise self._raised[0]
+            try:
+                return self.sweep(self._modes, y, phase[:count])
+            except IntegrationError as error:
+                reached = int((phase[:count] <= error.phase).sum())
+                if not 1 < reached < count:
+                    raise
+                count = reached
+
+    def _values(self, values: Array, phase: Array) -> tuple[Array, Array]:
+        """The guards and their derivatives along a piece, (K, guards) each."""
+        places, signs = [each for each in zip(*((g.switch, g.sign) for g in self._guards), strict=True)]
+        s, rate = self.look(self._modes, values, phase)
+        return s[:, places] * signs, rate[:, places] * signs
+
+    def _looked(self, values: Array, phase: Array) -> tuple[int, tuple[Array, float] | None]:
+        """The last value of a piece before an event, and y and phase after that, None where there is none."""
+        for j, fallen, certain in self._doubts(values, phase):
+            before, left, right = len(self._passages), float(phase[j]), float(phase[j + 1])
+            if right - left > SHORTEST and not certain:
+                after = self._across(values[j], left, right), right
+            elif len(fallen):
+                after = self._event(values[j], left, right, fallen)
+            if len(self._passages) > before:
+                return j, after
+        return len(values) - 1, None
+
+    def _doubts(self, values: Array, phase: Array) -> list[tuple[int, NDArray[np.int_], bool]]:
+        """The intervals in which guards may fall to 0, with those that are below it at their ends.
+
+        And whether no other guard may fall there.
+        """
+        if not self._guards:
+            return []
+        g, rate = self._values(values, phase)
+        self._size = np.maximum(self._size, np.abs(g).max(axis=0))
+        if self._least is None:
+            self._least = np.minimum(g[0], 0.0)
+        below = lowest(g, rate, phase) < self._floor
+        ends = below & (g[1:] < self._floor)
+        at = np.flatnonzero(below.any(axis=1))
+        return [(int(j), np.flatnonzero(ends[j]), bool((ends[j] == below[j]).all())) for j in at]
+
+    @property
+    def _floor(self) -> Array:
+        """What guards fall below at an event: 0, or where they begin."""
+        assert self._least is not None
+        return np.asarray(self._least - NOISE * self._size - SHARP * self.switching.tolerance)
+
+    def _across(self, y: Array, begin: float, end: float) -> Array:
+        """y at the end of an interval, through all events in it."""
+        while begin < end:
+            phase = np.linspace(begin, end, PARTS + 1)
+            values = self._ahead(y, phase)
+            last, event = self._looked(values, phase[: len(values)])
+            y, begin = (values[last], float(phase[last])) if event is None else event
+        return y
+
+    def _event(self, y: Array, begin: float, end: float, fallen: NDArray[np.int_]) -> tuple[Array, float]:
+        """y after the first event in an interval, and where it is."""
+        floor = self._floor
+
+        def motion(tau: float) -> Array:
+            return self.sweep(self._modes, y, np.array([begin, tau]))[-1]
+
+        def at(k: int) -> Root:
+            level = 0.0 if guard(k, 0.0)(begin, y)[0] > 0 else float(floor[k])
+            return root(motion, guard(k, level), begin, end, BESIDE * float(self._size[k]))
+
+        def guard(k: int, level: float) -> Callable[[float, Array], tuple[float, float]]:
+            def value(tau: float, y: Array) -> tuple[float, float]:
+                g, rate = self._values(y[None], np.array([tau]))
+                return float(g[0, k]) - level, float(rate[0, k])
+
+            return value
+
+        found = min((at(int(k)) for k in fallen), key=lambda each: each.after)
+        now = self._values(found.y_after[None], np.array([found.after]))[0][0]
+        return self._passed(found, [self._guards[k] for k in fallen if now[k] <= 0])
+
+    def _passed(self, found: Root, fallen: Sequence[Guard]) -> tuple[Array, float]:
+        """What an event makes of a motion."""
+        mapped, before = self.switching.maps(fallen), self._modes
+        at, y = (found.before, found.y_before) if mapped else (found.after, found.y_after)
+        if len(self._passages) == self._most:
+            raise IntegrationError(f"events pile up at tau = {at:.6g}", at)
+        state, after = self.switching.passed(fallen, before, at, y[: self.states])
+        y = self._with(y, state, at)
+        self._passages.append(Passage(found, y, after, mapped))
+        self._events += self.switching.events(before, after, fallen, at)
+        self._enter(after)
+        return y, at
+
+    def _with(self, y: Array, state: Array, at: float) -> Array:
+        if np.array_equal(state, y[: self.states]):
+            return y
+        return self.settle(np.concatenate([state, y[self.states :]]), at)
+
+
+def _power_of_2(number: int) -> int:
+    """The largest that is no larger, so that few integrators do; 0 for 0."""
+    return 1 << number.bit_length() >> 1
+
+
+def _filled(phase: Array) -> tuple[Array, NDArray[np.int_]]:
+    """Phases that are nowhere farther apart than LONGEST, and the indices of the given ones."""
+    counts = np.maximum(np.ceil(np.diff(phase) / LONGEST), 1).astype(int)
+    places = np.append(0, np.cumsum(counts))
+    inner = np.arange(places[-1]) - np.repeat(places[:-1], counts)
+    every = np.repeat(phase[:-1], counts) + np.repeat(np.diff(phase) / counts, counts) * inner
+    return np.append(every, phase[-1]), places

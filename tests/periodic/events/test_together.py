@@ -1,0 +1,103 @@
+"""Sliders that are let go together, by the rest of the word."""
+
+from __future__ import annotations
+
+import pytest
+
+import symbolic as sym
+from periodic.events.rewrites.together import together
+from periodic.orbit.mesh import EventNode
+from periodic.system import STUCK, Kind, surfaces_of
+
+
+def beside(*parts: str) -> sym.CompiledSystem:
+    """A mass on friction and on sliders."""
+    x = sym.coordinate("x", unit="m")
+    model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.1) + sym.HarmonicForce(x, 1.0)
+    if "friction" in parts:
+        model = model + sym.CoulombFriction(x, 0.5)
+    if "slider" in parts:
+        model = model + sym.Jenkins(x, 1.0, 0.2, creep=None)
+    if "sliders" in parts:
+        model = model + sym.Iwan(x, 1.0, [0.1, 0.2], creep=None)
+    return sym.compile(model)
+
+
+def guards(system: sym.CompiledSystem, kind: Kind) -> list[tuple[int, int, int]]:
+    """Guards and releases (up, down) of surfaces."""
+    each = [s for s in surfaces_of(system) if s.kind == kind]
+    return [(s.switch, *s.releases) for s in each if s.releases is not None]
+
+
+def test_sliders_held_together_are_let_go_together() -> None:
+    """Assert that two releases become one where both were carried on before their stop at one turn."""
+    system = beside("sliders")
+    (a, up_a, down_a), (b, up_b, down_b) = guards(system, Kind.SLIDER)
+    both = ((a, STUCK), (b, STUCK))
+    word = [
+        (EventNode(a, -1, modes=both), 0.5),
+        (EventNode(up_a, 1), 1.0),
+        (EventNode(up_b, 1), 1.1),
+        (EventNode(a, -1, modes=both), 2.0),
+        (EventNode(down_a, -1), 2.5),
+        (EventNode(down_b, -1), 2.7),
+        (EventNode(a, 1, modes=both), 4.0),
+        (EventNode(up_a, 1), 4.5),
+        (EventNode(up_b, 1), 4.7),
+    ]
+    found = together(system, word, 0.1)
+    assert len(found) == len(word) - 1
+    joint = [event for event, _ in found if event.modes and event.switch in (up_a, up_b)]
+    assert [dict(event.modes) for event in joint] in ([{b: 1}], [{a: 1}])
+    assert together(system, found, 0.1) == found
+
+
+def test_a_slider_that_has_slipped_is_let_go_by_itself() -> None:
+    """Assert that a joint release is parted where one of both slips before, it earlier than the other."""
+    system = beside("sliders")
+    (a, up_a, down_a), (b, up_b, down_b) = guards(system, Kind.SLIDER)
+    both = ((a, STUCK), (b, STUCK))
+    word = [
+        (EventNode(a, -1, modes=both), 0.5),
+        (EventNode(down_a, -1), 0.8),
+        (EventNode(a, 1, modes=((a, STUCK),)), 0.9),
+        (EventNode(up_a, 1, modes=((b, 1),)), 1.5),
+        (EventNode(a, -1, modes=both), 3.0),
+        (EventNode(down_a, -1), 3.5),
+        (EventNode(down_b, -1), 3.7),
+        (EventNode(a, 1, modes=both), 5.0),
+        (EventNode(up_a, 1), 5.5),
+        (EventNode(up_b, 1), 5.7),
+    ]
+    found = together(system, word, 0.1)
+    alone = [(event.switch, phase) for event, phase in found if 1.4 < phase < 1.6]
+    assert [switch for switch, _ in alone] == [up_a, up_b]
+    assert alone[1][1] == 1.5
+    assert alone[0][1] == pytest.approx(1.5 - 0.5 * 0.1**2)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_friction_takes_a_slider_along(direction: int) -> None:
+    """Assert that a slider at its limit beside friction that holds goes with it, and only the same way."""
+    system = beside("friction", "slider")
+    ((c, up, down),), ((z, up_z, down_z),) = guards(system, Kind.SLIDING), guards(system, Kind.SLIDER)
+    release = EventNode(up if direction > 0 else down, direction)
+    slips = EventNode(up_z if direction > 0 else down_z, direction)
+    word = [
+        (EventNode(c, -1, modes=((c, STUCK), (z, STUCK))), 1.0),
+        (release, 1.5),
+        (slips, 1.6),
+        *(
+            [(EventNode(c, -1, modes=((z, STUCK),)), 3.0), (EventNode(down_z, -1), 3.5)]
+            if direction > 0
+            else []
+        ),
+        (EventNode(c, 1, modes=((z, STUCK),)), 5.0),
+        (EventNode(up_z, 1), 5.5),
+    ]
+    found = together(system, word, 0.1)
+    if direction < 0:
+        assert found == word
+    else:
+        assert (EventNode(up, 1, modes=((z, 1),)), 1.5) in found
+        assert len(found) == len(word) - 1
