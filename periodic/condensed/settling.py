@@ -10,9 +10,10 @@ import numpy as np
 from periodic.condensed.linearised import answer
 from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
-from periodic.events.modes import sides, twins
+from periodic.events.modes import sides
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
+from periodic.events.twinguards import twins
 from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit

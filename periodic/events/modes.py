@@ -34,9 +34,6 @@ from periodic.system import (
     surfaces_of,
 )
 
-LOOKS = 3
-"""States at which guards are compared."""
-
 _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
     weakref.WeakKeyDictionary()
 )
@@ -61,21 +58,6 @@ def bends(system: System) -> list[int]:
 def returns(system: System) -> list[int]:
     """Return those past whose level an excursion may be as short as it likes: all but relays."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
-
-
-def twins(system: System, switch: int) -> list[int]:
-    """Return the guards of surfaces at which motions may be held that are one function, this one first.
-
-    The speeds at which elastic sliders side by side are strained are one: those that slip stop at once.
-    """
-    held = of_held(system)
-    if switch not in held or len(held) < 2:
-        return [switch]
-    state, _ = system.rest(system.nominal)
-    moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
-    values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
-    same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
-    return [switch, *same]
 
 
 def relays(system: System) -> list[int]:

@@ -13,12 +13,13 @@ from typing import cast
 import numpy as np
 
 from periodic.events.heldalong import placed
-from periodic.events.modes import of_kind, sides, twins
+from periodic.events.modes import of_kind, sides
 from periodic.events.relays import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SAME_PHASE
+from periodic.events.twinguards import twins
 from periodic.events.violations import largest
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -48,8 +49,11 @@ APART = 1e-5
 """How far from each other (rad) events are put that are one in time, but do not bring each other about."""
 
 
-def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
-    """Return the event nodes of what happened along a motion, with their phases."""
+def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = ()) -> list[Node]:
+    """Return the event nodes of what happened along a motion, with their phases.
+
+    always: guards of friction that is held all along.
+    """
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
     for _, group in groupby(rows, key=lambda event: round(event.phase / SAME_PHASE)):
@@ -57,7 +61,7 @@ def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
         for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
             node = _node(system, surfaces[apart[0].surface], apart)
             found.append((node, apart[0].phase + count * APART))
-    return together(system, found, APART)
+    return together(system, found, APART, always)
 
 
 def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
@@ -65,10 +69,24 @@ def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
     surfaces = surfaces_of(system)
     if _brings_about(system, surfaces[each[0].surface]):
         return [each]
-    found = dict[int, list[Happened]]()
+    found, held = dict[int, list[Happened]](), _held(surfaces, each)
     for event in each:
-        found.setdefault(min(twins(system, surfaces[event.surface].switch)), []).append(event)
+        found.setdefault(min(twins(system, surfaces[event.surface].switch, held)), []).append(event)
     return list(found.values())
+
+
+def _held(surfaces: Sequence[SurfaceLike], each: Sequence[Happened]) -> list[int]:
+    """The guards of friction that is held before and after what happens at one phase."""
+    changed = {event.surface for event in each}
+    modes = enumerate(zip(surfaces, each[-1].modes, strict=True))
+    return [s.switch for i, (s, m) in modes if s.kind == Kind.SLIDING and m == STUCK and i not in changed]
+
+
+def _always(system: System, whole: Followed) -> list[int]:
+    """The guards of friction that is held in all of a motion."""
+    changed = {event.surface for event in whole.events}
+    modes = enumerate(zip(surfaces_of(system), whole.modes, strict=True))
+    return [s.switch for i, (s, m) in modes if s.kind == Kind.SLIDING and m == STUCK and i not in changed]
 
 
 def _brings_about(system: System, surface: SurfaceLike) -> bool:
@@ -146,7 +164,7 @@ def orbit_of(
     if not hasattr(whole, "modes"):
         return None
     whole = cast(Followed, whole)
-    nodes = word_of(system, whole.events)
+    nodes = word_of(system, whole.events, _always(system, whole))
     changed = {k for event, _ in nodes for k in (event.switch, *(k for k, _ in event.modes))}
     mesh, phases = _mesh(system, nodes)
     modes, parameter = list[tuple[int, int]](), parameter.copy()

@@ -129,9 +129,10 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:
-        surface = leading(system, surface)
+        surface, sign = leading(system, orbit, surface, at.interval)
         assert surface.releases is not None
-        k, at = surface.switch, replace(at, switch=surface.switch)
+        k, side = surface.switch, sign * side
+        at = replace(at, switch=k, value=sign * at.value)
         release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
         new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
