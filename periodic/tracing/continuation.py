@@ -44,13 +44,14 @@ not resolve, or towards a change that no special point accounts for."""
 @dataclass(frozen=True)
 class Step:
     """A step that was taken: its end, the length of the next one, the special points inside it, the course
-    of the test functions, and the change of pattern at which it ends, if any."""
+    of the test functions, the change of pattern at which it ends, if any, and how long it was to be."""
 
     end: Solution
     further: float
     special: list[Found]
     course: Course
     change: Reached | None = None
+    wanted: float = 0.0
 
     @property
     def label(self) -> Label:
@@ -263,7 +264,7 @@ class Continuation:
                     self.collected[-1] = replace(self.collected[-1], label=Label.END)
             yield self.collected[-1]
             if self.stop is None and step.change is not None:
-                yield from self._crossed(step.change)
+                yield from self._crossed(step.change, step.wanted)
             if self.stop is not None:
                 return
             base = self._prepared(self.state.last)
@@ -295,7 +296,7 @@ class Continuation:
                     control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
                 )
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
-                return Step(new, further, found, course, tried.change)
+                return Step(new, further, found, course, tried.change, ds)
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
@@ -358,8 +359,12 @@ class Continuation:
         self.collected.append(point)
         return point
 
-    def _crossed(self, at: Reached) -> Iterator[Point]:
-        """Yield the orbit beyond a change of pattern, from which the branch goes on."""
+    def _crossed(self, at: Reached, wanted: float) -> Iterator[Point]:
+        """Yield the orbit beyond a change of pattern, from which the branch goes on.
+
+        wanted: how long the step would have been that met it. Events that change places leave a branch as it
+        is, so that the next one may be as long.
+        """
         assert self.state is not None
         found = crossed(self.solver, at)
         if found is not None:
@@ -370,7 +375,7 @@ class Continuation:
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
             if found.touches:
                 self._counted(Label.GRAZING)
-            ds = self.control.ds if found.touches or at.change.touches else found.distance
+            ds = self.control.ds if found.touches or at.change.touches else max(found.distance, wanted)
             kept, last = len(self.collected), found.solution
             least = min(self.control.ds_min, NEARLY * ds)
             self.state = replace(self.state, last=last, ds=ds, kept=kept, least=least, course=Course())
