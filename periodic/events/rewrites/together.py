@@ -116,8 +116,10 @@ def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
         return None
     event, _ = word.nodes[own.stop]
     if friction := word.holding(surface, own.stop):
-        each = [(_after(surface_of(word.system, k), word.nodes, own.stop), k) for k in friction]
-        after, k = min((after, k) for after, k in each if after)
+        each = ((_after(surface_of(word.system, k), word.nodes, own.stop), k) for k in friction)
+        after, k = min(((after, k) for after, k in each if after), default=(0, 0))
+        if not after:
+            return None
         node = (own.stop + after) % len(word.nodes)
         onward = mode_after(surface_of(word.system, k), word.nodes[node][0]) == friction[k] * own.direction
         return node if onward else None
