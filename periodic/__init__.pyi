@@ -21,7 +21,7 @@ from .correction.problem import Problem
 from .correction.tolerance import Accuracy, Tolerance
 from .equilibrium.method import Equilibrium
 from .equilibrium.normalform import first_lyapunov
-from .events.tying import KinkSettings
+from .events.eventnodes import KinkSettings
 from .harmonic.method import HarmonicBalance
 from .maps.map import design_map
 from .orbit.extrema import extrema, outputs

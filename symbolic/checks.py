@@ -12,7 +12,7 @@ import numpy as np
 T = TypeVar("T")
 
 LONGEST_QUOTE = 60
-"""Values longer than this are cut in a sentence."""
+"""Names and values longer than this are cut in a sentence."""
 
 
 def refusal(field: str, value: object, allowed: str) -> ValueError:

@@ -24,11 +24,11 @@ from periodic.correction.newton import Correction, LinearisedEquations, NewtonSe
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events import impacts, tying
+from periodic.events import eventnodes, impacts
+from periodic.events.eventnodes import Crossing, KinkSettings
+from periodic.events.eventrows import event_rows
 from periodic.events.modes import of_held, relays
-from periodic.events.noderows import event_rows
 from periodic.events.resting import neglected
-from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
@@ -194,9 +194,9 @@ class CollocationRefinement(Refinement):
     @cached_property
     def wanted(self) -> list[Crossing]:
         """The crossings to tie the mesh to, at levels not below the error of the orbit."""
-        settings, meaningful = self._settings, tying.DEEPEST * min(self.error.orbit, 1.0)
+        settings, meaningful = self._settings, eventnodes.DEEPEST * min(self.error.orbit, 1.0)
         deepest = max(settings.deepest or 0.0, meaningful)
-        return tying.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
+        return eventnodes.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
 
     @property
     def _settings(self) -> KinkSettings:
@@ -205,7 +205,7 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return tying.fits(self.wanted, self.orbit)
+        return eventnodes.fits(self.wanted, self.orbit)
 
     @property
     def mendable(self) -> bool:
@@ -256,7 +256,7 @@ class CollocationRefinement(Refinement):
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
         for chosen in self._choices():
-            tied, phases = tying.placed(self.system, self.orbit, chosen)
+            tied, phases = eventnodes.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -276,4 +276,4 @@ class CollocationRefinement(Refinement):
         levels = [c.event.level for c in self.wanted if c.event.level > 0]
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
-            yield tying.wanted(self.system, self.orbit, shallower)
+            yield eventnodes.wanted(self.system, self.orbit, shallower)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -25,7 +25,7 @@ from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events.noderows import event_rows
+from periodic.events.eventrows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.linear.variation import Variations
@@ -34,8 +34,9 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.orbit.shallow import shallow
 from periodic.stability.multipliers import Spectrum
-from periodic.system import System, jumps_of, slides_of
+from periodic.system import System, jumps_of, linear_of, slides_of
 
 BRIEF_CONTACT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
@@ -55,7 +56,6 @@ class CondensedCollocation(SplitMethod, MeshMethod):
     ntst: int = 12
     ntst_min: int = 6
 
-    whole: ClassVar[type[Discretisation]] = Collocation
     ends_below: ClassVar[float] = 0.1
     all_states: ClassVar[bool] = False
 
@@ -126,7 +126,7 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
-        named = {f.name: getattr(found, f.name) for f in fields(found)}
+        named = shallow(found)
         if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
@@ -164,4 +164,4 @@ class CondensedCollocation(SplitMethod, MeshMethod):
 
 def mesh_method(system: System) -> MeshMethod:
     """Return the method that piecewise polynomials of a system are of: of all states, or of its places."""
-    return CondensedCollocation() if CondensedCollocation.takes(system) else Collocation()
+    return CondensedCollocation() if linear_of(system) is not None else Collocation()

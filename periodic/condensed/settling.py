@@ -10,10 +10,10 @@ import numpy as np
 from periodic.condensed.linearised import answer
 from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
+from periodic.events.eventnodes import exact_crossings
 from periodic.events.modes import sides, twins
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
-from periodic.events.tying import exact_crossings
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -27,7 +27,7 @@ FINE = 4096
 """Steps in the period that is kept."""
 
 PERIODS = 100
-"""Most periods that a motion is given to settle."""
+"""Most periods of the excitation that a motion is given to settle."""
 
 SHORTEST = 1e-6
 """Least width (rad) of steps and intervals, in which changes of mode are located."""

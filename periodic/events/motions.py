@@ -6,7 +6,8 @@ were: that is the orbit's word. Joints that neither slip nor come to rest in all
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import cast
 
@@ -28,7 +29,6 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import (
     HELD,
     STUCK,
-    Followed,
     Happened,
     Kind,
     Moving,
@@ -141,11 +141,11 @@ def orbit_of(
     followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
     if not followed and all(surface.leaves is None for surface in surfaces_of(system)):
         return None
-    ends = np.array([begin, begin + FORCED])
-    whole = motion_from(system, state, algebraic, parameter, ends, tolerance, before)
-    if not hasattr(whole, "modes"):
-        return None
-    whole = cast(Followed, whole)
+
+    def follow(phase: Array, parameter: Array) -> TrajectoryLike:
+        return motion_from(system, state, algebraic, parameter, phase, tolerance, before)
+
+    whole = follow(np.array([begin, begin + FORCED]), parameter)
     nodes = word_of(system, whole.events)
     changed = {k for event, _ in nodes for k in (event.switch, *(k for k, _ in event.modes))}
     mesh, phases = _mesh(system, nodes)
@@ -158,7 +158,7 @@ def orbit_of(
             parameter, mode = placed(surface, parameter, state[None]), HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin, before)
+    return replace(_on(mesh, phases, parameter, begin, follow), layout=layout_of(system))
 
 
 def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
@@ -178,7 +178,7 @@ def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) ->
         ends = np.array([begin, begin + FORCED])
         path = motion_from(moving, state, algebraic, orbit.parameter, ends, tolerance, modes)
         state, algebraic = path.state[-1], path.algebraic[-1]
-        modes = list(cast(Followed, path).modes) if hasattr(path, "modes") else modes
+        modes = list(path.modes)
     return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin, modes)
 
 
@@ -222,15 +222,11 @@ def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
 
 
 def _on(
-    system: Moving,
     mesh: Mesh,
     phases: Array,
-    state: Array,
-    algebraic: Array,
     parameter: Array,
-    tolerance: float,
     begin: float,
-    before: Sequence[int] | None,
+    follow: Callable[[Array, Array], TrajectoryLike],
 ) -> Orbit:
     """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
@@ -241,7 +237,7 @@ def _on(
         stages[start - 1, -1] -= SAME_PHASE
     flat = begin + np.mod(np.concatenate([nodes, stages.ravel()]) - begin, FORCED)
     phase, place = np.unique(np.append(flat, [begin, begin + FORCED]), return_inverse=True)
-    path = motion_from(system, state, algebraic, parameter, phase, tolerance, before)
+    path = follow(phase, parameter)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]
     first, count = len(nodes), mesh.ntst
@@ -250,5 +246,5 @@ def _on(
     if mesh.events:
         states[-1] = states[0]
     inner = x[first : first + stages.size].reshape(shape)
-    unknown = z[first : first + stages.size].reshape(*shape[:2], algebraic.size)
-    return Orbit(mesh, states, inner, unknown, phases, parameter, layout=layout_of(system))
+    unknown = z[first : first + stages.size].reshape(*shape[:2], z.shape[1])
+    return Orbit(mesh, states, inner, unknown, phases, parameter)

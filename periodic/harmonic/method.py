@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
+from periodic.orbit.shallow import shallow
 from periodic.refinement.demand import AIM
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
@@ -115,8 +116,7 @@ class HarmonicBalance(Discretisation):
             fundamental = form.fundamental(orbit)
         except FAILURES as error:
             return replace(correction, outcome=outcome_of(error))
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return FourierCorrection(**{**given, "fundamental": fundamental}, floquet=form)
+        return FourierCorrection(**{**shallow(correction), "fundamental": fundamental, "floquet": form})
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the series cut or filled up with zeros, its unknowns solved for."""

@@ -11,8 +11,7 @@ so that the coefficients of the places are the unknowns, whatever number of stat
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import ClassVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,6 @@ from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
 from periodic.condensed.split import SplitMethod
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
@@ -47,6 +45,7 @@ from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.orbit.shallow import shallow
 from periodic.stability.multipliers import Spectrum
 from periodic.system import LinearPart, ModesLike, System, linear_of
 
@@ -189,8 +188,6 @@ class SplitCorrection(Correction):
 class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
     """`HarmonicBalance` for a system with a linear part (`periodic.system.Split`)."""
 
-    whole: ClassVar[type[Discretisation]] = HarmonicBalance
-
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the balanced equations."""
         part = linear_of(system)
@@ -204,8 +201,7 @@ class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
             fundamental = leading.fundamental
         except FAILURES as error:
             return replace(correction, outcome=outcome_of(error))
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return SplitCorrection(**{**given, "fundamental": fundamental}, leading=leading)
+        return SplitCorrection(**{**shallow(correction), "fundamental": fundamental, "leading": leading})
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""

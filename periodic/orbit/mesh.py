@@ -6,13 +6,14 @@ phi are unknowns of the orbit, so that the mesh moves with them. Without any the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array, Scheme
+from periodic.orbit.shallow import shallow
 
 MIN_INTERVALS = 4
 """Least number of intervals in a segment."""
@@ -96,7 +97,7 @@ class Mesh:
     modes: tuple[tuple[int, int], ...] = ()
 
     def __getstate__(self) -> dict[str, object]:
-        return {f.name: getattr(self, f.name) for f in fields(self)}
+        return shallow(self)
 
     @property
     def ntst(self) -> int:

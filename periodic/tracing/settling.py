@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.condensed.settling import PERIODS, STILL
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
@@ -16,12 +17,6 @@ from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
-
-PERIODS = 100
-"""Most periods of the excitation that a motion is given to settle."""
-
-STILL = 1e-3
-"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
 NEAR = 1e-2
 """The same of an orbit on which Newton's method on the return map ends: its word can be read."""
@@ -66,10 +61,10 @@ def _integrated(system: System, start: Orbit) -> Orbit | None:
             return None
         if found is not None or _closed(path.state):
             last = path.state[-1], path.algebraic[-1], start.parameter, FOLLOWED
-            if (converged := orbit_of(moving, *last, before=getattr(path, "modes", None))) is not None:
+            if (converged := orbit_of(moving, *last, before=path.modes)) is not None:
                 return converged
             return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], path.modes
     return None
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-LONGEST_QUOTE = 60
-"""Names and values longer than this are cut in a sentence."""
+from symbolic.checks import LONGEST_QUOTE
 
 HUGE = 10**LONGEST_QUOTE
 """Whole numbers of which it is enough to say so; Python refuses to write the largest out."""
