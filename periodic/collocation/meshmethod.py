@@ -23,7 +23,7 @@ from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import eventnodes, motions
 from periodic.events.eventnodes import KinkSettings
 from periodic.events.modes import completed, group, of_held, of_kind, relays
-from periodic.events.relays import switched
+from periodic.events.relaypassages import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver

@@ -17,7 +17,7 @@ from periodic.checks import at_least_0, number
 from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
 from periodic.events.modes import bends, relays, surface_of
-from periodic.events.relays import switched
+from periodic.events.relaypassages import switched
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode

@@ -15,7 +15,7 @@ import numpy as np
 
 from periodic.events.heldalong import placed
 from periodic.events.modes import of_kind, sides, twins
-from periodic.events.relays import mode_at
+from periodic.events.relaypassages import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.switchpolynomials import SwitchPolynomials

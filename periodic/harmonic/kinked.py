@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.collocation.method import Collocation
+from periodic.collocation.collocation import Collocation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.problem import Problem
 from periodic.events.eventnodes import exact_crossings, placed

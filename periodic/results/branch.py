@@ -15,7 +15,7 @@ from periodic.bifurcations.twoparameter.remarks import noted
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
-from periodic.results.overview import branch_html
+from periodic.results.branchoverview import branch_html
 from periodic.results.point import Point
 from periodic.results.record import Record
 from periodic.results.stop import Stop

@@ -14,7 +14,7 @@ from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName
 from periodic.correction.error import AT_WORST, ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.display.tables import paragraph
+from periodic.display.htmltables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_ONE, without_trivial

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
+from periodic.collocation.collocation import Collocation
 from periodic.collocation.meshmethod import MeshMethod
-from periodic.collocation.method import Collocation
-from periodic.condensed.method import CondensedCollocation
-from periodic.condensed.split import SplitMethod
+from periodic.condensed.condensedcollocation import CondensedCollocation
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.condensed.whole.wider import WholeSystem
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
-from periodic.harmonic.method import HarmonicBalance
-from periodic.harmonic.split import SplitHarmonicBalance
+from periodic.harmonic.harmonicbalance import HarmonicBalance
+from periodic.harmonic.splitbalance import SplitHarmonicBalance
 from periodic.system import Condensable, System, Within, linear_of
 
 

@@ -17,7 +17,7 @@ from periodic.correction.newton import NewtonSettings
 from periodic.events.modes import sides
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.mesh import Mesh
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling, jumps_of, resets_of

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.residual import Evaluated
-from periodic.orbit.native.arrays import plain, source
+from periodic.orbit.native.addresses import plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearisationLike, System, compiling

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, plain, source
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, compiling

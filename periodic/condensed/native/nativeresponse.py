@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from periodic.condensed.modal.moments import SERIES_UP_TO, TERMS, Complex, Table
 from periodic.condensed.modal.response import Response, moments_of
 from periodic.orbit.mesh import Grid
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, plain, source
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import ModesLike, System, compiling
 

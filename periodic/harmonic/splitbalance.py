@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
-from periodic.condensed.split import SplitMethod
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import UNKNOWN, ErrorEstimate
 from periodic.correction.newton import USUAL, Correction, moved, newton_step
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import on_coefficients, projected
-from periodic.harmonic.method import HarmonicBalance, with_unknowns
+from periodic.harmonic.harmonicbalance import HarmonicBalance, with_unknowns
 from periodic.harmonic.series import (
     NO_PHASES,
     FourierOrbit,

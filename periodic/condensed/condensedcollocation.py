@@ -9,15 +9,15 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.collocation.collocation import Collocation
 from periodic.collocation.meshmethod import MeshMethod, scheme_for
-from periodic.collocation.method import Collocation
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import SplitLinearisation, exempt
 from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.settling import followed
-from periodic.condensed.split import SplitMethod
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.condensed.variations import CondensedVariations
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate, deferred
