@@ -19,8 +19,8 @@ from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.newton import Correction, LinearisedEquations, NewtonSettings, in_order, linearised
+from periodic.correction.error import UNKNOWN, ErrorEstimate, Halving, deferred
+from periodic.correction.newton import Correction, Equations, LinearisedEquations, NewtonSettings, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -113,22 +113,15 @@ class Collocation(MeshMethod):
         found = iteration.corrected(*given) if self._plain else None
         return super().corrected(*given) if found is None else found
 
-    def _beside(
-        self,
-        system: System,
-        orbit: Orbit,
-        free: tuple[int, ...],
-        conditions: Sequence[SideCondition],
-        settings: NewtonSettings,
-    ) -> LinearisedEquations:
+    def _beside(self, equations: Equations, orbit: Orbit) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
         Event nodes are put off their levels by as much as rounding may: that does not change the orbit
         noticeably, but the multipliers where a contact is shallow.
         """
-        off = aside(orbit, event_rows(system, orbit, free))
-        given = (system, orbit, free, conditions, settings)
-        found = linearised(partial(self._equations, off=off), *given)
+        system = equations.system
+        off = aside(orbit, event_rows(system, orbit, equations.free))
+        found = replace(equations, linearise=partial(self._equations, off=off)).solved(orbit)
         return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
 
     @property
@@ -153,7 +146,7 @@ class Collocation(MeshMethod):
         plain = self._plain and not isinstance(spectrum, GradedSpectrum)
         found = estimated(problem, orbit, tangent, spectrum) if plain else None
         if found is None:
-            error = deferred(self.linearise, problem, orbit, tangent, spectrum, solved=self._beside)
+            error = deferred(self.linearise, problem, orbit, tangent, spectrum, Halving(solved=self._beside))
             found = Estimated(error, error is not UNKNOWN)
         error = found.error
         if error is UNKNOWN:

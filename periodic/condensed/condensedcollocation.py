@@ -20,7 +20,7 @@ from periodic.condensed.settling import followed
 from periodic.condensed.splitmethod import SplitMethod
 from periodic.condensed.variations import CondensedVariations
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.error import ErrorEstimate, Halving, deferred
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
@@ -113,13 +113,13 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         if isinstance(operator, CondensedOperator) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
         exempted = self._exempted(problem.system, operator)
-        beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
+        beside = OneSided()
         brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < BRIEF_CONTACT
         digits = (
             PARAMETER_SHARE * operator.rounding if brief and isinstance(operator, CondensedOperator) else 0.0
         )
-        found = deferred(*given, lengths=True, digits=digits)
+        how = Halving(only_at_points=exempted, solved=beside, lengths=True, digits=digits)
+        found = deferred(self._brief, problem, correction.orbit, tangent, spectrum, how)
         missing = self._misheld(problem.system, correction.orbit, found)
         if missing:
             return replace(found, orbit=missing)

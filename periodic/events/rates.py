@@ -32,16 +32,6 @@ def rates_at(
     return found[:, :n]
 
 
-def rate_at(
-    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
-) -> Array:
-    """Return x' (n,) at a state (1, n) and a phase (1,) on given sides of jumps, from guesses of x' and z.
-
-    Raises numpy.linalg.LinAlgError where the equations do not determine it.
-    """
-    return rates_at(system, orbit.parameter, x, rate[None], algebraic[None], phase, side[None])[0]
-
-
 def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:
     """The interval before an event node, the state x- at its end, shape (1, n), and the phase, shape (1,)."""
     interval = int(orbit.mesh.starts[index] - 1) % orbit.mesh.ntst

@@ -11,7 +11,7 @@ from periodic.checks import whole
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate
-from periodic.correction.newton import USUAL, Correction, moved, newton_step
+from periodic.correction.newton import USUAL, Correction, Equations, moved
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -137,13 +137,13 @@ class HarmonicBalance(Discretisation):
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
         direction = tangent.restricted(orbit, fine)
         arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
+        closing = [*problem.side_conditions(fine), arclength]
         try:
-            step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
+            step = Equations(self.linearise, system, problem.free, closing).step(fine)
         except FAILURES:
             return UNKNOWN
         error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
-        factor = newton.max_change / max(step.length, newton.max_change)
+        factor = USUAL.max_change / max(step.length, USUAL.max_change)
         better = moved(system, problem.free, fine, step.increment, factor)
         try:
             multiplier = correction.floquet.error(system, _series(better))

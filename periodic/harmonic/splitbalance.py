@@ -22,7 +22,7 @@ from periodic.condensed.modal.response import Response
 from periodic.condensed.splitmethod import SplitMethod
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import UNKNOWN, ErrorEstimate
-from periodic.correction.newton import USUAL, Correction, moved, newton_step
+from periodic.correction.newton import USUAL, Correction, Equations, moved
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import on_coefficients, projected
@@ -218,10 +218,10 @@ class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
         fine = with_unknowns(system, series(orbit, more))
         direction = tangent.restricted(orbit, fine)
         arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
+        closing = [*problem.side_conditions(fine), arclength]
         try:
-            step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
-            factor = newton.max_change / max(step.length, newton.max_change)
+            step = Equations(self.linearise, system, problem.free, closing).step(fine)
+            factor = USUAL.max_change / max(step.length, USUAL.max_change)
             better = moved(system, problem.free, fine, step.increment, factor)
             multiplier = spectrum.apart(_leading(system, replace(correction, orbit=better)).fundamental[-1])
         except FAILURES:
