@@ -7,10 +7,11 @@ parameter says; 0 leaves it to the state.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import SwitchInfo
 
 MINUS, PLUS, STUCK, HELD = -1, 1, 2, 3
@@ -70,48 +71,41 @@ class Surface:
     leaves: int | None = None
 
 
+def releases(expressions: Expressions, switches: int) -> dict[int, tuple[int, int]]:
+    """Return the switches (up, down) at which it ends that motions slide along jumps, or sliders are held."""
+    sliding = [k for k, *_ in expressions.sided.slides]
+    first = switches - 2 * len(sliding) - len(expressions.resting)
+    found = {k: (first + 2 * i, first + 2 * i + 1) for i, k in enumerate(sliding)}
+    found |= {k: held.releases for k, held in expressions.sliders.items()}
+    return dict(sorted(found.items()))
+
+
 def surfaces(
-    switches: Sequence[SwitchInfo],
-    resets: Container[int],
-    jumps: Sequence[int],
-    slides: Mapping[int, tuple[int, int]],
-    sliders: Container[int] = (),
-    places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
-    relays: Container[int] = (),
-    alone: Container[int] = (),
-    leaves: Mapping[int, int] | None = None,
+    expressions: Expressions, switches: Sequence[SwitchInfo], parameters: Sequence[str]
 ) -> tuple[Surface, ...]:
     """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
 
     Parameters
     ----------
+    expressions : Expressions
+        The system's equations.
     switches : sequence of SwitchInfo
-        All switches.
-    resets : container of int
-        Those at which the state is mapped.
-    jumps : sequence of int
-        Those at which the equations jump, in the order of the columns of `side`.
-    slides : mapping of int to tuple of int
-        Of those along which motions slide, and of sliders, the two releases.
-    sliders : container of int
-        Those of elastic sliders.
-    places : mapping of int to (int, tuple of float), optional
-        Where they may be held: see `Surface`.
-    relays : container of int
-        Those of relays.
-    alone : container of int
-        Those of sliding that may be HELD without a place.
-    leaves : mapping of int to int, optional
-        Of walls, the switches at which what rests on them leaves.
+        Its switches.
+    parameters : sequence of str
+        Names of its parameters.
     """
-    released = {k for pair in slides.values() for k in pair} | set((leaves or {}).values())
+    e, slides = expressions, releases(expressions, len(switches))
+    leaves = {k: resting.leaves for k, resting in e.resting.items()}
+    places = {k: (parameters.index(name), weights) for k, (name, weights) in e.places.items()}
+    released = {*(k for pair in slides.values() for k in pair), *leaves.values()}
+    jumps = e.sided.jumps
 
     def kind(k: int) -> Kind:
-        if k in resets:
+        if k in e.resets:
             return Kind.IMPACT
-        if k in sliders:
+        if k in e.sliders:
             return Kind.SLIDER
-        if k in relays:
+        if k in e.relays:
             return Kind.RELAY
         if k in jumps:
             return Kind.SLIDING if k in slides else Kind.JUMP
@@ -125,9 +119,9 @@ def surfaces(
             k,
             slides.get(k),
             jumps.index(k) if k in jumps else None,
-            (places or {}).get(k) if k in slides else None,
-            k in alone,
-            (leaves or {}).get(k),
+            places.get(k) if k in slides else None,
+            k in e.sided.alone,
+            leaves.get(k),
         )
         for k, info in enumerate(switches)
         if k not in released
