@@ -9,7 +9,7 @@ from functools import cached_property
 
 from symbolic.arrays import Array
 from symbolic.checks import numbers, one_of, refusal, typed
-from symbolic.equations.surfaces import Surface, releases, surfaces
+from symbolic.equations.surfaces import Surface
 from symbolic.equations.tex.rows import equations
 from symbolic.equations.variables import Variable
 from symbolic.integration.field import VectorField
@@ -19,6 +19,7 @@ from symbolic.structures.linearpart import Held, LinearPart, Modes
 from symbolic.structures.rowspart import RowsPart
 from symbolic.system.angularfrequency import AngularFrequency
 from symbolic.system.evaluated import Evaluated
+from symbolic.system.kinds import releases, surfaces
 from symbolic.system.overview import overview
 from symbolic.tables import listed
 
