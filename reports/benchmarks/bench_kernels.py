@@ -11,7 +11,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import periodic as per
 import symbolic as sym
-from periodic.correction.newton import Equations, NewtonSettings, correct
+from periodic.correction.newton import Equations, correct
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import Orbit
