@@ -76,6 +76,17 @@ class Assembly(Workbench):
     """Collects what the parts contribute; `symbolic.compile` turns it into a System.
 
     It is the workbench on which they lay their terms, with the switches that mark kinks in time.
+
+    Parameters
+    ----------
+    excitation : Excitation
+        Its angle, harmonics and frequency.
+    numbers : Numbers
+        What becomes the parameters of the model.
+    sketch : Sketch
+        How it looks.
+    omega : casadi.SX
+        Placeholder of the angular frequency of the phase, so that dq/dt = omega dq/dtau.
     """
 
     switches: list[tuple[SwitchInfo, ca.SX]] = field(default_factory=list, init=False)

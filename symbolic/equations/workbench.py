@@ -42,19 +42,7 @@ def _added(symbol: ca.SX, increment: ca.SX) -> ca.SX:
 
 @dataclass
 class Workbench:
-    """What equations of motion are written with.
-
-    Parameters
-    ----------
-    excitation : Excitation
-        Its angle, harmonics and frequency.
-    numbers : Numbers
-        What becomes the parameters of the model.
-    sketch : Sketch
-        How it looks.
-    omega : casadi.SX
-        Placeholder of the angular frequency of the phase, so that dq/dt = omega dq/dtau.
-    """
+    """What equations of motion are written with; for its fields see `Assembly`."""
 
     excitation: Excitation = field(default_factory=Excitation)
     numbers: Numbers = field(default_factory=Numbers)
