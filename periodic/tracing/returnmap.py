@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy
+from scipy.optimize import fsolve
 
 from periodic.orbit.scheme import Array
 
@@ -60,16 +60,17 @@ class ReturnMap:
         def moved(place: Array) -> Array:  # places about 1, so that differences are parts of the range
             return state + scale * (place - 1)
 
-        found = scipy.optimize.root(
-            lambda place: self.residual(moved(place)) / scale,
+        def apart(place: Array) -> list[float]:
+            return list(self.residual(moved(place)) / scale)
+
+        place, found, *_ = fsolve(
+            apart,
             np.ones(len(state)),
-            method="hybr",
-            options={
-                "xtol": self.tolerance,
-                "eps": DIFFERENCE**2,
-                "factor": 1.0,
-                "maxfev": STEPS * (len(state) + 1),
-            },
+            full_output=True,
+            xtol=self.tolerance,
+            maxfev=STEPS * (len(state) + 1),
+            epsfcn=DIFFERENCE**2,
+            factor=1.0,
         )
-        near = np.abs(found.fun * scale).max() <= self.enough * self.range.max()
-        return moved(found.x) if near else None
+        near = np.abs(found["fvec"] * scale).max() <= self.enough * self.range.max()
+        return moved(place) if near else None
