@@ -101,6 +101,12 @@ def releases(system: System, switch: int) -> tuple[int, int]:
     return found
 
 
+def release(surface: SurfaceLike, way: int) -> int:
+    """Return the switch at which what a surface holds is released upwards (1), or downwards (-1)."""
+    assert surface.releases is not None
+    return surface.releases[0 if way > 0 else 1]
+
+
 def column(system: System, switch: int) -> int:
     """Return the column of a guard's surface among the modes."""
     found = surface_of(system, switch).column

@@ -14,7 +14,7 @@ from typing import cast
 import numpy as np
 
 from periodic.events.heldalong import placed
-from periodic.events.modes import of_kind, sides, twins
+from periodic.events.modes import of_kind, release, sides, twins
 from periodic.events.relaypassages import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
@@ -104,7 +104,7 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
     if surface.kind == Kind.IMPACT:
         return surface.switch, system.switches[surface.switch].direction
     if event.before == STUCK and surface.releases is not None:
-        return surface.releases[0 if event.after > 0 else 1], event.after
+        return release(surface, event.after), event.after
     return surface.switch, -event.before if event.after == STUCK else event.after
 
 

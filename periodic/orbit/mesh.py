@@ -44,6 +44,15 @@ class EventNode:
     level: float = 0.0
     modes: tuple[tuple[int, int], ...] = ()
 
+    def modes_beside(self, switch: int) -> tuple[tuple[int, int], ...]:
+        """Return the modes of all surfaces but that of one guard, with their guards."""
+        return tuple(pair for pair in self.modes if pair[0] != switch)
+
+
+def wrapped(phase: float, period: float) -> float:
+    """Return a difference of phases as one between minus and plus half a period (rad)."""
+    return float(np.mod(phase + period / 2, period) - period / 2)
+
 
 @dataclass(frozen=True)
 class Grid:
