@@ -20,13 +20,12 @@ from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
 from periodic.condensed.splitmethod import SplitMethod
-from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import UNKNOWN, ErrorEstimate
-from periodic.correction.newton import USUAL, Correction, Equations, moved
+from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import on_coefficients, projected
-from periodic.harmonic.harmonicbalance import HarmonicBalance, with_unknowns
+from periodic.harmonic.harmonicbalance import HarmonicBalance, finer, with_unknowns
 from periodic.harmonic.series import (
     NO_PHASES,
     FourierOrbit,
@@ -42,7 +41,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
-from periodic.orbit.orbit import LEAST_SPAN, Orbit
+from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.orbit.shallow import shallow
@@ -216,17 +215,11 @@ class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
         present = harmonics_of(orbit.mesh)
         more = mesh_for(present + max(4, present // 2), orbit.mesh.period)
         fine = with_unknowns(system, series(orbit, more))
-        direction = tangent.restricted(orbit, fine)
-        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing = [*problem.side_conditions(fine), arclength]
         try:
-            step = Equations(self.linearise, system, problem.free, closing).step(fine)
-            factor = USUAL.max_change / max(step.length, USUAL.max_change)
-            better = moved(system, problem.free, fine, step.increment, factor)
+            error, better = finer(self.linearise, problem, orbit, fine, tangent)
             multiplier = spectrum.apart(_leading(system, replace(correction, orbit=better)).fundamental[-1])
         except FAILURES:
             return UNKNOWN
-        error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
         return ErrorEstimate(error, multiplier)
 
 
