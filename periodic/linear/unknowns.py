@@ -8,6 +8,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
 from periodic.orbit.shallow import shallow
 
@@ -175,6 +176,22 @@ class Increment:
         blank, same = parameter_only(new, self.parameter), new.mesh.events == old.mesh.events and not later
         phases = self.phases if same else blank.phases
         return type(self)(blank.nodes, blank.stages, blank.algebraic, phases, self.parameters, profile)
+
+    def rate_of(self, row: Row) -> float:
+        """Return how fast a number of an orbit changes along the increment, by its gradient.
+
+        Parameters
+        ----------
+        row : Row
+            The number.
+
+        Returns
+        -------
+        float
+            Its derivative.
+        """
+        found = np.vdot(row.nodes, self.nodes) + row.outer @ np.append(self.phases, self.parameters)
+        return float(found if row.stages is None else found + np.vdot(row.stages, self.stages))
 
     def save(self) -> dict[str, Array]:
         """Return the arrays by name."""
