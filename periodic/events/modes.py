@@ -253,16 +253,11 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
 
 def linearise(
     system: System,
-    rate: Array,
-    state: Array,
-    algebraic: Array,
-    phase: Array,
-    parameter: Array,
+    at: tuple[Array, Array, Array, Array, Array],
     side: Array,
     free: tuple[int, ...] = (),
 ) -> LinearisationLike:
-    """Linearise the equations in given modes (points, columns) of the surfaces."""
+    """Linearise the equations at (rate, state, algebraic, phase, parameter) in modes (points, columns)."""
     if not side.any():
-        return system.linearise(rate, state, algebraic, phase, parameter, free)
-    beside = cast(Jumping, system)
-    return beside.linearise_beside(rate, state, algebraic, phase, parameter, side, free)
+        return system.linearise(*at, free)
+    return cast(Jumping, system).linearise_beside(*at, side, free)

@@ -23,7 +23,7 @@ def rates_at(
     """
     n, found = x.shape[1], np.concatenate([rate, algebraic], axis=1)
     for _ in range(MOST_ITERATIONS):
-        line = linearise(system, found[:, :n], x, found[:, n:], phase, parameter, side)
+        line = linearise(system, (found[:, :n], x, found[:, n:], phase, parameter), side)
         matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)
         change = np.linalg.solve(matrix, line.residual[..., None])[..., 0]
         found = found - change
