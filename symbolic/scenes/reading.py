@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symbolic.checks import LONGEST_QUOTE
+from symbolic.quoting import LONGEST_QUOTE
 from symbolic.scenes.errors import InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
