@@ -83,6 +83,12 @@ def releases(system: System, switch: int) -> tuple[int, int]:
     return found
 
 
+def release(surface: SurfaceLike, way: int) -> int:
+    """Return the switch at which what a surface holds is released upwards (1), or downwards (-1)."""
+    assert surface.releases is not None
+    return surface.releases[0 if way > 0 else 1]
+
+
 def column(system: System, switch: int) -> int:
     """Return the column of a guard's surface among the modes."""
     found = surface_of(system, switch).column
@@ -229,16 +235,11 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
 
 def linearise(
     system: System,
-    rate: Array,
-    state: Array,
-    algebraic: Array,
-    phase: Array,
-    parameter: Array,
+    at: tuple[Array, Array, Array, Array, Array],
     side: Array,
     free: tuple[int, ...] = (),
 ) -> LinearisationLike:
-    """Linearise the equations in given modes (points, columns) of the surfaces."""
+    """Linearise the equations at (rate, state, algebraic, phase, parameter) in modes (points, columns)."""
     if not side.any():
-        return system.linearise(rate, state, algebraic, phase, parameter, free)
-    beside = cast(Jumping, system)
-    return beside.linearise_beside(rate, state, algebraic, phase, parameter, side, free)
+        return system.linearise(*at, free)
+    return cast(Jumping, system).linearise_beside(*at, side, free)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from periodic.events.impactmodes import thrown
 from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
-from periodic.orbit.mesh import EventNode
+from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
@@ -301,7 +301,7 @@ class SwitchPolynomials:
             return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
-            return abs(_wrapped(e.phase - place, self.orbit.mesh.period))
+            return abs(wrapped(e.phase - place, self.orbit.mesh.period))
 
         every = self.minima(switch, side)
         if not every:
@@ -340,10 +340,6 @@ class SwitchPolynomials:
         resting = self._resting(surface_of(self.system, switch))
         left = resting[interval - 1] & (theta == 0.0)
         return np.asarray(resting[interval] | left)
-
-
-def _wrapped(phase: float, period: float) -> float:
-    return float(np.mod(phase + period / 2, period) - period / 2)
 
 
 def _changing(coefficients: Array) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from periodic.events.impactmodes import thrown
 from periodic.events.impacts import slope_before
-from periodic.events.modes import mode_after, modes_in, surface_of
+from periodic.events.modes import mode_after, modes_in, release, surface_of
 from periodic.events.rates import before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import RELEASED, TOGETHER
@@ -230,10 +230,10 @@ def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Vi
         if k == own.switch or surface.releases is None or surface.column is None:
             continue
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
-        release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
-        torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
-        most = largest(dense, release)
-        if not torn and abs(before[release]) > TOGETHER * most:
+        leaves = k if mode == STUCK else release(surface, mode)
+        torn = mode != STUCK and mode * before[leaves] < 0 < mode * after[leaves]
+        most = largest(dense, leaves)
+        if not torn and abs(before[leaves]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 

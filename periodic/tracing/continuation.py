@@ -26,7 +26,7 @@ from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
-from periodic.results.stop import Stop
+from periodic.results.stop import Reason, Stop
 from periodic.tracing.ends import ending
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
@@ -156,13 +156,13 @@ class Continuation:
         if not base.ok:
             beyond = found.shortfall
             self.stop = (
-                Stop.inaccurate(beyond)
+                Stop(Reason.INACCURATE, beyond)
                 if beyond
-                else Stop.no_start(found.why_not(base.outcome, self.start.parameter))
+                else Stop(Reason.NO_START, found.why_not(base.outcome, self.start.parameter))
             )
             return
         if base.error.motion > solver.tolerance.orbit:
-            self.stop = Stop.inaccurate(base.refinement.shortfall)
+            self.stop = Stop(Reason.INACCURATE, base.refinement.shortfall)
             return
         if repeats(solver, base):
             raise ValueError(
@@ -209,7 +209,7 @@ class Continuation:
             return
         for found in (begun, again):
             if not found.ok:
-                self.stop = Stop.no_start(found.outcome.value)
+                self.stop = Stop(Reason.NO_START, found.outcome.value)
                 return
         # Newton has moved it by rounding; what follows shall be just what would have followed.
         correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
@@ -268,7 +268,7 @@ class Continuation:
             if self.stop is not None:
                 return
             base = self._prepared(self.state.last)
-        self.stop = Stop.max_points(self.control.max_points)
+        self.stop = Stop.after(Reason.MAX_POINTS, self.control.max_points)
 
     def _taken(self, base: Solution, worded: bool) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected.
@@ -303,7 +303,7 @@ class Continuation:
                 self._unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
                 if self._unread or not ds >= least:
-                    self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
+                    self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
                     return None
 
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
@@ -329,20 +329,20 @@ class Continuation:
         state, label, own = self.state, special.label, bool(special.name)
         if label is Label.USER and not own:
             if state.left and closes(self.solver, state.begun, special.solution):
-                self.stop = Stop.closed(state.steps + 1)
+                self.stop = Stop.after(Reason.CLOSED, state.steps + 1)
                 label = Label.END
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
             bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
-                Stop.limit(special.name)
+                Stop(Reason.BOUND, special.name)
                 if own
                 else Stop.bound(bounds, special.solution.value, state.begun.value)
             )
         name = special.name if label is Label.USER and own else label.value
         if special.shrunk:
-            self.stop = Stop.equilibrium(state.steps + 1)
+            self.stop = Stop.after(Reason.EQUILIBRIUM, state.steps + 1)
         self._counted(name)
         yield self._emitted(special.solution, label, special.name if own else "")
 
@@ -383,11 +383,11 @@ class Continuation:
             for special in named if found.touches else []:
                 yield from self._met(special)
         elif at.change.last:
-            self.stop = Stop.small_step(f"{at.change.name}, beyond which the motion is another one")
+            self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
         elif (at.change.strict or at.change.final) and self._reread(at.end):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
-            self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
+            self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")
 
     def _reread(self, base: Solution) -> bool:
         """Go on beyond a change that no rewrite is for, to an orbit whose word its own motion tells."""

@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.condensed.settling import PERIODS, STILL
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
@@ -16,12 +17,6 @@ from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
-
-PERIODS = 100
-"""Most periods of the excitation that a motion is given to settle."""
-
-STILL = 1e-3
-"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
 
 CLOSE = 1e-2 * STILL
 """The same where events lie so near to each other that their order asks for it."""
@@ -51,8 +46,7 @@ def _integrated(system: System, start: Orbit) -> Iterator[Orbit]:
     """The motion of a system with all its states."""
     if not hasattr(system, "motion"):
         return
-    still = iter((STILL, CLOSE))
-    wanted = next(still)
+    wanted = STILL
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
     state, algebraic, modes = start.nodes[0], start.algebraic[0, 0], None
     for count in range(PERIODS):
@@ -67,15 +61,13 @@ def _integrated(system: System, start: Orbit) -> Iterator[Orbit]:
             return
         if not np.isfinite(path.state).all():
             return
-        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], path.modes
         if found is not None or _closed(path.state, wanted):
             converged = orbit_of(moving, state, algebraic, start.parameter, FOLLOWED, before=modes)
-            yield converged or sampled(
-                path.phase, path.state, path.algebraic, start.parameter, system=system
-            )
-            wanted = next(still, None)
-            if wanted is None or converged is None:
+            yield converged or sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
+            if wanted == CLOSE or converged is None:
                 return
+            wanted = CLOSE
 
 
 def _fixed(

@@ -15,7 +15,7 @@ from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
 from symbolic.structures.matrices import DENSE
 from symbolic.system.compiled import CompiledSystem
-from symbolic.system.split import condensed
+from symbolic.system.splitting import condensed
 
 
 def compile(  # noqa: A001

@@ -14,7 +14,7 @@ from reference.joints.judging import judged as judged_joints
 from reference.judging import Verdict, judged
 from support.drawn import contact
 from support.drawn.contact import Case
-from support.drawn.joints import DOWN, UP, JointCase, drawn_joints
+from support.drawn.jointcases import DOWN, UP, JointCase, drawn_joints
 
 import periodic as per
 from reports.studies.extremes.survey import within

@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import group, mode_after, relays, returns, surface_of
+from periodic.events.modes import group, mode_after, relays, release, returns, surface_of
 from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.merging import merged, merging
@@ -276,9 +276,8 @@ def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
     assert surface is not None and surface.releases is not None
     j, guard = (i + 1) % len(orbit.phases), surface.switch
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]
-    up, down = surface.releases
-    onward = up if first.direction > 0 else down
-    others = tuple(pair for pair in first.modes if pair[0] != guard)
+    onward = release(surface, first.direction)
+    others = first.modes_beside(guard)
     if row is CROSSING_SLIDING:
         passes = replace(first, modes=others)
         return Site(row, onward, i, Limit(i, onward, first.direction), 0.0, (), (j,), ((i, passes),))

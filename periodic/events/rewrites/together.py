@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from periodic.events.modes import mode_after, of_kind, surface_of
+from periodic.events.modes import mode_after, of_kind, release, surface_of
 from periodic.events.rewrites.sites import Node
 from periodic.events.twinguards import held_at, holding, twins
 from periodic.orbit.mesh import EventNode
@@ -92,7 +92,6 @@ def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list
     joint = _partners(word, surface, own)
     if leader == own.node or (leader is None and not joint):
         return None
-    assert surface.releases is not None
     phase, found = nodes[own.node][1], list(nodes)
     rest = without(system, nodes[own.node][0], surface.switch)
     if leader is not None:
@@ -103,7 +102,7 @@ def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list
     if leader is None:
         friction = any(k.kind == Kind.SLIDING for k in joint)
         part, power = LATER if friction else EARLIER
-        alone = EventNode(surface.releases[0 if own.direction > 0 else 1], own.direction)
+        alone = EventNode(release(surface, own.direction), own.direction)
         found.append((alone, phase + part * size**power))
     elif rest is None:
         del found[own.node]
@@ -159,15 +158,14 @@ def _partners(word: Word, surface: SurfaceLike, own: Release) -> list[SurfaceLik
 
 def without(system: System, event: EventNode, guard: int) -> EventNode | None:
     """Return the event node of twins without one of them; None where it is its alone."""
-    others = tuple(pair for pair in event.modes if pair[0] != guard)
+    others = event.modes_beside(guard)
     if surface_of(system, event.switch).switch != guard:
         return replace(event, modes=others)
     if not others:
         return None
     if event.switch == guard:
         return EventNode(others[0][0], event.direction, event.level, others)
-    second = surface_of(system, others[0][0]).releases
-    if second is None:
+    second = surface_of(system, others[0][0])
+    if second.releases is None:
         return None
-    switch = second[0 if event.direction > 0 else 1]
-    return EventNode(switch, event.direction, event.level, others[1:])
+    return EventNode(release(second, event.direction), event.direction, event.level, others[1:])
