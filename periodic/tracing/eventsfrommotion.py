@@ -21,6 +21,7 @@ from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
+from periodic.tracing.heldplaces import amid
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
 
@@ -65,6 +66,8 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
+    if (moved := amid(solver, base, sign)) is not base:
+        return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
     search = _Search(solver, base, sign)
     each = (search.found(first, partial(search.reworded, before=before)) for before in BEFORE)
     found = next((crossed for crossed in each if crossed is not None), None)

@@ -2,6 +2,7 @@
 
 A motion determines that only within bounds. In the middle the pull on the joint is as far from its limit one
 way as the other, and along the branch both limits are reached at once: there slips there and back begin.
+Where the bounds move along a branch one of them is reached first: the joint is pulled to another place.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.events.modes import held_all_along
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
@@ -26,13 +28,13 @@ MOST_MOVES = 3
 """How often the places are moved."""
 
 
-def amid(solver: Solver, guess: Orbit, found: Solution, sign: float) -> Solution:
-    """Return a first orbit with its joints held amid their bounds, those whose place the guess does not give.
+def amid(solver: Solver, found: Solution, sign: float, given: Mesh | None = None) -> Solution:
+    """Return an orbit with its joints held amid their bounds, but for those whose place is `given`.
 
     The one found where there are none, or where no other orbit is.
     """
     system = solver.problem.system
-    loose = [s for s in _held(system, found.orbit) if not held_all_along(guess.mesh, s)]
+    loose = [s for s in _held(system, found.orbit) if given is None or not held_all_along(given, s)]
     tolerance = solver.tolerance.orbit
     for _ in range(MOST_MOVES if loose else 0):
         off = _off_centre(system, found.orbit, loose)

@@ -63,7 +63,7 @@ class Start:
         """
         try:
             first = self._found(guess, sign)
-            return amid(self.solver, guess, first, sign) if first.ok else first
+            return amid(self.solver, first, sign, guess.mesh) if first.ok else first
         except SpentError:
             raise SpentError(f"all before a first orbit: {self._sought}; {SPENT}") from None
 
