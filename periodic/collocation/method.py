@@ -27,7 +27,7 @@ from periodic.correction.refinement import Refinement
 from periodic.events import impacts, tying
 from periodic.events.modes import of_held, relays
 from periodic.events.noderows import event_rows
-from periodic.events.resting import neglected
+from periodic.events.resting import bounced, lengthened, neglected
 from periodic.events.tying import Crossing, KinkSettings
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
@@ -143,7 +143,8 @@ class Collocation(MeshMethod):
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
-            yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            found = relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            yield bounced(system, orbit, found) if len(mesh.events) > len(orbit.mesh.events) else found
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
@@ -205,7 +206,12 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return tying.fits(self.wanted, self.orbit)
+        return self._longer is None and tying.fits(self.wanted, self.orbit)
+
+    @cached_property
+    def _longer(self) -> tuple[tuple[EventNode, ...], Array] | None:
+        """Event nodes with more of the bounces before a rest, where too much of them is left out."""
+        return lengthened(self.system, self.orbit, self.method.tolerance)
 
     @property
     def mendable(self) -> bool:
@@ -234,7 +240,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -242,7 +248,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
@@ -255,6 +261,9 @@ class CollocationRefinement(Refinement):
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        if self._longer is not None:
+            yield self._own(*self._longer), self._longer[1]
+            return
         for chosen in self._choices():
             tied, phases = tying.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases

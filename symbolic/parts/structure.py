@@ -363,17 +363,17 @@ class Structure(Part):
         position = ca.vertcat(*[m.position.symbol for m in motions])
         velocity = assembly.omega * ca.vertcat(*[m.velocity.symbol for m in motions])
         rates = assembly.omega**2 * ca.vertcat(*[m.velocity.derivative for m in motions])
-        mass, damping = _constant(matrices.M), dense(matrices.C)
+        damping = dense(matrices.C)
         if not self.modal_damping.none:
             damping = damping + self.modal_damping.matrix(matrices)
         internal = _constant(matrices.K) @ position + _constant(damping) @ velocity
         if matrices.G is not None:
             internal += assembly.omega * (_constant(matrices.G) @ velocity)
         diagonal = matrices.M.diagonal()
-        inertia = mass @ rates
+        coupling = (_constant(matrices.M) - ca.diag(ca.DM(diagonal))) @ rates
         for k, motion in enumerate(motions):
             motion.mass += float(diagonal[k])
-            motion.force -= internal[k] + inertia[k] - float(diagonal[k]) * rates[k]
+            motion.force -= internal[k] + coupling[k]
 
 
 def _at(given: Given, speed: float) -> Given:
