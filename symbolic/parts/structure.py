@@ -24,6 +24,9 @@ from symbolic.structures.matrices import DENSE, RELATIVE_STEP, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
 from symbolic.structures.modalslope import ModalSlope, modal_slope
 
+WHOLE = 40
+"""Most degrees of freedom of a structure that keeps all its states unasked, beside impacts."""
+
 Freedoms = int | Sequence[int]
 Given = Any
 """A matrix, a function of the speed Omega (rad/s) that returns one, or None."""
@@ -347,6 +350,19 @@ class Structure(Part):
                 named = [(known[k].name if k in known else place, k) for place, k in nodes]
                 assembly.sketch.structure(of, self.name, named)
                 return
+
+    def check_whole(self) -> None:
+        """Refuse a structure that is too large to have all its states, or whose matrices are functions."""
+        if any(callable(given) for given in (self.M, self.C, self.K)):
+            raise ValueError(
+                f"structure {self.name!r} has matrices that are functions of the speed; beside a RigidStop, "
+                f"or resets, it must have numbers: give the stop a stiffness, as OneSidedSpring has"
+            )
+        if self.size > WHOLE:
+            raise ValueError(
+                f"structure {self.name!r} has {self.size} degrees of freedom; beside a RigidStop, or resets, it "
+                f"keeps all its states and must have {WHOLE} at the most, as symbolic.craig_bampton leaves of it"
+            )
 
     def expand(self, assembly: Assembly) -> None:
         """Add the two states of every degree of freedom, inertia and internal forces."""
