@@ -56,9 +56,10 @@ def multipliers(steps: Array, known: float = EPSILON) -> NDArray[np.complex128]:
         growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
         turn = begun.T @ basis
         cuts = np.flatnonzero(growth[:-1] - growth[1:] > APART) + 1
-        blocks = np.split(np.arange(n), cuts)
-        if all(np.abs(turn[cut:, :cut]).max() < SETTLED for cut in cuts):
+        settled = [cut for cut in cuts if np.abs(turn[cut:, :cut]).max() < SETTLED]
+        if len(settled) == len(cuts):
             break
+    blocks = np.split(np.arange(n), settled)  # of a pair that turns the columns may grow apart, and never settle
     lost = (sizes < known * sizes.max(axis=1, keepdims=True)).any(axis=0)
     found = [_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks]
     return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])
