@@ -226,13 +226,15 @@ class CollocationRefinement(Refinement):
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
-        brief = "the motion sticks or slips there for too short a while to be followed"
+        brief = "the motion sticks, slips or rests there for too short a while to be followed"
         return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
     def _in_wrong_mode(self) -> bool:
-        """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
+        """Whether the orbit slips where it should stick, or rests before it can, which no finer mesh mends."""
+        if not np.isinf(self.error.orbit):
+            return False
+        return np.isinf(neglected(self.system, self.orbit)) or bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:

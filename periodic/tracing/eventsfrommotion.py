@@ -16,9 +16,11 @@ from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.events.impacts import tied
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
+from periodic.system import System
 from periodic.tracing.steps.patternchange import Crossed
 
 MOST_READINGS = 5
@@ -63,7 +65,7 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
 def _read(solver: Solver, base: Solution, first: float, sign: float, before: int) -> Crossed | None:
     """The same after some periods of the motion."""
     problem, (low, high) = solver.problem, solver.problem.bounds
-    for ds in (part * first for part in DISTANCES_BEYOND):
+    for ds in (part * first for part in _distances(problem.system, base)):
         ahead = tangent(problem, base, ds)
         parameter = ahead.parameter.copy()
         parameter[problem.index] = float(np.clip(problem.value(ahead), low, high))
@@ -78,6 +80,12 @@ def _read(solver: Solver, base: Solution, first: float, sign: float, before: int
         if apart <= FARTHEST * ds and found.tangent.parameter * sign > 0:
             return Crossed(found, apart, touches=False)
     return None
+
+
+def _distances(system: System, base: Solution) -> tuple[float, ...]:
+    """How far ahead is looked: nearer with impacts and where motions leave the orbit, perhaps for another."""
+    leaves = (np.abs(base.spectrum.multipliers) > 1).any() and tied(system, base.orbit)
+    return DISTANCES_BEYOND[2:] if leaves else DISTANCES_BEYOND
 
 
 def _fixed(solver: Solver, guess: Orbit, sign: float) -> Solution:
