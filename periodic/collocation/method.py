@@ -231,7 +231,7 @@ class CollocationRefinement(Refinement):
 
     @cached_property
     def _in_wrong_mode(self) -> bool:
-        """Whether the orbit slips where it should stick, or rests before it can, which no finer mesh mends."""
+        """Whether it slips where it should stick, or rests before it can, which no finer mesh mends."""
         if not np.isinf(self.error.orbit):
             return False
         return np.isinf(neglected(self.system, self.orbit)) or bool(mode_violations(self.system, self.orbit))

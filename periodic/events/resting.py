@@ -9,6 +9,11 @@ own phase. With w the speed after it and a = -s'' what presses, the bounces left
 and the mean square of their speeds over a period T is 2 w^3 / (3 a T (1 - e^3)); both to the first order in
 w, as a does not change in so short a time. The motion that leaves the wall later knows nothing of them.
 
+Inertia couples other coordinates to this one. With u its speed before the first of the impacts, and impulses
+in parts of the one that changes its speed by 1, all impacts give (1 + e) u/(1 - e). The wall's force at rest
+gives 2 e u/(1 - e) in the same time. The difference is u, the impulse that leaves no speed: with it at once,
+and the force at rest from then on, the others move as they do, to the first order.
+
 References
 ----------
 Nordmark & Piiroinen, Nonlinear Dynamics 58 (2009) 85.
@@ -16,7 +21,9 @@ Nordmark & Piiroinen, Nonlinear Dynamics 58 (2009) 85.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -82,9 +89,7 @@ def neglected(system: System, orbit: Orbit) -> float:
     return float(np.sqrt(square)) / max(orbit.span(), 1e-300)
 
 
-def lengthened(
-    system: System, orbit: Orbit, tolerance: float
-) -> tuple[tuple[EventNode, ...], Array] | None:
+def lengthened(system: System, orbit: Orbit, tolerance: float) -> tuple[tuple[EventNode, ...], Array] | None:
     """Return event nodes and phases with more of the bounces, where those left out are too much; else None.
 
     Each lasts e times as long as the one before; k more of them lessen the error by e^(3k/2).
@@ -108,33 +113,33 @@ def lengthened(
 
 
 def bounced(system: System, orbit: Orbit, guess: Orbit) -> Orbit:
-    """Return a guess on the mesh of `lengthened` with the bounces in it: speeds that fall as straight lines."""
-    nodes, stages, points = guess.nodes.copy(), guess.stages.copy(), guess.mesh.scheme.points
-    period, grid = guess.mesh.period, guess.grid
+    """Return a guess on the mesh of `lengthened` with the bounces in it; speeds fall as straight lines."""
+    nodes, stages, mesh = guess.nodes.copy(), guess.stages.copy(), guess.mesh
     for index in settling(system, orbit):
         left, switch = tail(system, orbit, index), orbit.mesh.events[index].switch
-        begin = _node(guess, switch, float(orbit.phases[index]))
-        if begin is None or (switch, STUCK) in guess.mesh.events[begin].modes:
-            continue
-        thrown, at = left.thrown, begin
-        while (switch, STUCK) not in guess.mesh.events[at].modes:
-            following = (at + 1) % len(guess.phases)
-            length = float(np.mod(guess.phases[following] - guess.phases[at], period))
-            first, count = int(guess.mesh.starts[at]), len(guess.mesh.breaks[at]) - 1
-            for k in range(first, first + count):
-                since = np.mod(grid.left[k] - guess.phases[at] + 1e-9 * length, period)
-                theta = (since + grid.width[k] * np.append(0.0, points)) / length
-                falling = (1 - 2 * theta)[:, None] * thrown
-                nodes[k] += falling[0]
-                stages[k] += falling[1:]
-            thrown, at = left.ratio * thrown, following
-    nodes[-1] = nodes[0] if guess.mesh.events else nodes[-1]
+        thrown, at = left.thrown, _nearest(guess, switch, float(orbit.phases[index]))
+        while (switch, STUCK) not in mesh.events[at].modes:
+            for k, falling in _falling(guess, at):
+                nodes[k] += falling[0] * thrown
+                stages[k] += falling[1:, None] * thrown
+            thrown, at = left.ratio * thrown, (at + 1) % len(mesh.events)
+    nodes[-1] = nodes[0]
     return replace(guess, nodes=nodes, stages=stages)
 
 
-def _node(orbit: Orbit, switch: int, phase: float) -> int | None:
+def _falling(orbit: Orbit, node: int) -> Iterator[tuple[int, Array]]:
+    """Yield the intervals from an event node to the next, with what falls from 1 to -1 at their knots."""
+    parts, first = orbit.mesh.breaks[node], int(orbit.mesh.starts[node])
+    knots = np.append(0.0, orbit.mesh.scheme.points)
+    for k, (begin, end) in enumerate(pairwise(parts)):
+        yield first + k, 1 - 2 * (begin + (end - begin) * knots)
+
+
+def _nearest(orbit: Orbit, switch: int, phase: float) -> int:
     """The event node of a switch nearest to a phase."""
-    own = [i for i, event in enumerate(orbit.mesh.events) if event.switch == switch]
-    period = orbit.mesh.period
+    own, period = (
+        [i for i, event in enumerate(orbit.mesh.events) if event.switch == switch],
+        orbit.mesh.period,
+    )
     away = [abs(np.mod(orbit.phases[i] - phase + period / 2, period) - period / 2) for i in own]
-    return own[int(np.argmin(away))] if own else None
+    return own[int(np.argmin(away))]

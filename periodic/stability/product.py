@@ -59,7 +59,9 @@ def multipliers(steps: Array, known: float = EPSILON) -> NDArray[np.complex128]:
         settled = [cut for cut in cuts if np.abs(turn[cut:, :cut]).max() < SETTLED]
         if len(settled) == len(cuts):
             break
-    blocks = np.split(np.arange(n), settled)  # of a pair that turns the columns may grow apart, and never settle
+    blocks = np.split(
+        np.arange(n), settled
+    )  # of a pair that turns the columns may grow apart, and never settle
     lost = (sizes < known * sizes.max(axis=1, keepdims=True)).any(axis=0)
     found = [_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks]
     return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])

@@ -116,7 +116,7 @@ def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -
 
 
 def mobility(motions: Sequence[Motion], hit: Motion, omega: ca.SX) -> dict[int, ca.SX]:
-    """Return M^-1 e, e a coordinate's unit vector, by the indices of the coordinates that inertia couples to it.
+    """Return M^-1 e, e a coordinate's unit vector, by the indices of the coordinates that inertia couples.
 
     The mass matrix M is read from the forces: they have -(M_ij q_j'') of the other coordinates.
     """

@@ -38,7 +38,8 @@ class Structure(Part):
 
     `structure["tip"]` is the coordinate of a place, to which springs, stops, films and forces attach as to
     any other. A model is compiled with its places alone, the rest of the structure condensed exactly
-    (`symbolic.compile`); with ``condense=False`` every degree of freedom brings its two states.
+    (`symbolic.compile`); with ``condense=False``, or beside a `RigidStop`, every degree of freedom brings its
+    two states.
 
     Parameters
     ----------
@@ -360,8 +361,8 @@ class Structure(Part):
             )
         if self.size > WHOLE:
             raise ValueError(
-                f"structure {self.name!r} has {self.size} degrees of freedom; beside a RigidStop, or resets, it "
-                f"keeps all its states and must have {WHOLE} at the most, as symbolic.craig_bampton leaves of it"
+                f"structure {self.name!r} has {self.size} degrees of freedom; beside a RigidStop, or resets, "
+                f"it keeps all its states and must have {WHOLE} at the most, as symbolic.craig_bampton leaves"
             )
 
     def expand(self, assembly: Assembly) -> None:

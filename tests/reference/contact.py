@@ -6,11 +6,10 @@ stay positive; no integrator takes part, and what is followed is exact to roundi
     Stop       G has column row', the mode with row z > 0; column force' where it jumps there
     Friction   G has side column at 1 while it slips, side = sign(row z); while it sticks the column carries
                the part L z of it, |L z| < 1, that keeps row z = 0
-    Wall       z becomes reset z where row z falls to 0; with a column, the force of the wall, it may rest there
+    Wall       z becomes reset z where row z falls to 0; with a column, that of its force, z may rest there
 
-An impact of less than a speed SLOW, pressed to the wall, is the last: with what would follow without number in
-finite time it comes to rest, row z = row z' = 0, by an impulse along the column, and rests until the column
-carries nothing, L z = 0.
+An impact slower than SLOW, pressed to the wall, is the last of impacts without number in finite time: z comes
+to rest, row z = row z' = 0, by an impulse along the column, and rests until the column's part L z is 0.
 
 Perturbations pass an event, z+ = R z, by S = R + (G+ R - R G-) z row / (row G- z) (di Bernardo et al.,
 Piecewise-smooth Dynamical Systems, 2.5).
@@ -134,7 +133,8 @@ class Contact:
         if not stuck:
             return G, stuck, np.zeros((0, len(G)))
         free = self.free(Omega)
-        rows = np.array([e.row @ free if isinstance(e, Wall) else e.row for e in map(self.elements.__getitem__, stuck)])
+        held = [self.elements[i] for i in stuck]
+        rows = np.array([e.row @ free if isinstance(e, Wall) else e.row for e in held])
         columns = np.array([self.elements[i].column for i in stuck]).T  # type: ignore[union-attr]
         carried = -np.linalg.solve(rows @ columns, rows @ G)
         return G + columns @ carried, stuck, carried
@@ -191,9 +191,8 @@ class Contact:
             return _with(mode, i, int(np.sign(needed))), same
         return _with(mode, i, 0), same
 
-
     def _rests(self, Omega: float, mode: Mode, i: int, z: Array) -> bool:
-        """Whether an impact of a wall is so slow that it comes to rest: pressed to it, its column carries more than 0."""
+        """Whether an impact is so slow that it comes to rest, and its wall has to push."""
         wall, free = self.elements[i], self.free(Omega)
         if not isinstance(wall, Wall) or wall.column is None or abs(wall.row @ free @ z) > SLOW:
             return False

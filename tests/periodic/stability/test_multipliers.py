@@ -10,6 +10,7 @@ from support.numpy_systems import Array
 
 from periodic.stability.graded import spectrum_of
 from periodic.stability.multipliers import Pair, Spectrum, nearest
+from periodic.stability.product import multipliers
 from periodic.stability.winding import meetings
 
 
@@ -81,3 +82,16 @@ def test_flow_that_does_not_come_back_as_itself_is_told() -> None:
         flow[1] = np.cos(rotated), np.sin(rotated)
         spectrum = spectrum_of(fundamental, Joints(steps, flow), 1)
         assert spectrum.known is (rotated == 0.0)
+
+
+@pytest.mark.parametrize("part", range(1, 15))
+def test_a_sheared_pair_stays_one(part: int) -> None:
+    """Assert 0.43 exp(+-i w) of a step that turns by w and stretches by 300: the columns never settle.
+
+    Where 15 w is a multiple of pi they seem to grow apart by 100 and more in the last period.
+    """
+    angle, stretch = np.pi * part / 15, np.diag([1.0, 300.0])
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    found = multipliers((0.43 * stretch @ turn @ np.linalg.inv(stretch))[None])
+    assert np.sort(np.angle(found)) == pytest.approx([-angle, angle], abs=1e-12)
+    assert np.abs(found) == pytest.approx(0.43, rel=1e-12)
