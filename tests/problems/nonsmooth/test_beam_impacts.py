@@ -183,6 +183,26 @@ def test_through_chatter() -> None:
     beam.check(last, orbit=1e-9, multipliers=1e-9)
 
 
+@pytest.mark.long
+def test_through_resonance() -> None:
+    """Assert that a branch goes from beyond the resonance to below it, and its upper fold.
+
+    On the way the bounces of a second sequence, of which ever more follow each other, end in a rest. Orbits
+    that rest are right to 1e-8, their multipliers to 1e-6: the tolerance is the standard one, 1e-7.
+    """
+    beam = Beam(2, 0.6)
+    branch = per.trace(beam.system, "Omega", (3.0, 4.5), start=4.5)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert branch[-1].parameter == 3.0
+    folds = [point.parameter for point in branch.labelled(Label.FOLD)]
+    assert folds[-1] == pytest.approx(3.76798047, abs=1e-7)
+    resting = [p for p in branch if any(event.modes for event in p.orbit.mesh.events)]
+    stable = [p for p in resting if p.stable and not p.label]
+    assert len(stable) > 10
+    for point in stable[::5]:
+        beam.check(point, orbit=1e-8, multipliers=1e-6)
+
+
 def test_large_structures_are_refused() -> None:
     """Assert the sentences about structures that cannot have all their states."""
     big = sym.Structure(sym.beam(length=1.0, bending=1.0, mass_per_length=1.0, elements=30), damping=0.02)
