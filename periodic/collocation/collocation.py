@@ -28,7 +28,7 @@ from periodic.events import eventnodes, impacts
 from periodic.events.eventnodes import Crossing, KinkSettings
 from periodic.events.eventrows import event_rows
 from periodic.events.modes import of_held, relays
-from periodic.events.resting import neglected
+from periodic.events.resting import bounced, lengthened, neglected
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
@@ -136,7 +136,8 @@ class Collocation(MeshMethod):
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
-            yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            found = relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            yield bounced(system, orbit, found) if len(mesh.events) > len(orbit.mesh.events) else found
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
@@ -198,7 +199,12 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return eventnodes.fits(self.wanted, self.orbit)
+        return self._longer is None and eventnodes.fits(self.wanted, self.orbit)
+
+    @cached_property
+    def _longer(self) -> tuple[tuple[EventNode, ...], Array] | None:
+        """Event nodes with more of the bounces before a rest, where too much of them is left out."""
+        return lengthened(self.system, self.orbit, self.method.tolerance)
 
     @property
     def mendable(self) -> bool:
@@ -213,13 +219,15 @@ class CollocationRefinement(Refinement):
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
-        brief = "the motion sticks or slips there for too short a while to be followed"
+        brief = "the motion sticks, slips or rests there for too short a while to be followed"
         return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
     def _in_wrong_mode(self) -> bool:
-        """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
+        """Whether it slips where it should stick, or rests before it can, which no finer mesh mends."""
+        if not np.isinf(self.error.orbit):
+            return False
+        return np.isinf(neglected(self.system, self.orbit)) or bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -227,7 +235,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -235,7 +243,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
@@ -248,6 +256,9 @@ class CollocationRefinement(Refinement):
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        if self._longer is not None:
+            yield self._own(*self._longer), self._longer[1]
+            return
         for chosen in self._choices():
             tied, phases = eventnodes.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases

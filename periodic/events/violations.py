@@ -119,7 +119,7 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
     """How far the orbit goes to the side of an impact's surface on which there is no motion, if it does."""
     side = -dense.system.switches[switch].direction
     along = dense.along(switch)
-    lowest = int((side * along.value).argmin())
+    lowest = int(np.where(dense.at_rest(along, switch), 0.0, side * along.value).argmin())
     depth = -side * float(along.value[lowest])
     return (
         [Violation(Breach.THROUGH, switch, along.extremum(switch, lowest), side, depth)] if depth > 0 else []

@@ -18,9 +18,11 @@ from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.events.impacts import tied
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
+from periodic.system import System
 from periodic.tracing.heldplaces import amid
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
@@ -30,9 +32,6 @@ MOST_READINGS = 5
 
 DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """How far ahead an orbit beyond a change is looked for, in first steps."""
-
-SETTLED_BEYOND = DISTANCES_BEYOND[1:4]
-"""The same of orbits to which motions settle, which takes long."""
 
 BEFORE = (0, 3)
 """Periods through which the motion is followed before its word is read: a joint that is held all along, and
@@ -68,10 +67,10 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
         return None
     if (moved := amid(solver, base, sign)) is not base:
         return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
-    search = _Search(solver, base, sign)
-    each = (search.found(first, partial(search.reworded, before=before)) for before in BEFORE)
+    search, near = _Search(solver, base, sign), _distances(solver.problem.system, base)
+    each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)
     found = next((crossed for crossed in each if crossed is not None), None)
-    return found or search.found(first, search.settled, SETTLED_BEYOND)
+    return found or search.found(first, search.settled, near[1:4])
 
 
 Reading = Callable[[Orbit], Iterator[Orbit]]
@@ -86,7 +85,7 @@ class _Search:
     base: Solution
     sign: float
 
-    def found(self, first: float, read: Reading, parts: Sequence[float] = DISTANCES_BEYOND) -> Crossed | None:
+    def found(self, first: float, read: Reading, parts: Sequence[float]) -> Crossed | None:
         """Return an orbit ahead, with the word that is read from a motion near it, if there is one."""
         for ds in (part * first for part in parts):
             for found in self._each(ds, read):
@@ -131,6 +130,12 @@ class _Search:
         apart = distance(self.solver.problem, base, found.orbit) / size_of(base)
         onward = found.tangent.parameter * self.sign > 0
         return Crossed(found, apart, touches=False) if onward else None
+
+
+def _distances(system: System, base: Solution) -> tuple[float, ...]:
+    """How far ahead is looked: nearer with impacts and where motions leave the orbit, perhaps for another."""
+    leaves = (np.abs(base.spectrum.multipliers) > 1).any() and tied(system, base.orbit)
+    return DISTANCES_BEYOND[2:] if leaves else DISTANCES_BEYOND
 
 
 def _fixed(solver: Solver, guess: Orbit, sign: float) -> Solution:

@@ -48,6 +48,9 @@ class Joint(Protocol):
 class Body(Protocol):
     """A linear structure of many degrees of freedom, at some of which other parts act."""
 
+    def check_whole(self) -> None:
+        """Refuse a structure that cannot have all its states in a model with impacts. Raises ValueError."""
+
     def expand(self, assembly: Assembly) -> None:
         """Add all its degrees of freedom, each with two states.
 
@@ -118,13 +121,17 @@ class Assembly(Workbench):
         Parameters
         ----------
         condense : bool
-            Whether structures keep two states at their places alone.
+            Whether structures keep two states at their places alone, where nothing resets states: an impulse
+            moves all of a structure at once.
         """
         for place, joint in self.joints.items():
             with kept_by(self), self.owned(str(getattr(place, "name", ""))):
                 joint.close(self)
+        jolted = bool(self.impacts or self.resets)
         for structure in self.structures:
-            (structure.condense if condense else structure.expand)(self)
+            if condense and jolted:
+                structure.check_whole()
+            (structure.condense if condense and not jolted else structure.expand)(self)
         for k, (motion, after) in self.impacts.items():
             self.resets[k] = struck(self.motions.values(), motion, after, self.omega)
 
