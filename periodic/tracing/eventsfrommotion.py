@@ -120,7 +120,9 @@ class _Search:
 
     def settled(self, near: Orbit) -> Iterator[Orbit]:
         """Yield the motion to which that from a state of an orbit settles, further and further."""
-        return settled(self.solver.discretisation, self.solver.problem.system, near)
+        method, system = self.solver.discretisation, self.solver.problem.system
+        if method.settles(system):
+            yield from settled(method, system, near)
 
     def _solved(self, guess: Orbit) -> Crossed | None:
         """The orbit near a guess, with its distance from the base, if the branch goes on there."""
