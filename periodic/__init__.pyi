@@ -4,8 +4,8 @@ from . import extend, maps, plots
 from .bifurcations.hopf import eigenvalues, hopf, normal_mode
 from .bifurcations.label import Label
 from .bifurcations.switching import SwitchError, branched, doubled
-from .collocation.method import Collocation
-from .condensed.whole.motion import motion
+from .collocation.collocation import Collocation
+from .condensed.whole.displacements import motion
 from .condensed.whole.recovery import recovery
 from .conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from .conditions.extremes import Maximum, Minimum, PeakToPeak
@@ -19,10 +19,10 @@ from .correction.condition import Given
 from .correction.newton import NewtonSettings
 from .correction.problem import Problem
 from .correction.tolerance import Accuracy, Tolerance
-from .equilibrium.method import Equilibrium
+from .equilibrium.equilibrium import Equilibrium
 from .equilibrium.normalform import first_lyapunov
-from .events.tying import KinkSettings
-from .harmonic.method import HarmonicBalance
+from .events.eventnodes import KinkSettings
+from .harmonic.harmonicbalance import HarmonicBalance
 from .maps.map import design_map
 from .orbit.extrema import extrema, outputs
 from .orbit.orbit import Orbit
@@ -36,7 +36,7 @@ from .results.netcdf import BranchFileError
 from .results.plots.branch import plot
 from .results.point import Point
 from .results.stop import Reason, Stop
-from .shooting.method import Shooting
+from .shooting.shooting import Shooting
 from .tori.invariant import Torus
 from .tori.torus import TorusError, torus
 from .tracing.continuation import Continuation

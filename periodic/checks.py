@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -71,6 +71,13 @@ def whole(name: str, value: Any, least: int = 1) -> int:
     if not (counts and value >= least):
         raise ValueError(f"{name} is {value!r}; it must be a whole number of at least {least}")
     return int(value)
+
+
+def one_of(name: str, value: Any, known: Collection[str]) -> str:
+    """Return a text that is among the known ones. Raises ValueError for any other."""
+    if value not in known:
+        raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(known)}")
+    return str(value)
 
 
 def named(name: str, value: Any, what: str) -> Mapping[str, Any]:

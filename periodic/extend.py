@@ -7,7 +7,7 @@ from periodic.bifurcations.switching import repeated, switched
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.condition import Condition, SideCondition
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.error import ErrorEstimate, Halving, deferred
 from periodic.correction.newton import Correction
 from periodic.correction.refinement import Refinement
 from periodic.correction.solution import Solution
@@ -26,6 +26,7 @@ __all__ = [
     "Correction",
     "Discretisation",
     "ErrorEstimate",
+    "Halving",
     "Increment",
     "LinearisationLike",
     "Mesh",

@@ -7,8 +7,8 @@ from .equations.variables import Coordinate, Parameter, Variable, coordinate, co
 from .integration.cvodes import IntegrationError
 from .kernels.choice import Kernels
 from .kernels.native import CompilerError
+from .motion.frequencyresponse import FrequencyResponse, response
 from .motion.linear import Modes, NoRestError, modes, resonance
-from .motion.response import FrequencyResponse, response
 from .motion.simulate import Simulation, SimulationInterrupted, simulate
 from .parts.bearings.rolling import RollingBearing
 from .parts.bearings.waves import RaceWave
@@ -59,7 +59,7 @@ from .structures.ross import ross_matrices
 from .structures.shaft import ShaftDisc, shaft
 from .system.compile import compile as compile
 from .system.compiled import CompiledSystem
-from .system.split import condensed, structure_of
+from .system.splitting import condensed, structure_of
 
 __all__ = [
     "Assembly",

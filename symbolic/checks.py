@@ -9,10 +9,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-T = TypeVar("T")
+from symbolic.quoting import shortened
 
-LONGEST_QUOTE = 60
-"""Values longer than this are cut in a sentence."""
+T = TypeVar("T")
 
 
 def refusal(field: str, value: object, allowed: str) -> ValueError:
@@ -23,7 +22,7 @@ def refusal(field: str, value: object, allowed: str) -> ValueError:
 def shown(value: object) -> str:
     """Return a value as a sentence shows it: on one line, texts in quotes, not too long."""
     text = " ".join((str(value) if isinstance(value, np.generic) else repr(value)).split())
-    return text if len(text) <= LONGEST_QUOTE else text[: LONGEST_QUOTE - 3] + "..."
+    return shortened(text)
 
 
 def finite(field: str, value: object) -> float:

@@ -15,7 +15,7 @@ import pytest
 import periodic as per
 import symbolic as sym
 from periodic.collocation.native.elimination import ELIMINATION
-from periodic.orbit.native.arrays import source
+from periodic.orbit.native.addresses import source
 from symbolic.kernels import built, native
 
 ROOT = Path(__file__).resolve().parent.parent

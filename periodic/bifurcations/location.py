@@ -197,16 +197,10 @@ def _located(within: WithinStep, span: tuple[float, float], ds: float, test: Tes
         return [Found(test.label, distance, solution)]  # it has no size for its error to be a part of
     better = _accepted(solver, refined(solver, solution))
     if better is not solution:
-        if not _alike(solver, solution, better):
+        if not solver.alike(solution, better):
             raise RejectedError("on another mesh a special point has other events")
         solution = _again(solver, better, ds, test)
     return [Found(test.label, distance, solution, test.name)]
-
-
-def _alike(solver: Solver, old: Solution, new: Solution) -> bool:
-    """Whether an orbit has the events on a new mesh that it had."""
-    method, system = solver.discretisation, solver.problem.system
-    return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
 
 
 def _root(

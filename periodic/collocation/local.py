@@ -76,15 +76,9 @@ def _iterate(system: System, orbit: Orbit, pieces: _Pieces) -> Array:
     with np.errstate(all="ignore"):  # intervals without length: what is not finite is refused below
         weights = scheme.stage_rates / pieces.width[:, None, None]
         rates = (weights @ knots).reshape(-1, n)
-    line = linearise(
-        system,
-        rates,
-        pieces.stages.reshape(-1, n),
-        pieces.algebraic.reshape(count * ncol, m),
-        pieces.tau.ravel(),
-        orbit.parameter,
-        np.repeat(pieces.side, ncol, axis=0),
-    )
+    stages, unknowns = pieces.stages.reshape(-1, n), pieces.algebraic.reshape(count * ncol, m)
+    at = rates, stages, unknowns, pieces.tau.ravel(), orbit.parameter
+    line = linearise(system, at, np.repeat(pieces.side, ncol, axis=0))
     columns = np.concatenate([line.residual[:, :, None], line.d_rate, line.d_state], axis=2)
     reduced, map_z = eliminate(finite(Rows(columns, line.d_algebraic)), n)
     local = reduced.reshape(count, ncol, n, -1)

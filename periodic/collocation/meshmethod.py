@@ -6,7 +6,7 @@ Its leaves are `Collocation`, of all states, and `CondensedCollocation`, of the 
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -20,11 +20,11 @@ from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
-from periodic.events import motions, tying
+from periodic.events import eventnodes, motions
+from periodic.events.eventnodes import KinkSettings
 from periodic.events.modes import completed, group, of_held, of_kind, relays
-from periodic.events.relays import switched
+from periodic.events.relaypassages import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
-from periodic.events.tying import KinkSettings
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
 from periodic.linear.variation import Variations
@@ -32,6 +32,7 @@ from periodic.orbit.construction import at_rest, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.orbit.shallow import shallow
 from periodic.refinement.equidistribution import redistribute
 from periodic.system import Kind, System
 
@@ -126,7 +127,7 @@ class MeshMethod(Discretisation):
         if not any(switched(system, orbit, k) for k in own):
             return orbit
         settings = (self.kinks or KinkSettings()).at(self.tolerance)
-        events, phases = tying.placed(system, orbit, tying.wanted(system, orbit, settings))
+        events, phases = eventnodes.placed(system, orbit, eventnodes.wanted(system, orbit, settings))
         mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         return transfer(orbit, mesh, phases)
 
@@ -136,8 +137,7 @@ class MeshMethod(Discretisation):
         wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
         if wrong is not None:
             return replace(correction, outcome=wrong)
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return SteppedCorrection(**given, system=system, equations=self.linearise)
+        return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""

@@ -52,16 +52,9 @@ class Evaluated:
         begin, end, _ = intervals.indices(count)
         tau, stages = self._places
         rate = orbit.knot_rates[begin:end, 1:].reshape(-1, n)
-        line = linearise(
-            system,
-            rate,
-            stages[begin:end].reshape(-1, n),
-            orbit.algebraic[begin:end].reshape(len(rate), orbit.algebraic.shape[2]),
-            tau[begin:end].ravel(),
-            orbit.parameter,
-            np.repeat(sides(system, orbit)[begin:end], ncol, axis=0),
-            self.free,
-        )
+        unknowns = orbit.algebraic[begin:end].reshape(len(rate), orbit.algebraic.shape[2])
+        at = rate, stages[begin:end].reshape(-1, n), unknowns, tau[begin:end].ravel(), orbit.parameter
+        line = linearise(system, at, np.repeat(sides(system, orbit)[begin:end], ncol, axis=0), self.free)
         exact = orbit.mesh.exact_ends
         ends = (exact[(exact >= begin) & (exact < end)] - begin) * ncol + ncol - 1
         if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:

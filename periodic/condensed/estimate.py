@@ -12,7 +12,6 @@ The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Mul
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,9 +21,8 @@ from periodic.condensed.floquet import Leading
 from periodic.condensed.linearised import Local, local_rows
 from periodic.condensed.operator import CondensedOperator
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.condition import SideCondition
 from periodic.correction.error import LEAST_VALUE, UNKNOWN, ErrorEstimate
-from periodic.correction.newton import Linearise, LinearisedEquations, NewtonSettings, newton_step
+from periodic.correction.newton import Equations, LinearisedEquations
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, size_of
@@ -32,7 +30,6 @@ from periodic.orbit.construction import bisect
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
-from periodic.system import System
 
 
 @dataclass(frozen=True)
@@ -81,20 +78,12 @@ class OneSided:
     which has the same contacts as the mesh.
     """
 
-    def __init__(self, linearise: Linearise) -> None:
-        self.linearise = linearise
+    def __init__(self) -> None:
         self.known: tuple[LinearisedEquations, NDArray[np.int_]] | None = None  # the first, and its contacts
 
-    def __call__(
-        self,
-        system: System,
-        orbit: Orbit,
-        free: tuple[int, ...],
-        conditions: Sequence[SideCondition],
-        settings: NewtonSettings,
-    ) -> LinearisedEquations:
+    def __call__(self, equations: Equations, orbit: Orbit) -> LinearisedEquations:
         """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
-        step = newton_step(self.linearise, system, orbit, free, conditions, settings)
+        step = equations.step(orbit)
         operator, kernel = step.operator, step.kernel
         assert isinstance(operator, CondensedOperator) and kernel is not None
         held = operator.system.held

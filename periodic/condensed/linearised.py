@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.condensed.modal.flexibility import Flexibility
+from periodic.condensed.modal.modalreduction import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.moments import Complex
-from periodic.condensed.modal.reduction import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes
 from periodic.condensed.modalsaltation import ModalSaltation, saltations
-from periodic.condensed.native.response import response_of
+from periodic.condensed.native.nativeresponse import response_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import LinearPart, ModesLike, System, jumps_of, linear_of

@@ -94,7 +94,7 @@ def _given(
     """
     n, rate, unknown = x.shape[1], np.zeros_like(x), guess[None].copy()
     for _ in range(MOST_ITERATIONS):
-        line = linearise(system, rate, x, unknown, phase, orbit.parameter, side[None])
+        line = linearise(system, (rate, x, unknown, phase, orbit.parameter), side[None])
         rows = np.concatenate([line.d_rate[0][:, own], line.d_algebraic[0]], axis=1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[:n]
         kept = np.append(driven.any(axis=1), np.ones(len(rows) - n, dtype=bool))

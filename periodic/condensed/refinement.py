@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.collocation.method import CollocationRefinement
+from periodic.collocation.collocation import CollocationRefinement
 from periodic.condensed.estimate import ContactError
 from periodic.condensed.linearised import answer, exempt, local_rows
 from periodic.condensed.memory import Memory

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +10,11 @@ import numpy as np
 from periodic.condensed.linearised import answer
 from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
-from periodic.events.modes import sides, twins
+from periodic.events.eventnodes import exact_crossings
+from periodic.events.modes import sides
 from periodic.events.motions import word_of
 from periodic.events.rewrites.sites import ordered
-from periodic.events.tying import exact_crossings
+from periodic.events.twinguards import twins
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -27,7 +28,7 @@ FINE = 4096
 """Steps in the period that is kept."""
 
 PERIODS = 100
-"""Most periods that a motion is given to settle."""
+"""Most periods of the excitation that a motion is given to settle."""
 
 SHORTEST = 1e-6
 """Least width (rad) of steps and intervals, in which changes of mode are located."""
@@ -115,7 +116,8 @@ def orbit_of(motion: Motion) -> Orbit:
     guess = sampled(motion.phase, np.array(motion.states), np.array(motion.unknowns), motion.parameter)
     records = _lasting(motion)
     kinked = [(crossing.event, crossing.phase) for crossing in exact_crossings(system, guess)]
-    events, phases = ordered([*word_of(system, _together(motion, records)), *kinked], guess)
+    word = word_of(system, _together(motion, records), _always(motion, records))
+    events, phases = ordered([*word, *kinked], guess)
     mesh = redistribute(guess, INTERVALS, events, phases, SHORTEST)
     modes, parameter = list[tuple[int, int]](), motion.parameter.copy()
     for joint in motion.joints:
@@ -128,6 +130,13 @@ def orbit_of(motion: Motion) -> Orbit:
         modes.append((joint.switch, mode))
     found = transfer(guess, replace(mesh, modes=tuple(modes)), phases)
     return replace(found, parameter=parameter)
+
+
+def _always(motion: Motion, records: Sequence[Changed]) -> list[int]:
+    """The guards of friction that is held all along."""
+    changed = {each.surface for each in records}
+    joints = (joint for joint in motion.joints if joint.slides and joint.index not in changed)
+    return [joint.switch for joint in joints if motion.side[joint.column] == STUCK]
 
 
 def _lasting(motion: Motion) -> list[Changed]:
@@ -180,11 +189,20 @@ def _side_by_side(motion: Motion, records: list[Changed]) -> list[Changed]:
     switches = {joint.index: joint.switch for joint in motion.joints}
     found = list[Changed]()
     for each in records:
-        same = twins(motion.system, switches[each.surface]) if each.after == STUCK else []
+        own = switches[each.surface]
+        alike = twins(motion.system, own, _held(motion, each)) if each.after == STUCK else {own: 1}
+        same = set(alike) - {own}
         stops = [other for other in found if other.after == STUCK and abs(each.step - other.step) <= 1]
-        first = next((other for other in stops if switches[other.surface] in same[1:]), each)
+        first = next((other for other in stops if switches[other.surface] in same), each)
         found.append(replace(each, phase=first.phase))
     return found
+
+
+def _held(motion: Motion, each: Changed) -> list[int]:
+    """The guards of friction that is held before and after a change."""
+    about = motion.sides[each.step], motion.sides[each.step + 1]
+    joints = (joint for joint in motion.joints if joint.slides and joint.index != each.surface)
+    return [joint.switch for joint in joints if all(side[joint.column] == STUCK for side in about)]
 
 
 def _tears(motion: Motion, cause: Changed, release: Changed, joint: Joint) -> bool:

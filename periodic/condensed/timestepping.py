@@ -167,14 +167,15 @@ class Motion:
 
     def _slider(self, joint: Joint) -> tuple[int, int]:
         """The row of a slider, another one where it is carried, and the state that is its place."""
-        given = np.zeros((1, len(self.state))), self.state[None], self.unknown[None], np.array([self.begin])
+        points = np.zeros((1, len(self.state))), self.state[None], self.unknown[None]
+        given = *points, np.array([self.begin]), self.parameter
         columns = np.arange(len(self.side)) == joint.column
         held, carried = (
-            linearise(self.system, *given, self.parameter, np.where(columns, mode, 1.0)[None]).d_state[0]
+            linearise(self.system, given, np.where(columns, mode, 1.0)[None]).d_state[0]
             for mode in (STUCK, 1)
         )
         row = int(np.abs(held - carried).max(axis=1).argmax())
-        moved = linearise(self.system, *given, self.parameter, np.where(columns, STUCK, 1.0)[None]).d_rate[0]
+        moved = linearise(self.system, given, np.where(columns, STUCK, 1.0)[None]).d_rate[0]
         return row, int(np.abs(moved[row]).argmax())
 
     def pace(self, steps: int, shortest: float = np.inf) -> None:
@@ -287,12 +288,12 @@ class Motion:
         given = ((x - self.state) / step.width)[None], *amid
         columns = np.arange(len(self.side))
         upper = np.where(np.isin(columns, stuck), 1.0, self.side)
-        line, left = linearise(system, *given, upper[None]), []
+        line, left = linearise(system, given, upper[None]), []
         line.d_state[0] /= 2
         line = self._carried(line, x, tau)
         for i in stuck:
             lower = np.where(columns == i, -1.0, upper)
-            left.append(self._carried(linearise(system, *given, lower[None]), x, tau).residual[0])
+            left.append(self._carried(linearise(system, given, lower[None]), x, tau).residual[0])
         halves = (line.residual[0] - np.array(left).reshape(len(stuck), len(line.residual[0]))).T / 2
         residual = line.residual[0] + halves @ (parts[stuck] - 1)
         driven = np.concatenate([line.d_rate[0], line.d_state[0]], axis=1)[: len(x)]

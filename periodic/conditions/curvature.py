@@ -23,7 +23,7 @@ TANGENT_STEP = difference_step(order=2)
 
 def beside(system: System, orbit: Orbit, points: Points, free: tuple[int, ...]) -> LinearisationLike:
     """Linearise the equations at points of an orbit, on the sides of jumps that their intervals have."""
-    return linearise(system, *points.arguments(orbit), sides(system, orbit)[points.index], free)
+    return linearise(system, points.arguments(orbit), sides(system, orbit)[points.index], free)
 
 
 def curvature(

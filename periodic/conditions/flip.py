@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.collocation.elimination import eliminated
-from periodic.condensed.method import mesh_method
+from periodic.condensed.condensedcollocation import mesh_method
 from periodic.conditions.adjoint import polynomial
 from periodic.correction.newton import moved_unknowns
 from periodic.linear.bordering import chain

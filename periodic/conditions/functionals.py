@@ -12,6 +12,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.checks import one_of
 from periodic.conditions.variations import variations
 from periodic.linear.variation import Variations
 from periodic.orbit.construction import as_read_by
@@ -48,9 +49,7 @@ def apart(functional: Functional, value: float, level: float) -> float:
 def output_index(system: System, output: str) -> int:
     """Return the index of an output. Raises ValueError for a name that is none."""
     names = [o.name for o in system.outputs]
-    if output not in names:
-        raise ValueError(f"output is {output!r}; it must be one of {', '.join(names)}")
-    return names.index(output)
+    return names.index(one_of("output", output, names))
 
 
 @dataclass(frozen=True)
@@ -231,8 +230,7 @@ class Multiplier:
     _parts: ClassVar[tuple[str, ...]] = ("modulus", "angle", "real", "imaginary")
 
     def __post_init__(self) -> None:
-        if self.part not in self._parts:
-            raise ValueError(f"part is {self.part!r}; it must be one of {', '.join(self._parts)}")
+        one_of("part", self.part, self._parts)
 
     def __call__(self, system: System, orbit: Orbit) -> float:
         """Return the value."""

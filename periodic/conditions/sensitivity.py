@@ -78,7 +78,7 @@ def sensitivities(
     found = {}
     for label, functional in functionals.items():
         slope = smooth(functional).linearise(system, orbit, free)
-        found[label] = {names[k]: _along(slope, way) for k, way in zip(others, ways, strict=True)}
+        found[label] = {names[k]: way.rate_of(slope) for k, way in zip(others, ways, strict=True)}
     return found
 
 
@@ -104,9 +104,3 @@ def _held(orbit: Orbit, index: int, free: int) -> Row:
     outer = np.zeros(len(orbit.phases) + free)
     outer[index] = 1.0
     return Row(0.0, np.zeros_like(orbit.nodes), outer)
-
-
-def _along(slope: Row, way: Increment) -> float:
-    """How a functional changes along an increment."""
-    found = np.vdot(slope.nodes, way.nodes) + slope.outer @ np.append(way.phases, way.parameters)
-    return float(found if slope.stages is None else found + np.vdot(slope.stages, way.stages))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from periodic.condensed.method import mesh_method
+from periodic.condensed.condensedcollocation import mesh_method
 from periodic.conditions.adjoint import Linear, polynomial
 from periodic.linear.operator import Operator
 from periodic.linear.variation import Variations

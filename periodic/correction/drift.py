@@ -22,17 +22,7 @@ PHASES = np.linspace(0.0, 2 * np.pi, 4, endpoint=False)
 def drifting(system: System, parameter: Array) -> list[str]:
     """Return the names of states that may be moved together without any force; none as a rule.
 
-    Parameters
-    ----------
-    system : System
-        The equations.
-    parameter : ndarray, shape (p,)
-        Parameters in SI units.
-
-    Returns
-    -------
-    list of str
-        Their names.
+    See `periodic.correction.discretisation.Discretisation.drifting`.
     """
     state, algebraic = system.rest(parameter)
     many = len(PHASES)

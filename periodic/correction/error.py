@@ -14,16 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.condition import SideCondition
-from periodic.correction.newton import (
-    USUAL,
-    Linearise,
-    LinearisedEquations,
-    NewtonSettings,
-    linearised,
-    moved,
-    stretched,
-)
+from periodic.correction.newton import Equations, Linearise, LinearisedEquations, moved, stretched
 from periodic.correction.outcome import FAILURES
 from periodic.correction.problem import Problem
 from periodic.linear.unknowns import Increment, at_fixed_phase, parameter_only, size_of
@@ -33,13 +24,10 @@ from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum
 from periodic.stability.multipliers import apart as powers_apart
 from periodic.stability.shares import shares
-from periodic.system import System
 from periodic.system.precision import EPSILON
 
-Solved = Callable[
-    [System, Orbit, tuple[int, ...], Sequence[SideCondition], NewtonSettings], LinearisedEquations
-]
-"""What linearises the equations at an orbit and solves them; raises FAILURES."""
+Solved = Callable[[Equations, Orbit], LinearisedEquations]
+"""What linearises equations at an orbit and solves them; raises FAILURES."""
 
 AT_WORST = 30.0
 """How many times its estimate an error may be where it is small beside others."""
@@ -147,17 +135,40 @@ STRAIGHT = 2.0
 """Factor by which d parameter / d arclength changes on the way there at the most: else a fold is as near."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Halving:
+    """What is particular to a method in `deferred`.
+
+    Parameters
+    ----------
+    only_at_points : ndarray of bool, shape (N, n), optional
+        States that count at the orbit's mesh points alone, not between them.
+    solved : callable, optional
+        Linearises and solves in one; by default `Equations.solved`.
+    kinked : bool, optional
+        Whether the equations change at events; by default whether the mesh has event nodes.
+    lengths : bool
+        Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
+        beside a grazing these change far more along the branch than the states do.
+    digits : float
+        To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
+        is rounding.
+    """
+
+    only_at_points: NDArray[np.bool_] | None = None
+    solved: Solved = Equations.solved
+    kinked: bool | None = None
+    lengths: bool = False
+    digits: float = 0.0
+
+
 def deferred(
     linearise: Linearise,
     problem: Problem,
     orbit: Orbit,
     tangent: Increment,
     spectrum: Spectrum,
-    only_at_points: NDArray[np.bool_] | None = None,
-    solved: Solved | None = None,
-    kinked: bool | None = None,
-    lengths: bool = False,
-    digits: float = 0.0,
+    how: Halving | None = None,
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
@@ -177,39 +188,29 @@ def deferred(
         Tangent of the branch.
     spectrum : Spectrum
         The orbit's multipliers.
-    only_at_points : ndarray of bool, shape (N, n), optional
-        States that count at the orbit's mesh points alone, not between them.
-    solved : callable, optional
-        Linearises and solves in one; by default `periodic.correction.newton.linearised`, with `linearise`.
-    kinked : bool, optional
-        Whether the equations change at events; by default whether the mesh has event nodes.
-    lengths : bool
-        Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
-        beside a grazing these change far more along the branch than the states do.
-    digits : float
-        To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
-        is rounding.
+    how : Halving, optional
+        What is particular to a method.
 
     Returns
     -------
     ErrorEstimate
         Relative errors; infinite ones where the halved mesh cannot be solved on.
     """
-    fine = bisect(orbit)
+    how, fine = how or Halving(), bisect(orbit)
     onto = _onto(tangent, fine)
-    onto = replace(onto, phases=tangent.phases) if lengths else onto
+    onto = replace(onto, phases=tangent.phases) if how.lengths else onto
     across = ArclengthConstraint(fine, onto, 0.0, problem.units(fine), problem.index, size_of(orbit))
     closing = [*problem.side_conditions(fine), across]
-    solve, shared = solved or partial(linearised, linearise), (problem.free, closing, USUAL)
-    on_branch = _OnBranch(problem, lambda near: solve(problem.system, near, *shared), size_of(orbit))
+    equations = Equations(linearise, problem.system, problem.free, closing)
+    on_branch = _OnBranch(problem, partial(how.solved, equations), size_of(orbit))
     try:
-        found = solve(problem.system, fine, *shared)
+        found = on_branch.solve(fine)
         beside = found
-        if len(orbit.mesh.exact_ends) if kinked is None else kinked:
+        if len(orbit.mesh.exact_ends) if how.kinked is None else how.kinked:
             beside = on_branch.at_same_parameter(found)
         multiplier, unknown = spectrum.apart(beside.fundamental[-1], beside.operator), 0.0
-        if digits:
-            other = on_branch.beyond(beside, digits * abs(problem.value(beside.orbit)))
+        if how.digits:
+            other = on_branch.beyond(beside, how.digits * abs(problem.value(beside.orbit)))
             unknown = _powers(spectrum, other.fundamental[-1], beside.fundamental[-1])
     except FAILURES:
         return UNKNOWN
@@ -218,9 +219,9 @@ def deferred(
     stages = found.orbit.stages - fine.stages + change.stages
     at_nodes = np.abs(at_fixed_phase(fine, nodes, change.phases))
     between = np.abs(stages - fine.knot_rates[:, 1:] * _stage_shift(fine, change.phases))
-    if only_at_points is not None:
-        at_nodes[1::2][only_at_points] = 0.0
-        between *= ~np.repeat(only_at_points, 2, axis=0)[:, None]
+    if how.only_at_points is not None:
+        at_nodes[1::2][how.only_at_points] = 0.0
+        between *= ~np.repeat(how.only_at_points, 2, axis=0)[:, None]
     apart = float(max(at_nodes.max(), between.max()))
     monodromy = beside.fundamental[-1]
     halved = Halved(apart, abs(change.parameter), multiplier, found.fundamental, monodromy)

@@ -13,6 +13,7 @@ from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import metric_weights
+from periodic.orbit.mesh import wrapped
 from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import resets_of
@@ -70,10 +71,10 @@ def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[Sha
             continue
         own = zip(a.mesh.events, a.phases, strict=True)
         alike = [p for e, p in own if e.switch == event.switch and p != phase]
-        near = min([TWO_IMPACTS, *(abs(_wrapped(p - phase, period)) / 2 for p in alike)])
+        near = min([TWO_IMPACTS, *(abs(wrapped(p - phase, period)) / 2 for p in alike)])
         each = zip(b.mesh.events, b.phases, b.mesh.starts, strict=True)
         theirs = [(p, j) for e, p, j in each if e.switch == event.switch]
-        others = [(_wrapped(p - phase - later, b.mesh.period), int(j)) for p, j in theirs]
+        others = [(wrapped(p - phase - later, b.mesh.period), int(j)) for p, j in theirs]
         shift, other = min(others, key=lambda found: abs(found[0]), default=(np.inf, 0))
         if abs(shift) < near:
             starts = [int(start)] if start else [0, len(a.nodes) - 1]
@@ -86,10 +87,6 @@ def _interpolated(tau: Array, a: Orbit, shared: list[Shared]) -> Array:
         return np.zeros_like(tau)
     phases, shifts = np.array([(impact.phase, impact.shift) for impact in shared]).T
     return np.asarray(np.interp(tau, phases, shifts, period=a.mesh.period))
-
-
-def _wrapped(phase: float, period: float) -> float:
-    return float(np.remainder(phase + period / 2, period) - period / 2)
 
 
 def closes(solver: Solver, start: Solution, new: Solution) -> bool:

@@ -169,8 +169,7 @@ def correct(
 
     The outcome is on the result; nothing is raised for a numerical failure.
     """
-    settings = settings or USUAL
-    equations = _Equations(linearise, system, free, tuple(conditions), settings)
+    equations = Equations(linearise, system, free, conditions, settings or USUAL)
     found = equations.iterated(guess)
     orbit, outcome, last = found.orbit, found.outcome, found.last
     n = orbit.nodes.shape[1]
@@ -200,18 +199,34 @@ class _Iterated:
 
 
 @dataclass(frozen=True)
-class _Equations:
-    """What is solved, and how."""
+class Equations:
+    """The equations of orbits, as many conditions as free parameters, and how they are solved."""
 
     linearise: Linearise
     system: System
-    free: tuple[int, ...]
-    conditions: tuple[SideCondition, ...]
-    settings: NewtonSettings
+    free: tuple[int, ...] = ()
+    conditions: Sequence[SideCondition] = ()
+    settings: NewtonSettings = USUAL
 
     def step(self, orbit: Orbit) -> Step:
-        """Return the Newton increment from an orbit."""
-        return newton_step(self.linearise, self.system, orbit, self.free, self.conditions, self.settings)
+        """Return one Newton increment from an orbit. Raises FAILURES."""
+        operator = self.linearise(self.system, orbit, self.free)
+        orbit = operator.orbit
+        rows = [condition.linearise(self.system, orbit, self.free) for condition in self.conditions]
+        right = np.eye(1 + len(rows))[:, [0, -1]] if rows else np.ones((1, 1))
+        found = operator.solve(rows, right)
+        size, length = self._sizes(operator, found[0])
+        kernel, stretch = found[1] if rows else None, stretched(orbit, found[0])
+        depth = size / briefest(orbit) ** 2 if orbit.mesh.events else 0.0
+        size = max(size, stretch**2)
+        return Step(orbit, operator.residual, found[0], kernel, size, length, stretch, depth, operator)
+
+    def solved(self, orbit: Orbit) -> LinearisedEquations:
+        """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
+        step = self.step(orbit)
+        kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
+        operator = step.operator
+        return LinearisedEquations(operator.orbit, step.increment, kernel, operator.fundamental, operator)
 
     def iterated(self, guess: Orbit) -> _Iterated:
         """Iterate until an increment is small, in steps that are cut where they make things worse."""
@@ -252,29 +267,37 @@ class _Equations:
             last, step = step.way, self.step(self._moved(step, 1.0))
         return step.orbit, step.way, step.operator
 
+    def _sizes(self, operator: Operator, increment: Increment) -> tuple[float, float]:
+        """Largest relative increment, for the convergence test and for damping.
+
+        States count relative to the largest peak to peak where that exceeds 1. For convergence the unknowns
+        count with their square: that is what the last step leaves of them, and rounding in the rates of very
+        short intervals keeps their own increments from falling further. For damping they count the less in
+        short intervals, over whose width they hardly act on the states. Free parameters count relative to
+        their values, or where these are about zero to what changes the states by `negligible`, at most the
+        nominal value.
+        """
+        orbit, chosen = operator.orbit, list(self.free)
+        large = max(1.0, orbit.span())
+        parts = [np.abs(increment.nodes).max() / large, np.abs(increment.stages).max() / large]
+        parts.append(np.abs(increment.phases).max(initial=0.0))
+        nominal = np.maximum(np.abs(self.system.nominal[chosen]), self.settings.tiny)
+        compared = np.abs(orbit.parameter[chosen])
+        if (compared < nominal).any():
+            least = np.minimum(self.settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
+            compared = np.maximum(compared, least)
+        parts += list(np.abs(increment.parameters) / compared)
+        regular = float(max(parts))
+        change = moved_unknowns(self.system, orbit.algebraic, increment.algebraic) - orbit.algebraic
+        unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
+        left = float(unknowns.max()) ** 2
+        weighted = float((np.minimum(1.0, orbit.grid.width / self.settings.short) * unknowns).max())
+        if not np.isfinite(regular + left + weighted):
+            return np.inf, np.inf
+        return max(regular, left), max(regular, weighted)
+
     def _moved(self, way: Way, factor: float) -> Orbit:
         return moved(self.system, self.free, way.orbit, way.increment, factor)
-
-
-def newton_step(
-    linearise: Linearise,
-    system: System,
-    orbit: Orbit,
-    free: tuple[int, ...],
-    conditions: Sequence[SideCondition],
-    settings: NewtonSettings,
-) -> Step:
-    """Return one Newton increment. Raises FAILURES."""
-    operator = linearise(system, orbit, free)
-    orbit = operator.orbit
-    rows = [condition.linearise(system, orbit, free) for condition in conditions]
-    right = np.eye(1 + len(rows))[:, [0, -1]] if rows else np.ones((1, 1))
-    found = operator.solve(rows, right)
-    size, length = sizes(system, operator, found[0], free, settings)
-    kernel, stretch = found[1] if rows else None, stretched(orbit, found[0])
-    depth = size / briefest(orbit) ** 2 if orbit.mesh.events else 0.0
-    size = max(size, stretch**2)
-    return Step(orbit, operator.residual, found[0], kernel, size, length, stretch, depth, operator)
 
 
 def stretched(orbit: Orbit, increment: Increment) -> float:
@@ -307,55 +330,9 @@ class LinearisedEquations:
     operator: Operator | None = field(default=None, repr=False, compare=False)
 
 
-def linearised(
-    linearise: Linearise,
-    system: System,
-    orbit: Orbit,
-    free: tuple[int, ...],
-    conditions: Sequence[SideCondition],
-    settings: NewtonSettings,
-) -> LinearisedEquations:
-    """Return the equations linearised at an orbit, and solved. Raises FAILURES."""
-    step = newton_step(linearise, system, orbit, free, conditions, settings)
-    kernel = step.increment.scaled(0.0) if step.kernel is None else step.kernel
-    operator = step.operator
-    return LinearisedEquations(operator.orbit, step.increment, kernel, operator.fundamental, operator)
-
-
 def in_order(orbit: Orbit) -> bool:
     """Whether the event nodes of an orbit's mesh follow each other."""
     return bool((orbit.mesh.segment_lengths(orbit.phases) > 0).all())
-
-
-def sizes(
-    system: System, operator: Operator, increment: Increment, free: tuple[int, ...], settings: NewtonSettings
-) -> tuple[float, float]:
-    """Largest relative increment, for the convergence test and for damping.
-
-    States count relative to the largest peak to peak where that exceeds 1. For convergence the unknowns
-    count with their square: that is what the last step leaves of them, and rounding in the rates of very
-    short intervals keeps their own increments from falling further. For damping they count the less in short
-    intervals, over whose width they hardly act on the states. Free parameters count relative to their values,
-    or where these are about zero to what changes the states by `negligible`, at most the nominal value.
-    """
-    orbit, chosen = operator.orbit, list(free)
-    large = max(1.0, orbit.span())
-    parts = [np.abs(increment.nodes).max() / large, np.abs(increment.stages).max() / large]
-    parts.append(np.abs(increment.phases).max(initial=0.0))
-    nominal = np.maximum(np.abs(system.nominal[chosen]), settings.tiny)
-    compared = np.abs(orbit.parameter[chosen])
-    if (compared < nominal).any():
-        least = np.minimum(settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
-        compared = np.maximum(compared, least)
-    parts += list(np.abs(increment.parameters) / compared)
-    regular = float(max(parts))
-    change = moved_unknowns(system, orbit.algebraic, increment.algebraic) - orbit.algebraic
-    unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
-    left = float(unknowns.max()) ** 2
-    weighted = float((np.minimum(1.0, orbit.grid.width / settings.short) * unknowns).max())
-    if not np.isfinite(regular + left + weighted):
-        return np.inf, np.inf
-    return max(regular, left), max(regular, weighted)
 
 
 def moved_unknowns(system: System, algebraic: Array, increment: Array) -> Array:

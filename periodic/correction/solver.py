@@ -89,6 +89,11 @@ class Solver:
         exact = replace(found.orbit, parameter=parameter)
         return replace(found, correction=replace(found.correction, orbit=exact))
 
+    def alike(self, old: Solution, new: Solution) -> bool:
+        """Whether an orbit has the events on a new mesh that it had."""
+        method, system = self.discretisation, self.problem.system
+        return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
+
     def transfers(self, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield guesses for an orbit on another mesh, the best first; none where event nodes coincide."""
         if mesh.segment_lengths(phases).all():

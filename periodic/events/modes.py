@@ -34,9 +34,6 @@ from periodic.system import (
     surfaces_of,
 )
 
-LOOKS = 3
-"""States at which guards are compared."""
-
 _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
     weakref.WeakKeyDictionary()
 )
@@ -63,21 +60,6 @@ def returns(system: System) -> list[int]:
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
 
 
-def twins(system: System, switch: int) -> list[int]:
-    """Return the guards of surfaces at which motions may be held that are one function, this one first.
-
-    The speeds at which elastic sliders side by side are strained are one: those that slip stop at once.
-    """
-    held = of_held(system)
-    if switch not in held or len(held) < 2:
-        return [switch]
-    state, _ = system.rest(system.nominal)
-    moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
-    values = system.switch(moved, np.arange(float(LOOKS)), system.nominal)
-    same = [k for k in held if k != switch and np.array_equal(values[:, k], values[:, switch])]
-    return [switch, *same]
-
-
 def relays(system: System) -> list[int]:
     """Return the guards of relays: in either mode another function."""
     return [surface.switch for surface in of_kind(system, Kind.RELAY)]
@@ -99,6 +81,12 @@ def releases(system: System, switch: int) -> tuple[int, int]:
     found = surface_of(system, switch).releases
     assert found is not None
     return found
+
+
+def release(surface: SurfaceLike, way: int) -> int:
+    """Return the switch at which what a surface holds is released upwards (1), or downwards (-1)."""
+    assert surface.releases is not None
+    return surface.releases[0 if way > 0 else 1]
 
 
 def column(system: System, switch: int) -> int:
@@ -247,16 +235,11 @@ def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
 
 def linearise(
     system: System,
-    rate: Array,
-    state: Array,
-    algebraic: Array,
-    phase: Array,
-    parameter: Array,
+    at: tuple[Array, Array, Array, Array, Array],
     side: Array,
     free: tuple[int, ...] = (),
 ) -> LinearisationLike:
-    """Linearise the equations in given modes (points, columns) of the surfaces."""
+    """Linearise the equations at (rate, state, algebraic, phase, parameter) in modes (points, columns)."""
     if not side.any():
-        return system.linearise(rate, state, algebraic, phase, parameter, free)
-    beside = cast(Jumping, system)
-    return beside.linearise_beside(rate, state, algebraic, phase, parameter, side, free)
+        return system.linearise(*at, free)
+    return cast(Jumping, system).linearise_beside(*at, side, free)

@@ -6,19 +6,21 @@ were: that is the orbit's word. Joints that neither slip nor come to rest in all
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import cast
 
 import numpy as np
 
 from periodic.events.heldalong import placed
-from periodic.events.modes import of_kind, sides, twins
-from periodic.events.relays import mode_at
+from periodic.events.modes import of_kind, release, sides
+from periodic.events.relaypassages import mode_at
 from periodic.events.rewrites.sites import Node, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SAME_PHASE
+from periodic.events.twinguards import twins
 from periodic.events.violations import largest
 from periodic.orbit.construction import constant
 from periodic.orbit.layout import layout_of
@@ -28,7 +30,6 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import (
     HELD,
     STUCK,
-    Followed,
     Happened,
     Kind,
     Moving,
@@ -48,27 +49,47 @@ APART = 1e-5
 """How far from each other (rad) events are put that are one in time, but do not bring each other about."""
 
 
-def word_of(system: System, events: Sequence[Happened]) -> list[Node]:
-    """Return the event nodes of what happened along a motion, with their phases."""
+def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = ()) -> list[Node]:
+    """Return the event nodes of what happened along a motion, with their phases.
+
+    always: guards of friction that is held all along.
+    """
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
+    modes = {event.surface: event.after for event in rows}
     for _, group in groupby(rows, key=lambda event: round(event.phase / SAME_PHASE)):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
-        for count, apart in enumerate(_together(system, each)):  # which of them is first is left open
+        held = [surfaces[i].switch for i in _stuck(surfaces, modes) - {event.surface for event in each}]
+        for count, apart in enumerate(_together(system, each, [*held, *always])):  # which is first is open
             node = _node(system, surfaces[apart[0].surface], apart)
             found.append((node, apart[0].phase + count * APART))
-    return together(system, found, APART)
+        modes |= {event.surface: event.after for event in each}
+    return together(system, found, APART, always)
 
 
-def _together(system: System, each: list[Happened]) -> list[list[Happened]]:
-    """What happens at one phase, in sets that bring each other about, or are one by their nature."""
-    surfaces = surfaces_of(system)
+def _stuck(surfaces: Sequence[SurfaceLike], modes: Mapping[int, int]) -> set[int]:
+    """The surfaces of friction that is held, by their indices."""
+    return {i for i, mode in modes.items() if mode == STUCK and surfaces[i].kind == Kind.SLIDING}
+
+
+def _together(system: System, each: list[Happened], held: Sequence[int]) -> list[list[Happened]]:
+    """What happens at one phase, in sets that bring each other about, or are one by their nature.
+
+    held: guards of friction that is held before and after it.
+    """
+    surfaces, found = surfaces_of(system), dict[int, list[Happened]]()
     if _brings_about(system, surfaces[each[0].surface]):
         return [each]
-    found = dict[int, list[Happened]]()
     for event in each:
-        found.setdefault(min(twins(system, surfaces[event.surface].switch)), []).append(event)
+        found.setdefault(min(twins(system, surfaces[event.surface].switch, held)), []).append(event)
     return list(found.values())
+
+
+def _always(system: System, whole: TrajectoryLike) -> list[int]:
+    """The guards of friction that is held in all of a motion."""
+    changed = {event.surface for event in whole.events}
+    modes = enumerate(zip(surfaces_of(system), whole.modes, strict=True))
+    return [s.switch for i, (s, m) in modes if s.kind == Kind.SLIDING and m == STUCK and i not in changed]
 
 
 def _brings_about(system: System, surface: SurfaceLike) -> bool:
@@ -104,7 +125,7 @@ def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int
     if surface.kind == Kind.IMPACT:
         return surface.switch, system.switches[surface.switch].direction
     if event.before == STUCK and surface.releases is not None:
-        return surface.releases[0 if event.after > 0 else 1], event.after
+        return release(surface, event.after), event.after
     return surface.switch, -event.before if event.after == STUCK else event.after
 
 
@@ -141,12 +162,12 @@ def orbit_of(
     followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
     if not followed and all(surface.leaves is None for surface in surfaces_of(system)):
         return None
-    ends = np.array([begin, begin + FORCED])
-    whole = motion_from(system, state, algebraic, parameter, ends, tolerance, before)
-    if not hasattr(whole, "modes"):
-        return None
-    whole = cast(Followed, whole)
-    nodes = word_of(system, whole.events)
+
+    def follow(phase: Array, parameter: Array) -> TrajectoryLike:
+        return motion_from(system, state, algebraic, parameter, phase, tolerance, before)
+
+    whole = follow(np.array([begin, begin + FORCED]), parameter)
+    nodes = word_of(system, whole.events, _always(system, whole))
     changed = {k for event, _ in nodes for k in (event.switch, *(k for k, _ in event.modes))}
     mesh, phases = _mesh(system, nodes)
     modes, parameter = list[tuple[int, int]](), parameter.copy()
@@ -158,7 +179,7 @@ def orbit_of(
             parameter, mode = placed(surface, parameter, state[None]), HELD
         modes.append((surface.switch, mode))
     mesh = Mesh(mesh.scheme, mesh.breaks, mesh.events, mesh.period, tuple(modes))
-    return _on(system, mesh, phases, state, algebraic, parameter, tolerance, begin, before)
+    return replace(_on(mesh, phases, parameter, begin, follow), layout=layout_of(system))
 
 
 def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
@@ -178,7 +199,7 @@ def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) ->
         ends = np.array([begin, begin + FORCED])
         path = motion_from(moving, state, algebraic, orbit.parameter, ends, tolerance, modes)
         state, algebraic = path.state[-1], path.algebraic[-1]
-        modes = list(cast(Followed, path).modes) if hasattr(path, "modes") else modes
+        modes = list(path.modes)
     return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin, modes)
 
 
@@ -222,15 +243,11 @@ def _mesh(system: System, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
 
 
 def _on(
-    system: Moving,
     mesh: Mesh,
     phases: Array,
-    state: Array,
-    algebraic: Array,
     parameter: Array,
-    tolerance: float,
     begin: float,
-    before: Sequence[int] | None,
+    follow: Callable[[Array, Array], TrajectoryLike],
 ) -> Orbit:
     """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
     grid = mesh.grid(phases)
@@ -241,7 +258,7 @@ def _on(
         stages[start - 1, -1] -= SAME_PHASE
     flat = begin + np.mod(np.concatenate([nodes, stages.ravel()]) - begin, FORCED)
     phase, place = np.unique(np.append(flat, [begin, begin + FORCED]), return_inverse=True)
-    path = motion_from(system, state, algebraic, parameter, phase, tolerance, before)
+    path = follow(phase, parameter)
     last = np.searchsorted(path.phase, phase, side="right") - 1  # of each impact's two points the later one
     x, z = path.state[last][place], path.algebraic[last][place]
     first, count = len(nodes), mesh.ntst
@@ -250,5 +267,5 @@ def _on(
     if mesh.events:
         states[-1] = states[0]
     inner = x[first : first + stages.size].reshape(shape)
-    unknown = z[first : first + stages.size].reshape(*shape[:2], algebraic.size)
-    return Orbit(mesh, states, inner, unknown, phases, parameter, layout=layout_of(system))
+    unknown = z[first : first + stages.size].reshape(*shape[:2], z.shape[1])
+    return Orbit(mesh, states, inner, unknown, phases, parameter)

@@ -23,23 +23,13 @@ def rates_at(
     """
     n, found = x.shape[1], np.concatenate([rate, algebraic], axis=1)
     for _ in range(MOST_ITERATIONS):
-        line = linearise(system, found[:, :n], x, found[:, n:], phase, parameter, side)
+        line = linearise(system, (found[:, :n], x, found[:, n:], phase, parameter), side)
         matrix = np.concatenate([line.d_rate, line.d_algebraic], axis=2)
         change = np.linalg.solve(matrix, line.residual[..., None])[..., 0]
         found = found - change
         if (np.abs(change).max(axis=1) <= CONVERGED * (1 + np.abs(found).max(axis=1))).all():
             break
     return found[:, :n]
-
-
-def rate_at(
-    system: System, orbit: Orbit, x: Array, rate: Array, algebraic: Array, phase: Array, side: Array
-) -> Array:
-    """Return x' (n,) at a state (1, n) and a phase (1,) on given sides of jumps, from guesses of x' and z.
-
-    Raises numpy.linalg.LinAlgError where the equations do not determine it.
-    """
-    return rates_at(system, orbit.parameter, x, rate[None], algebraic[None], phase, side[None])[0]
 
 
 def before(orbit: Orbit, index: int) -> tuple[int, Array, Array]:

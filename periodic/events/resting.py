@@ -9,6 +9,11 @@ own phase. With w the speed after it and a = -s'' what presses, the bounces left
 and the mean square of their speeds over a period T is 2 w^3 / (3 a T (1 - e^3)); both to the first order in
 w, as a does not change in so short a time. The motion that leaves the wall later knows nothing of them.
 
+Inertia couples other coordinates to this one. With u its speed before the first of the impacts, and impulses
+in parts of the one that changes its speed by 1, all impacts give (1 + e) u/(1 - e). The wall's force at rest
+gives 2 e u/(1 - e) in the same time. The difference is u, the impulse that leaves no speed: with it at once,
+and the force at rest from then on, the others move as they do, to the first order.
+
 References
 ----------
 Nordmark & Piiroinen, Nonlinear Dynamics 58 (2009) 85.
@@ -16,7 +21,9 @@ Nordmark & Piiroinen, Nonlinear Dynamics 58 (2009) 85.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,19 +31,28 @@ from periodic.events.impacts import slope_before, tied
 from periodic.events.modes import surface_of
 from periodic.events.rates import before
 from periodic.events.saltation import bounce, mapped
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.scheme import Array
 from periodic.system import STUCK, System
+
+SHORT = 0.1
+"""What bounces that are left out may add to an orbit, in tolerances, where more of them are put in."""
 
 
 @dataclass(frozen=True)
 class Tail:
     """The bounces that an impact leaves out: how long they last (rad), and the mean square of what they add.
 
-    The latter is that of the states over a period, as they are scaled.
+    The latter is that of the states over a period, as they are scaled. first: how long the first of them
+    lasts; ratio: e; thrown (n,): by how much the states after the impact differ from those at rest.
     """
 
     length: float
     square: float
+    first: float
+    ratio: float
+    thrown: Array
 
 
 def settling(system: System, orbit: Orbit) -> list[int]:
@@ -54,12 +70,11 @@ def tail(system: System, orbit: Orbit, index: int) -> Tail:
     after, ratio = bounce(system, event.switch, x[0], float(phase[0]), orbit.parameter)
     pressed = -float(system.switch(rest, phase, orbit.parameter)[0, surface.leaves])
     if pressed <= 0 or ratio >= 1:
-        return Tail(np.inf, np.inf)
-    speed = ratio * abs(slope_before(system, orbit, index))
-    thrown = float(((after - rest[0]) ** 2).sum())
-    first = 2 * speed / pressed
-    square = thrown * first / (3 * orbit.mesh.period * (1 - ratio**3))
-    return Tail(first / (1 - ratio), square)
+        return Tail(np.inf, np.inf, np.inf, ratio, after - rest[0])
+    thrown = after - rest[0]
+    first = 2 * ratio * abs(slope_before(system, orbit, index)) / pressed
+    square = float((thrown**2).sum()) * first / (3 * orbit.mesh.period * (1 - ratio**3))
+    return Tail(first / (1 - ratio), square, first, ratio, thrown)
 
 
 def neglected(system: System, orbit: Orbit) -> float:
@@ -72,3 +87,59 @@ def neglected(system: System, orbit: Orbit) -> float:
         left = tail(system, orbit, index)
         square += left.square if left.length < lengths[index] else np.inf
     return float(np.sqrt(square)) / max(orbit.span(), 1e-300)
+
+
+def lengthened(system: System, orbit: Orbit, tolerance: float) -> tuple[tuple[EventNode, ...], Array] | None:
+    """Return event nodes and phases with more of the bounces, where those left out are too much; else None.
+
+    Each lasts e times as long as the one before; k more of them lessen the error by e^(3k/2).
+    """
+    error, span = neglected(system, orbit), SHORT * tolerance
+    if not tolerance < error < np.inf:
+        return None
+    nodes = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
+    for index in settling(system, orbit):
+        left, (event, phase) = tail(system, orbit, index), nodes[index]
+        own = np.sqrt(left.square) / max(orbit.span(), 1e-300)
+        count = int(np.ceil(np.log(own / span) / (-1.5 * np.log(left.ratio)))) if own > span else 0
+        ends = phase + left.first * (1 - left.ratio ** np.arange(count + 1)) / (1 - left.ratio)
+        plain = tuple(pair for pair in event.modes if pair != (event.switch, STUCK))
+        nodes[index] = (replace(event, modes=plain) if count else event), phase
+        between = [(replace(event, modes=()), float(end)) for end in ends[1:-1]]
+        last = [(replace(event, modes=((event.switch, STUCK),)), float(ends[-1]))] if count else []
+        nodes += [*between, *last]
+    nodes.sort(key=lambda node: node[1])
+    return tuple(event for event, _ in nodes), np.array([phase for _, phase in nodes])
+
+
+def bounced(system: System, orbit: Orbit, guess: Orbit) -> Orbit:
+    """Return a guess on the mesh of `lengthened` with the bounces in it; speeds fall as straight lines."""
+    nodes, stages, mesh = guess.nodes.copy(), guess.stages.copy(), guess.mesh
+    for index in settling(system, orbit):
+        left, switch = tail(system, orbit, index), orbit.mesh.events[index].switch
+        thrown, at = left.thrown, _nearest(guess, switch, float(orbit.phases[index]))
+        while (switch, STUCK) not in mesh.events[at].modes:
+            for k, falling in _falling(guess, at):
+                nodes[k] += falling[0] * thrown
+                stages[k] += falling[1:, None] * thrown
+            thrown, at = left.ratio * thrown, (at + 1) % len(mesh.events)
+    nodes[-1] = nodes[0]
+    return replace(guess, nodes=nodes, stages=stages)
+
+
+def _falling(orbit: Orbit, node: int) -> Iterator[tuple[int, Array]]:
+    """Yield the intervals from an event node to the next, with what falls from 1 to -1 at their knots."""
+    parts, first = orbit.mesh.breaks[node], int(orbit.mesh.starts[node])
+    knots = np.append(0.0, orbit.mesh.scheme.points)
+    for k, (begin, end) in enumerate(pairwise(parts)):
+        yield first + k, 1 - 2 * (begin + (end - begin) * knots)
+
+
+def _nearest(orbit: Orbit, switch: int, phase: float) -> int:
+    """The event node of a switch nearest to a phase."""
+    own, period = (
+        [i for i, event in enumerate(orbit.mesh.events) if event.switch == switch],
+        orbit.mesh.period,
+    )
+    away = [abs(np.mod(orbit.phases[i] - phase + period / 2, period) - period / 2) for i in own]
+    return own[int(np.argmin(away))]

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from periodic.events.eventrows import node_row
 from periodic.events.impacts import arriving_row, slope_before
 from periodic.events.modes import modes_in
-from periodic.events.noderows import node_row
 from periodic.events.rates import before, rate_before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.orbit.gradients import Points, Slopes, gathered

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from periodic.events.impactmodes import thrown
 from periodic.events.modes import group, mode_after, of_kind, relays, sides, sliding, surface_of
-from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SLOW_CROSSING
-from periodic.orbit.mesh import EventNode
+from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL, NOISE, SHALLOW, SLOW_CROSSING
+from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
@@ -301,7 +301,7 @@ class SwitchPolynomials:
             return int(np.searchsorted(own, e.interval, side="right")) % max(len(own), 1)
 
         def far(e: Extremum, place: float) -> float:
-            return abs(_wrapped(e.phase - place, self.orbit.mesh.period))
+            return abs(wrapped(e.phase - place, self.orbit.mesh.period))
 
         every = self.minima(switch, side)
         if not every:
@@ -328,22 +328,23 @@ class SwitchPolynomials:
                 if e.switch == switch
             ]
             low = low[~(np.isin(along.interval[low], impacts) & (along.theta[low] == 0.0))]
-            low = low[~self._at_rest(along.interval[low], along.theta[low], switch)]
+            low = low[~self.at_rest(along, switch)[low]]
         if sliding(self.system, switch) is not None or switch in relays(self.system):
             at_node = np.isin(along.interval[low], self._ends(switch)) & (along.theta[low] == 0.0)
             there = self.expected(switch, side)[along.interval[low]] == side
             low = low[there & ~at_node]
         return [along.extremum(switch, int(i)) for i in low]
 
-    def _at_rest(self, interval: NDArray[np.int_], theta: Array, switch: int) -> NDArray[np.bool_]:
-        """Which places are at rest on a wall, or where something leaves it."""
+    def at_rest(self, along: Along, switch: int) -> NDArray[np.bool_]:
+        """Which points along an impact's switch are at rest on the wall, or where something leaves it.
+
+        It leaves as slowly as t^3: what dips in the first interval less than a part of what that rises to is
+        the polynomial's own error.
+        """
         resting = self._resting(surface_of(self.system, switch))
-        left = resting[interval - 1] & (theta == 0.0)
-        return np.asarray(resting[interval] | left)
-
-
-def _wrapped(phase: float, period: float) -> float:
-    return float(np.mod(phase + period / 2, period) - period / 2)
+        left = resting[along.interval - 1] & ~resting[along.interval]
+        rises = np.abs(self.knots[along.interval, -1, switch])
+        return np.asarray(resting[along.interval] | (left & (np.abs(along.value) <= SHALLOW * rises)))
 
 
 def _changing(coefficients: Array) -> NDArray[np.bool_]:

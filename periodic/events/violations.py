@@ -14,7 +14,7 @@ import numpy as np
 
 from periodic.events.impactmodes import thrown
 from periodic.events.impacts import slope_before
-from periodic.events.modes import mode_after, modes_in, surface_of
+from periodic.events.modes import mode_after, modes_in, release, surface_of
 from periodic.events.rates import before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import RELEASED, TOGETHER
@@ -119,7 +119,7 @@ def _through(dense: SwitchPolynomials, switch: int) -> list[Violation]:
     """How far the orbit goes to the side of an impact's surface on which there is no motion, if it does."""
     side = -dense.system.switches[switch].direction
     along = dense.along(switch)
-    lowest = int((side * along.value).argmin())
+    lowest = int(np.where(dense.at_rest(along, switch), 0.0, side * along.value).argmin())
     depth = -side * float(along.value[lowest])
     return (
         [Violation(Breach.THROUGH, switch, along.extremum(switch, lowest), side, depth)] if depth > 0 else []
@@ -230,10 +230,10 @@ def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Vi
         if k == own.switch or surface.releases is None or surface.column is None:
             continue
         before, after = (guards(system, *at, modes_in(system, orbit, j))[0] for j in (start - 1, start))
-        release = k if mode == STUCK else surface.releases[0 if mode > 0 else 1]
-        torn = mode != STUCK and mode * before[release] < 0 < mode * after[release]
-        most = largest(dense, release)
-        if not torn and abs(before[release]) > TOGETHER * most:
+        leaves = k if mode == STUCK else release(surface, mode)
+        torn = mode != STUCK and mode * before[leaves] < 0 < mode * after[leaves]
+        most = largest(dense, leaves)
+        if not torn and abs(before[leaves]) > TOGETHER * most:
             found.append(Violation(Breach.MODE, k, index, mode, 1.0))
     return found
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.collocation.method import Collocation
+from periodic.collocation.collocation import Collocation
 from periodic.correction.error import ErrorEstimate, deferred
 from periodic.correction.problem import Problem
+from periodic.events.eventnodes import exact_crossings, placed
 from periodic.events.modes import bends
-from periodic.events.tying import exact_crossings, placed
 from periodic.harmonic.series import NO_PHASES, FourierOrbit
 from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.linear import bordered
-from periodic.linear.reduction import reduce
+from periodic.linear.pairwise import reduce
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row

@@ -8,7 +8,9 @@ from typing import Protocol, Self
 import numpy as np
 
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
+from periodic.orbit.shallow import shallow
 
 STEEP = 5.0
 """Rates of the states, in sizes a rad, from which on an orbit with kinks is steep.
@@ -151,14 +153,7 @@ class Increment:
 
     def scaled(self, factor: float) -> Self:
         """Return the increment times a factor."""
-        return type(self)(
-            factor * self.nodes,
-            factor * self.stages,
-            factor * self.algebraic,
-            factor * self.phases,
-            factor * self.parameters,
-            factor * self.profile,
-        )
+        return type(self)(*(factor * each for each in self.save().values()))
 
     def dot(self, other: Self, orbit: Orbit, scale: float | Array, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.
@@ -182,9 +177,25 @@ class Increment:
         phases = self.phases if same else blank.phases
         return type(self)(blank.nodes, blank.stages, blank.algebraic, phases, self.parameters, profile)
 
+    def rate_of(self, row: Row) -> float:
+        """Return how fast a number of an orbit changes along the increment, by its gradient.
+
+        Parameters
+        ----------
+        row : Row
+            The number.
+
+        Returns
+        -------
+        float
+            Its derivative.
+        """
+        found = np.vdot(row.nodes, self.nodes) + row.outer @ np.append(self.phases, self.parameters)
+        return float(found if row.stages is None else found + np.vdot(row.stages, self.stages))
+
     def save(self) -> dict[str, Array]:
         """Return the arrays by name."""
-        return {f.name: getattr(self, f.name) for f in fields(self)}
+        return shallow(self)
 
 
 def outer(a: Unknowns, b: Unknowns, scale: float | Array) -> float:

@@ -6,13 +6,14 @@ phi are unknowns of the orbit, so that the mesh moves with them. Without any the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array, Scheme
+from periodic.orbit.shallow import shallow
 
 MIN_INTERVALS = 4
 """Least number of intervals in a segment."""
@@ -42,6 +43,15 @@ class EventNode:
     direction: int
     level: float = 0.0
     modes: tuple[tuple[int, int], ...] = ()
+
+    def modes_beside(self, switch: int) -> tuple[tuple[int, int], ...]:
+        """Return the modes of all surfaces but that of one guard, with their guards."""
+        return tuple(pair for pair in self.modes if pair[0] != switch)
+
+
+def wrapped(phase: float, period: float) -> float:
+    """Return a difference of phases as one between minus and plus half a period (rad)."""
+    return float(np.mod(phase + period / 2, period) - period / 2)
 
 
 @dataclass(frozen=True)
@@ -96,7 +106,7 @@ class Mesh:
     modes: tuple[tuple[int, int], ...] = ()
 
     def __getstate__(self) -> dict[str, object]:
-        return {f.name: getattr(self, f.name) for f in fields(self)}
+        return shallow(self)
 
     @property
     def ntst(self) -> int:

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.checks import ByName
-from periodic.display.tables import paragraph
+from periodic.display.htmltables import paragraph
 from periodic.orbit.layout import Layout, Source
 from periodic.orbit.mesh import Grid, Mesh
-from periodic.orbit.overview import orbit_html
+from periodic.orbit.orbitoverview import orbit_html
 from periodic.orbit.scheme import Array
 from periodic.orbit.signal import Signal
 

@@ -12,10 +12,11 @@ import numpy as np
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
 from periodic.bifurcations.twoparameter.remarks import noted
+from periodic.checks import one_of
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array
 from periodic.results import frames, netcdf
-from periodic.results.overview import branch_html
+from periodic.results.branchoverview import branch_html
 from periodic.results.point import Point
 from periodic.results.record import Record
 from periodic.results.stop import Stop
@@ -197,9 +198,7 @@ class Branch(Record):
         ValueError
             For a name that is none; it says which there are.
         """
-        names = [q.name for q in self.layout.outputs]
-        if output not in names:
-            raise ValueError(f"output is {output!r}; it must be one of {', '.join(names)}")
+        one_of("output", output, [q.name for q in self.layout.outputs])
         return np.array([p.peak_to_peak(output) for p in self.points])
 
     def column(self, name: str) -> Array:
@@ -220,9 +219,7 @@ class Branch(Record):
         ValueError
             For a name that is none; it says which there are.
         """
-        known = frames.units(self)
-        if name not in known:
-            raise ValueError(f"column is {name!r}; it must be one of {', '.join(known)}")
+        one_of("column", name, frames.units(self))
         return np.array([frames.row(self, p)[name] for p in self.points])
 
     def to_xarray(self) -> xr.Dataset:

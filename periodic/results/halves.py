@@ -10,7 +10,7 @@ from periodic.orbit.layout import Layout
 from periodic.results.branch import Branch
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point
-from periodic.results.stop import Stop
+from periodic.results.stop import Reason, Stop
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def joined(parameter: str, layout: Layout, halves: Sequence[Half], made: dict[st
         The branch.
     """
     if not halves:
-        return Branch(parameter, layout, (), Stop.interrupted(0), made=made)
+        return Branch(parameter, layout, (), Stop.after(Reason.INTERRUPTED, 0), made=made)
     two = len(halves) == 2 and len(halves[0].points) > 0
     last, first = halves[-1], _reversed(halves[0].points) if two else []
     return Branch(

@@ -23,8 +23,8 @@ from types import TracebackType
 
 import numpy as np
 
-from periodic.results.arrays import DAMAGE, attributes, record_of, tables
 from periodic.results.branch import Branch
+from periodic.results.brancharrays import DAMAGE, attributes, record_of, tables
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.files import digest
 from periodic.results.halves import Half, joined

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from periodic.results.arrays import DAMAGE, FORMAT, attributes, record_of, tables
+from periodic.results.brancharrays import DAMAGE, FORMAT, attributes, record_of, tables
 from periodic.results.files import digest, replacing
 from periodic.results.record import Record
 

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
 from periodic.bifurcations.twoparameter.codim2 import marginal
-from periodic.checks import ByName
+from periodic.checks import ByName, one_of
 from periodic.correction.error import AT_WORST, ErrorEstimate
 from periodic.correction.solution import Solution
-from periodic.display.tables import paragraph
+from periodic.display.htmltables import paragraph
 from periodic.orbit.extrema import Extremes, apart, extrema
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_ONE, without_trivial
@@ -167,8 +167,7 @@ class Point:
         ValueError
             For a name that is none; it says which there are.
         """
-        if output not in self.maximum:
-            raise ValueError(f"output is {output!r}; it must be one of {', '.join(self.maximum)}")
+        one_of("output", output, self.maximum)
         return self.maximum[output] - self.minimum[output]
 
 

@@ -39,6 +39,17 @@ class Reason(Enum):
         return self in (Reason.MAX_POINTS, Reason.MAX_NEWTON, Reason.INTERRUPTED)
 
 
+TOLD = {
+    Reason.CLOSED: "it came back to its start after {} points",
+    Reason.EQUILIBRIUM: "the orbits shrank to it after {} points",
+    Reason.HOMOCLINIC: "the period grows without bound, {:.4g} s here",
+    Reason.VANISHED: "the motion has shrunk to rounding, {:.2g} peak to peak (scaled)",
+    Reason.INTERRUPTED: "after {} points",
+    Reason.MAX_POINTS: "{} points",
+}
+"""What goes with a reason that a count or a size tells of."""
+
+
 @dataclass(frozen=True)
 class Stop:
     """Why a branch ends.
@@ -75,15 +86,17 @@ class Stop:
         return cls(Reason.BOUND, f"{side} end of the range{back}")
 
     @classmethod
-    def limit(cls, name: str) -> Stop:
-        """Return that another parameter reached an end of its limits.
+    def after(cls, reason: Reason, size: float) -> Stop:
+        """Return that a branch ended at a count or a size that tells of the reason.
 
         Parameters
         ----------
-        name : str
-            Which limit, of what.
+        reason : Reason
+            One of `TOLD`.
+        size : float
+            How many points there are, for an orbit that grows or shrinks its period (s) or peak to peak.
         """
-        return cls(Reason.BOUND, name)
+        return cls(reason, TOLD[reason].format(size))
 
     @classmethod
     def asked(cls, name: str, count: int) -> Stop:
@@ -99,72 +112,6 @@ class Stop:
         return cls(Reason.ASKED, f"{name} met {count} time{'s' if count > 1 else ''}")
 
     @classmethod
-    def closed(cls, count: int) -> Stop:
-        """Return that the branch came back to its start.
-
-        Parameters
-        ----------
-        count : int
-            How many points there are.
-        """
-        return cls(Reason.CLOSED, f"it came back to its start after {count} points")
-
-    @classmethod
-    def equilibrium(cls, count: int) -> Stop:
-        """Return that autonomous orbits shrank to a point.
-
-        Parameters
-        ----------
-        count : int
-            How many points there are.
-        """
-        return cls(Reason.EQUILIBRIUM, f"the orbits shrank to it after {count} points")
-
-    @classmethod
-    def homoclinic(cls, period: float) -> Stop:
-        """Return that autonomous orbits grow longer without bound.
-
-        Parameters
-        ----------
-        period : float
-            The last one's (s).
-        """
-        return cls(Reason.HOMOCLINIC, f"the period grows without bound, {period:.4g} s here")
-
-    @classmethod
-    def vanished(cls, span: float) -> Stop:
-        """Return that the orbits have shrunk until their motion is rounding, at one parameter.
-
-        Parameters
-        ----------
-        span : float
-            The last one's largest peak to peak (scaled).
-        """
-        return cls(Reason.VANISHED, f"the motion has shrunk to rounding, {span:.2g} peak to peak (scaled)")
-
-    @classmethod
-    def interrupted(cls, count: int) -> Stop:
-        """Return that the branch was cut short by the user, or is not at its end yet.
-
-        Parameters
-        ----------
-        count : int
-            How many points there are.
-        """
-        return cls(Reason.INTERRUPTED, f"after {count} points")
-
-    @classmethod
-    def max_points(cls, count: int) -> Stop:
-        """Return that the allowed number of points was used up.
-
-        Parameters
-        ----------
-        count : int
-            That number.
-        """
-        return cls(Reason.MAX_POINTS, f"{count} points")
-
-    @classmethod
     def max_newton(cls, count: float, spent: str = "") -> Stop:
         """Return that the allowed number of Newton iterations was used up.
 
@@ -177,36 +124,3 @@ class Stop:
         """
         plural = "" if count == 1 else "s"
         return cls(Reason.MAX_NEWTON, f"{count:g} iteration{plural}{', ' if spent else ''}{spent}")
-
-    @classmethod
-    def small_step(cls, why: str) -> Stop:
-        """Return that even the smallest step was rejected.
-
-        Parameters
-        ----------
-        why : str
-            Why.
-        """
-        return cls(Reason.SMALL_STEP, why)
-
-    @classmethod
-    def no_start(cls, why: str) -> Stop:
-        """Return that there is no first orbit.
-
-        Parameters
-        ----------
-        why : str
-            Why.
-        """
-        return cls(Reason.NO_START, why)
-
-    @classmethod
-    def inaccurate(cls, shortfall: str) -> Stop:
-        """Return that an orbit misses the tolerance.
-
-        Parameters
-        ----------
-        shortfall : str
-            By how much.
-        """
-        return cls(Reason.INACCURATE, shortfall)

@@ -30,6 +30,9 @@ PERIODS = 16
 SETTLED = 1e-11
 """What is left below the blocks when the columns span the motions in their order."""
 
+TURNING = SETTLED**0.5
+"""What is left there for good where blocks are one: of a pair that turns. What is less is rounding."""
+
 TINY = float(np.finfo(float).tiny)
 """What grows by less in an interval is gone, as where a motion begins to stick."""
 
@@ -56,9 +59,10 @@ def multipliers(steps: Array, known: float = EPSILON) -> NDArray[np.complex128]:
         growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
         turn = begun.T @ basis
         cuts = np.flatnonzero(growth[:-1] - growth[1:] > APART) + 1
-        blocks = np.split(np.arange(n), cuts)
-        if all(np.abs(turn[cut:, :cut]).max() < SETTLED for cut in cuts):
+        below = np.array([np.abs(turn[cut:, :cut]).max() for cut in cuts])
+        if (below < SETTLED).all():
             break
+    blocks = np.split(np.arange(n), cuts[below < TURNING])
     lost = (sizes < known * sizes.max(axis=1, keepdims=True)).any(axis=0)
     found = [_of_block(triangles[:, b[:, None], b], turn[b[:, None], b]) for b in blocks]
     return np.concatenate([0 * f if lost[b].any() else f for f, b in zip(found, blocks, strict=True)])

@@ -42,7 +42,7 @@ from periodic.system.events import (
     slides_of,
     surfaces_of,
 )
-from periodic.system.motion import Flowing, FlowLike, Followed, Happened, Moving, TrajectoryLike
+from periodic.system.motion import Flowing, FlowLike, Happened, Moving, TrajectoryLike
 from periodic.system.split import Condensable, LinearPart, ModesLike, Split, Within, linear_of
 from periodic.system.timing import Timed, frequency_factor_of, frequency_held_of, frequency_of
 
@@ -60,7 +60,6 @@ __all__ = [
     "EventLike",
     "FlowLike",
     "Flowing",
-    "Followed",
     "GradientLike",
     "Happened",
     "Guarded",

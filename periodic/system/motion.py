@@ -43,17 +43,6 @@ class Flowing(System, Protocol):
         """
 
 
-class TrajectoryLike(Protocol):
-    """A trajectory at K phases, phase (K,): state (K, n), algebraic (K, m)."""
-
-    @property
-    def phase(self) -> Array: ...
-    @property
-    def state(self) -> Array: ...
-    @property
-    def algebraic(self) -> Array: ...
-
-
 class Happened(Protocol):
     """A change of mode of a surface, by its index, at a phase; an impact leaves its own mode as it is."""
 
@@ -67,9 +56,18 @@ class Happened(Protocol):
     def phase(self) -> float: ...
 
 
-class Followed(TrajectoryLike, Protocol):
-    """A trajectory that tells what happened on its way, and the modes of all surfaces at its end."""
+class TrajectoryLike(Protocol):
+    """A trajectory at K phases, phase (K,): state (K, n), algebraic (K, m).
 
+    It tells what happened on its way, and the modes of all surfaces at its end.
+    """
+
+    @property
+    def phase(self) -> Array: ...
+    @property
+    def state(self) -> Array: ...
+    @property
+    def algebraic(self) -> Array: ...
     @property
     def events(self) -> Sequence[Happened]: ...
     @property

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from periodic.checks import one_of
 from periodic.orbit.layout import Layout
 from periodic.orbit.scheme import Array
 from periodic.system import Flowing
@@ -85,8 +86,7 @@ class Torus:
             For a name that is no state.
         """
         known = [q.name for q in self.layout.states]
-        if name not in known:
-            raise ValueError(f"section is {name!r}; it must be one of {', '.join(known)}")
+        one_of("section", name, known)
         column = self.layout.column(name)
         values = self.states if angles is None else self.states_at(np.asarray(angles))
         factor = column.scale * self.layout.omega(self.parameter) ** column.order

@@ -26,7 +26,7 @@ from periodic.correction.solver import Solver, SpentError
 from periodic.orbit.orbit import Orbit
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
-from periodic.results.stop import Stop
+from periodic.results.stop import Reason, Stop
 from periodic.tracing.ends import ending
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
@@ -44,13 +44,14 @@ not resolve, or towards a change that no special point accounts for."""
 @dataclass(frozen=True)
 class Step:
     """A step that was taken: its end, the length of the next one, the special points inside it, the course
-    of the test functions, and the change of pattern at which it ends, if any."""
+    of the test functions, the change of pattern at which it ends, if any, and how long it was to be."""
 
     end: Solution
     further: float
     special: list[Found]
     course: Course
     change: Reached | None = None
+    wanted: float = 0.0
 
     @property
     def label(self) -> Label:
@@ -155,13 +156,13 @@ class Continuation:
         if not base.ok:
             beyond = found.shortfall
             self.stop = (
-                Stop.inaccurate(beyond)
+                Stop(Reason.INACCURATE, beyond)
                 if beyond
-                else Stop.no_start(found.why_not(base.outcome, self.start.parameter))
+                else Stop(Reason.NO_START, found.why_not(base.outcome, self.start.parameter))
             )
             return
         if base.error.motion > solver.tolerance.orbit:
-            self.stop = Stop.inaccurate(base.refinement.shortfall)
+            self.stop = Stop(Reason.INACCURATE, base.refinement.shortfall)
             return
         if repeats(solver, base):
             raise ValueError(
@@ -208,7 +209,7 @@ class Continuation:
             return
         for found in (begun, again):
             if not found.ok:
-                self.stop = Stop.no_start(found.outcome.value)
+                self.stop = Stop(Reason.NO_START, found.outcome.value)
                 return
         # Newton has moved it by rounding; what follows shall be just what would have followed.
         correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
@@ -263,11 +264,11 @@ class Continuation:
                     self.collected[-1] = replace(self.collected[-1], label=Label.END)
             yield self.collected[-1]
             if self.stop is None and step.change is not None:
-                yield from self._crossed(step.change)
+                yield from self._crossed(step.change, step.wanted)
             if self.stop is not None:
                 return
             base = self._prepared(self.state.last)
-        self.stop = Stop.max_points(self.control.max_points)
+        self.stop = Stop.after(Reason.MAX_POINTS, self.control.max_points)
 
     def _taken(self, base: Solution, worded: bool) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected.
@@ -295,14 +296,14 @@ class Continuation:
                     control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
                 )
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
-                return Step(new, further, found, course, tried.change)
+                return Step(new, further, found, course, tried.change, ds)
             except RejectedError as rejected:
                 longest = ds = ds * rejected.shorter
                 beyond = isinstance(rejected, BeyondError)
                 self._unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
                 if self._unread or not ds >= least:
-                    self.stop = (Stop.inaccurate if beyond else Stop.small_step)(str(rejected))
+                    self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
                     return None
 
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
@@ -328,20 +329,20 @@ class Continuation:
         state, label, own = self.state, special.label, bool(special.name)
         if label is Label.USER and not own:
             if state.left and closes(self.solver, state.begun, special.solution):
-                self.stop = Stop.closed(state.steps + 1)
+                self.stop = Stop.after(Reason.CLOSED, state.steps + 1)
                 label = Label.END
             elif special.solution.value not in self.user:
                 return
         if label is Label.END and self.stop is None:
             bounds = self.solver.problem.low, self.solver.problem.high
             self.stop = (
-                Stop.limit(special.name)
+                Stop(Reason.BOUND, special.name)
                 if own
                 else Stop.bound(bounds, special.solution.value, state.begun.value)
             )
         name = special.name if label is Label.USER and own else label.value
         if special.shrunk:
-            self.stop = Stop.equilibrium(state.steps + 1)
+            self.stop = Stop.after(Reason.EQUILIBRIUM, state.steps + 1)
         self._counted(name)
         yield self._emitted(special.solution, label, special.name if own else "")
 
@@ -358,8 +359,12 @@ class Continuation:
         self.collected.append(point)
         return point
 
-    def _crossed(self, at: Reached) -> Iterator[Point]:
-        """Yield the orbit beyond a change of pattern, from which the branch goes on."""
+    def _crossed(self, at: Reached, wanted: float) -> Iterator[Point]:
+        """Yield the orbit beyond a change of pattern, from which the branch goes on.
+
+        wanted: how long the step would have been that met it. Events that change places leave a branch as it
+        is, so that the next one may be as long.
+        """
         assert self.state is not None
         found = crossed(self.solver, at)
         if found is not None:
@@ -370,7 +375,7 @@ class Continuation:
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
             if found.touches:
                 self._counted(Label.GRAZING)
-            ds = self.control.ds if found.touches or at.change.touches else found.distance
+            ds = self.control.ds if found.touches or at.change.touches else max(found.distance, wanted)
             kept, last = len(self.collected), found.solution
             least = min(self.control.ds_min, NEARLY * ds)
             self.state = replace(self.state, last=last, ds=ds, kept=kept, least=least, course=Course())
@@ -378,11 +383,11 @@ class Continuation:
             for special in named if found.touches else []:
                 yield from self._met(special)
         elif at.change.last:
-            self.stop = Stop.small_step(f"{at.change.name}, beyond which the motion is another one")
+            self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
         elif (at.change.strict or at.change.final) and self._reread(at.end):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
-            self.stop = Stop.small_step(f"{at.change.name}, and no orbit was found beyond it")
+            self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")
 
     def _reread(self, base: Solution) -> bool:
         """Go on beyond a change that no rewrite is for, to an orbit whose word its own motion tells."""

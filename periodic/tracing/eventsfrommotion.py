@@ -7,7 +7,9 @@ branch goes on beyond a change that no rewrite is for, as where several things h
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -16,9 +18,13 @@ from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.events.impacts import tied
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
+from periodic.system import System
+from periodic.tracing.heldplaces import amid, at_limit
+from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
 
 MOST_READINGS = 5
@@ -33,6 +39,9 @@ pulled past its limit, slips to another place, at which it is held again."""
 
 FARTHEST = 2.0
 """How far from the base it may be, in the length of the step along the tangent."""
+
+NEARER = 0.25
+"""Part of the step at which an orbit farther off is looked for again: on one branch it is nearer."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
@@ -56,28 +65,79 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
-    each = (_read(solver, base, first, sign, before) for before in BEFORE)
-    return next((found for found in each if found is not None), None)
+    if (moved := amid(solver, base, at_limit(solver.problem.system, base.orbit), sign)) is not base:
+        return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
+    search, near = _Search(solver, base, sign), _distances(solver.problem.system, base)
+    each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)
+    found = next((crossed for crossed in each if crossed is not None), None)
+    return found or search.found(first, search.settled, near[1:4])
 
 
-def _read(solver: Solver, base: Solution, first: float, sign: float, before: int) -> Crossed | None:
-    """The same after some periods of the motion."""
-    problem, (low, high) = solver.problem, solver.problem.bounds
-    for ds in (part * first for part in DISTANCES_BEYOND):
+Reading = Callable[[Orbit], Iterator[Orbit]]
+"""What yields motions near an orbit with their own words."""
+
+
+@dataclass(frozen=True)
+class _Search:
+    """For orbits a little ahead of a base on its branch, where the parameter goes the way of a sign."""
+
+    solver: Solver
+    base: Solution
+    sign: float
+
+    def found(self, first: float, read: Reading, parts: Sequence[float]) -> Crossed | None:
+        """Return an orbit ahead, with the word that is read from a motion near it, if there is one."""
+        for ds in (part * first for part in parts):
+            for found in self._each(ds, read):
+                if found.distance <= FARTHEST * ds or self._nearer(found, ds, read):
+                    return found
+        return None
+
+    def _each(self, ds: float, read: Reading) -> Iterator[Crossed]:
+        """Yield the orbits near the motions that are read."""
+        each = (self._solved(guess) for guess in read(self._ahead(ds)))
+        return (found for found in each if found is not None)
+
+    def _nearer(self, found: Crossed, ds: float, read: Reading) -> bool:
+        """Whether there are orbits nearer in proportion: the branch goes another way, but goes on."""
+        if read != self.settled:
+            return False
+        nearer = next(self._each(NEARER * ds, read), None)
+        return nearer is not None and nearer.distance <= FARTHEST * NEARER * found.distance
+
+    def _ahead(self, ds: float) -> Orbit:
+        """The base, a step along its tangent, or with that parameter where its event nodes would cross."""
+        problem, base = self.solver.problem, self.base
         ahead = tangent(problem, base, ds)
         parameter = ahead.parameter.copy()
-        parameter[problem.index] = float(np.clip(problem.value(ahead), low, high))
-        near = ahead if in_order(ahead) else base.orbit
-        changed = solver.discretisation.reworded(problem.system, replace(near, parameter=parameter), before)
-        if changed is None:
+        parameter[problem.index] = float(np.clip(problem.value(ahead), *problem.bounds))
+        return replace(ahead if in_order(ahead) else base.orbit, parameter=parameter)
+
+    def reworded(self, near: Orbit, before: int) -> Iterator[Orbit]:
+        """Yield the motion from a state of an orbit after some periods."""
+        changed = self.solver.discretisation.reworded(self.solver.problem.system, near, before)
+        yield from () if changed is None else (changed,)
+
+    def settled(self, near: Orbit) -> Iterator[Orbit]:
+        """Yield the motion to which that from a state of an orbit settles, further and further."""
+        method, system = self.solver.discretisation, self.solver.problem.system
+        if method.settles(system):
+            yield from settled(method, system, near)
+
+    def _solved(self, guess: Orbit) -> Crossed | None:
+        """The orbit near a guess, with its distance from the base, if the branch goes on there."""
+        found, base = worded(self.solver, guess, self.sign), self.base.orbit
+        if not found.ok or found.error.motion > self.solver.tolerance.orbit:
             return None
-        found = worded(solver, changed, sign)
-        if not found.ok or found.error.motion > solver.tolerance.orbit:
-            continue
-        apart = distance(problem, base.orbit, found.orbit) / size_of(base.orbit)
-        if apart <= FARTHEST * ds and found.tangent.parameter * sign > 0:
-            return Crossed(found, apart, touches=False)
-    return None
+        apart = distance(self.solver.problem, base, found.orbit) / size_of(base)
+        onward = found.tangent.parameter * self.sign > 0
+        return Crossed(found, apart, touches=False) if onward else None
+
+
+def _distances(system: System, base: Solution) -> tuple[float, ...]:
+    """How far ahead is looked: nearer with impacts and where motions leave the orbit, perhaps for another."""
+    leaves = (np.abs(base.spectrum.multipliers) > 1).any() and tied(system, base.orbit)
+    return DISTANCES_BEYOND[2:] if leaves else DISTANCES_BEYOND
 
 
 def _fixed(solver: Solver, guess: Orbit, sign: float) -> Solution:

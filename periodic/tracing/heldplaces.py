@@ -2,11 +2,12 @@
 
 A motion determines that only within bounds. In the middle the pull on the joint is as far from its limit one
 way as the other, and along the branch both limits are reached at once: there slips there and back begin.
+Where the bounds move along a branch one of them is reached first: the joint is pulled to another place.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.events.modes import held_all_along
 from periodic.events.switchpolynomials import SwitchPolynomials
+from periodic.events.thresholds import TOGETHER
+from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
@@ -26,13 +29,23 @@ MOST_MOVES = 3
 """How often the places are moved."""
 
 
-def amid(solver: Solver, guess: Orbit, found: Solution, sign: float) -> Solution:
-    """Return a first orbit with its joints held amid their bounds, those whose place the guess does not give.
+def unplaced(system: System, orbit: Orbit, guess: Mesh) -> list[SurfaceLike]:
+    """Return what is held all along in an orbit, at a place that a guess does not give."""
+    return [surface for surface in _held(system, orbit) if not held_all_along(guess, surface)]
+
+
+def at_limit(system: System, orbit: Orbit) -> list[SurfaceLike]:
+    """Return what is held all along in an orbit, and just reaches one of its limits."""
+    held = _held(system, orbit)
+    return [surface for surface, pull in zip(held, _pulls(system, orbit, held), strict=True) if pull.reached]
+
+
+def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float) -> Solution:
+    """Return an orbit with joints that are held all along amid their bounds.
 
     The one found where there are none, or where no other orbit is.
     """
     system = solver.problem.system
-    loose = [s for s in _held(system, found.orbit) if not held_all_along(guess.mesh, s)]
     tolerance = solver.tolerance.orbit
     for _ in range(MOST_MOVES if loose else 0):
         off = _off_centre(system, found.orbit, loose)
@@ -55,16 +68,39 @@ def _held(system: System, orbit: Orbit) -> list[SurfaceLike]:
     return [surface for surface in each if held_all_along(orbit.mesh, surface)]
 
 
-def _off_centre(system: System, orbit: Orbit, held: list[SurfaceLike]) -> Array:
-    """How much nearer to one limit than to the other each is pulled, as a part of the way between both."""
-    dense, found = SwitchPolynomials(system, orbit), list[float]()
+@dataclass(frozen=True)
+class _Pull:
+    """How far a joint is pulled from its limits, up < 0 < down, at the least, as parts of the way between."""
+
+    up: float
+    down: float
+
+    @property
+    def off_centre(self) -> float:
+        """How much nearer to one limit than to the other."""
+        return self.up + self.down
+
+    @property
+    def reached(self) -> bool:
+        """Whether it is at one of them."""
+        return max(self.up, -self.down) > -TOGETHER
+
+
+def _pulls(system: System, orbit: Orbit, held: list[SurfaceLike]) -> list[_Pull]:
+    """How each is pulled along an orbit."""
+    dense, found = SwitchPolynomials(system, orbit), list[_Pull]()
     for surface in held:
         assert surface.releases is not None
         up, down = surface.releases
-        apart = np.abs(dense.knots[:, :, down] - dense.knots[:, :, up]).max()
-        pulls = (dense.along(k, everywhere=True).value for k in (up, down))
-        found.append(float((next(pulls).max() + next(pulls).min()) / apart))
-    return np.array(found)
+        apart = float(np.abs(dense.knots[:, :, down] - dense.knots[:, :, up]).max())
+        most, least = (dense.along(k, everywhere=True).value for k in (up, down))
+        found.append(_Pull(float(most.max()) / apart, float(least.min()) / apart))
+    return found
+
+
+def _off_centre(system: System, orbit: Orbit, held: list[SurfaceLike]) -> Array:
+    """How much nearer to one limit than to the other each is pulled, as a part of the way between both."""
+    return np.array([pull.off_centre for pull in _pulls(system, orbit, held)])
 
 
 def _slopes(

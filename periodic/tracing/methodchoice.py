@@ -5,28 +5,24 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import cast
 
+from periodic.collocation.collocation import Collocation
 from periodic.collocation.meshmethod import MeshMethod
-from periodic.collocation.method import Collocation
-from periodic.condensed.method import CondensedCollocation
+from periodic.condensed.condensedcollocation import CondensedCollocation
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.condensed.whole.wider import WholeSystem
 from periodic.correction.condition import Condition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
-from periodic.harmonic.split import SplitHarmonicBalance
-from periodic.system import Condensable, System, Within
-
-SPLIT: tuple[type[CondensedCollocation] | type[SplitHarmonicBalance], ...] = (
-    CondensedCollocation,
-    SplitHarmonicBalance,
-)
-"""Methods for systems whose rows are not all of their equations; each says which it takes."""
+from periodic.harmonic.harmonicbalance import HarmonicBalance
+from periodic.harmonic.splitbalance import SplitHarmonicBalance
+from periodic.system import Condensable, System, Within, linear_of
 
 
 def chosen_method(method: Discretisation, problem: Problem) -> tuple[Problem, Discretisation]:
     """Return the problem that is solved and the method for it. Raises ValueError where none fits."""
     system = problem.system
     asked = method.condense if isinstance(method, MeshMethod) else None
-    if any(each.takes(system) for each in SPLIT):
+    if linear_of(system) is not None:
         if asked is False:
             raise ValueError(
                 "condense is False, but the system has its places alone; compile its structures with "
@@ -70,12 +66,13 @@ def _output(condition: Condition) -> str | None:
 
 def _split(method: Discretisation, system: System) -> Discretisation:
     """The method for a system whose linear part is given by its modes."""
-    if isinstance(method, SPLIT):
+    if isinstance(method, SplitMethod):
         return method
-    found = next((each for each in SPLIT if isinstance(method, each.whole)), None)
-    if found is None:
-        raise ValueError(
-            f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
-            f"compiled with condense=False for it"
-        )
-    return found.like(method, system)
+    if isinstance(method, Collocation):
+        return CondensedCollocation.like(method, system)
+    if isinstance(method, HarmonicBalance):
+        return SplitHarmonicBalance.like(method, system)
+    raise ValueError(
+        f"method is {type(method).__name__}, which takes all equations of a system; a structure must be "
+        f"compiled with condense=False for it"
+    )

@@ -2,7 +2,7 @@
 
 Where a motion settles slowly, or to one that repeats itself after several periods, Newton's method on the map
 itself finds the orbit of one period: the events are followed, so that no word need be known. Derivatives are
-differences, then secants (Broyden 1965). A step that does not lead nearer is halved.
+differences, then secants (Broyden 1965), steps are kept where they lead nearer (Powell's hybrid method).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.optimize import fsolve
 
 from periodic.orbit.scheme import Array
 
@@ -20,20 +21,8 @@ DIFFERENCE = 1e-4
 LEAST = 1e-2
 """Least range of a state in that, as a part of the largest."""
 
-PARTS = (1.0, 0.5, 0.25, 0.125, 0.0625)
-"""Parts of a step that are tried."""
-
-ENOUGH = 0.25
-"""Of what a part of a step should take away from the residual, what it has to."""
-
-KINKS = 3
-"""How often a whole step is taken where no part of it leads nearer: there the map has a kink."""
-
 STEPS = 15
-"""Most steps."""
-
-HELD = 1e-4
-"""Singular values below this part are those of places that are not determined, as where a slider holds."""
+"""Most steps, each with differences in every state."""
 
 
 @dataclass
@@ -63,45 +52,25 @@ class ReturnMap:
 
     def fixed(self, state: Array) -> Array | None:
         """Return the state at the beginning of an orbit near one; None where none is found."""
-        off, slope = self.residual(state), None
+        off = self.residual(state)
         if not np.isfinite(off).all() or not self.range.any():
             return None
         scale = np.maximum(self.range, LEAST * self.range.max())
-        best, kinks = (state, float(np.abs(off).max())), 0
-        for _ in range(STEPS):
-            if best[1] <= self.tolerance * self.range.max():
-                break
-            moved = None if slope is None else self._nearer(state, off, slope, scale)
-            if moved is None:
-                slope = self._slope(state, off, scale)
-                moved = self._nearer(state, off, slope, scale)
-            if moved is None and slope is not None and kinks < KINKS:
-                moved, kinks = self._across(state, off, slope, scale), kinks + 1
-            if moved is None or slope is None:
-                break
-            way, change = (moved[0] - state) / scale, (moved[1] - off) / scale
-            slope = slope + np.outer(change - slope @ way, way) / (way @ way)
-            state, off = moved
-            best = min(best, (state, float(np.abs(off).max())), key=lambda pair: pair[1])
-        return best[0] if best[1] <= self.enough * self.range.max() else None
 
-    def _slope(self, state: Array, off: Array, scale: Array) -> Array:
-        """The derivatives of the residual by differences, both in parts of the range."""
-        steps = DIFFERENCE * np.diag(scale)
-        return np.array([(self.residual(state + step) - off) / scale for step in steps]).T / DIFFERENCE
+        def moved(place: Array) -> Array:  # places about 1, so that differences are parts of the range
+            return state + scale * (place - 1)
 
-    def _across(self, state: Array, off: Array, slope: Array, scale: Array) -> tuple[Array, Array] | None:
-        """The state a whole step away, and its residual: past a kink of the map it has other slopes."""
-        moved = state - scale * (np.linalg.pinv(slope, rcond=HELD) @ (off / scale))
-        return (moved, self.residual(moved)) if np.isfinite(moved).all() else None
+        def apart(place: Array) -> list[float]:
+            return list(self.residual(moved(place)) / scale)
 
-    def _nearer(self, state: Array, off: Array, slope: Array, scale: Array) -> tuple[Array, Array] | None:
-        """A state nearer to an orbit on Newton's step, and its residual."""
-        step = -scale * (np.linalg.pinv(slope, rcond=HELD) @ (off / scale))
-        size = float(np.linalg.norm(off / scale))
-        for part in PARTS if np.isfinite(step).all() else ():
-            moved = state + part * step
-            now = self.residual(moved)
-            if np.linalg.norm(now / scale) < (1 - ENOUGH * part) * size:
-                return moved, now
-        return None
+        place, found, *_ = fsolve(
+            apart,
+            np.ones(len(state)),
+            full_output=True,
+            xtol=self.tolerance,
+            maxfev=STEPS * (len(state) + 1),
+            epsfcn=DIFFERENCE**2,
+            factor=1.0,
+        )
+        near = np.abs(found["fvec"] * scale).max() <= self.enough * self.range.max()
+        return moved(place) if near else None

@@ -7,6 +7,7 @@ from typing import cast
 
 import numpy as np
 
+from periodic.condensed.settling import PERIODS, STILL
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
@@ -17,11 +18,8 @@ from periodic.orbit.scheme import Array
 from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
 
-PERIODS = 100
-"""Most periods of the excitation that a motion is given to settle."""
-
-STILL = 1e-3
-"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
+CLOSE = 1e-2 * STILL
+"""The same where events lie so near to each other that their order asks for it."""
 
 NEAR = 1e-2
 """The same of an orbit on which Newton's method on the return map ends: its word can be read."""
@@ -36,20 +34,19 @@ PLACES_IN_PERIOD = 193
 def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
     """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    By the method's own way, or by integration of all states. None where it does not settle within PERIODS,
-    where its integration fails, and of a system that cannot be followed in time.
+    By the method's own way, or by integration of all states; then the same settled further. None where it
+    does not settle within PERIODS, where its integration fails, and of a system that cannot be followed in
+    time.
     """
     own = method.settled(system, start)
-    if own is not None:
-        yield from own
-    elif (found := _integrated(system, start)) is not None:
-        yield found
+    yield from _integrated(system, start) if own is None else own
 
 
-def _integrated(system: System, start: Orbit) -> Orbit | None:
+def _integrated(system: System, start: Orbit) -> Iterator[Orbit]:
     """The motion of a system with all its states."""
     if not hasattr(system, "motion"):
-        return None
+        return
+    wanted = STILL
     moving, phase = cast(Moving, system), np.linspace(0, FORCED, PLACES_IN_PERIOD)
     state, algebraic, modes = start.nodes[0], start.algebraic[0, 0], None
     for count in range(PERIODS):
@@ -61,16 +58,16 @@ def _integrated(system: System, start: Orbit) -> Orbit | None:
             given = state, algebraic, start.parameter, phase, Accuracy.STANDARD
             path = motion_from(moving, *given, modes)
         except FAILURES:
-            return None
+            return
         if not np.isfinite(path.state).all():
-            return None
-        if found is not None or _closed(path.state):
-            last = path.state[-1], path.algebraic[-1], start.parameter, FOLLOWED
-            if (converged := orbit_of(moving, *last, before=getattr(path, "modes", None))) is not None:
-                return converged
-            return sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
-        state, algebraic, modes = path.state[-1], path.algebraic[-1], getattr(path, "modes", None)
-    return None
+            return
+        state, algebraic, modes = path.state[-1], path.algebraic[-1], path.modes
+        if found is not None or _closed(path.state, wanted):
+            converged = orbit_of(moving, state, algebraic, start.parameter, FOLLOWED, before=modes)
+            yield converged or sampled(path.phase, path.state, path.algebraic, start.parameter, system=system)
+            if wanted == CLOSE or converged is None:
+                return
+            wanted = CLOSE
 
 
 def _fixed(
@@ -106,6 +103,6 @@ def held(system: System, motion: Orbit) -> list[str]:
     return [system.switches[k].name for k in unknown if still[k]]
 
 
-def _closed(path: Array) -> bool:
-    """Whether a motion over a period comes back to its beginning, as far as the tolerance tells."""
-    return bool(np.abs(path[-1] - path[0]).max() < STILL * max(np.ptp(path, axis=0).max(), Accuracy.STANDARD))
+def _closed(path: Array, still: float) -> bool:
+    """Whether a motion over a period comes back to its beginning, but for a part of its peak to peak."""
+    return bool(np.abs(path[-1] - path[0]).max() < still * max(np.ptp(path, axis=0).max(), Accuracy.STANDARD))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from periodic.checks import named, number
-from periodic.collocation.method import Collocation
+from periodic.collocation.collocation import Collocation
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.problem import Problem
 from periodic.correction.solver import Solver, Work

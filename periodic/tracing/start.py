@@ -20,7 +20,7 @@ from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.eventsfrommotion import worded
-from periodic.tracing.heldplaces import amid
+from periodic.tracing.heldplaces import amid, unplaced
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
@@ -63,7 +63,10 @@ class Start:
         """
         try:
             first = self._found(guess, sign)
-            return amid(self.solver, guess, first, sign) if first.ok else first
+            if not first.ok:
+                return first
+            loose = unplaced(self.solver.problem.system, first.orbit, guess.mesh)
+            return amid(self.solver, first, loose, sign)
         except SpentError:
             raise SpentError(f"all before a first orbit: {self._sought}; {SPENT}") from None
 

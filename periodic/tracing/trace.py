@@ -255,7 +255,7 @@ def _exhaust(run: Continuation, points: Iterator[Point], journal: Journal | None
 
 
 def _interrupted(run: Continuation) -> Stop:
-    return Stop.interrupted(run.kept)
+    return Stop.after(Reason.INTERRUPTED, run.kept)
 
 
 def _joined(empty: Branch, runs: list[Continuation], elapsed: float, before: Branch | None) -> Branch:

@@ -11,7 +11,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 import periodic as per
 import symbolic as sym
-from periodic.correction.newton import NewtonSettings, correct, newton_step
+from periodic.correction.newton import Equations, correct
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.orbit import Orbit
@@ -74,7 +74,7 @@ def test_newton_iteration(benchmark: BenchmarkFixture, name: str, ntst: int, ker
     """One Newton iteration at fixed parameters."""
     system = sym.compile(model(name), kernels)
     linearise, at = per.Collocation().linearise, orbit(system, ntst)
-    benchmark(newton_step, linearise, system, at, (), (), NewtonSettings())
+    benchmark(Equations(linearise, system).step, at)
 
 
 @pytest.mark.parametrize("kept", (False, True), ids=("compiled", "kept"))

@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.jumps.relays import decided, in_modes, with_relays
+from symbolic.equations.jumps.relaysymbols import decided, in_modes, with_relays
 from symbolic.equations.jumps.resting import Resting, walls, with_walls
 from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.jumps.sliders import Held, with_sliders

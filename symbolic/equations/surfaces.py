@@ -7,11 +7,8 @@ parameter says; 0 leaves it to the state.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-
-from symbolic.equations.variables import SwitchInfo
 
 MINUS, PLUS, STUCK, HELD = -1, 1, 2, 3
 
@@ -68,67 +65,3 @@ class Surface:
     place: tuple[int, tuple[float, ...]] | None = None
     alone: bool = False
     leaves: int | None = None
-
-
-def surfaces(
-    switches: Sequence[SwitchInfo],
-    resets: Container[int],
-    jumps: Sequence[int],
-    slides: Mapping[int, tuple[int, int]],
-    sliders: Container[int] = (),
-    places: Mapping[int, tuple[int, tuple[float, ...]]] | None = None,
-    relays: Container[int] = (),
-    alone: Container[int] = (),
-    leaves: Mapping[int, int] | None = None,
-) -> tuple[Surface, ...]:
-    """Return the surfaces of a system in the order of their guards: every switch belongs to one of them.
-
-    Parameters
-    ----------
-    switches : sequence of SwitchInfo
-        All switches.
-    resets : container of int
-        Those at which the state is mapped.
-    jumps : sequence of int
-        Those at which the equations jump, in the order of the columns of `side`.
-    slides : mapping of int to tuple of int
-        Of those along which motions slide, and of sliders, the two releases.
-    sliders : container of int
-        Those of elastic sliders.
-    places : mapping of int to (int, tuple of float), optional
-        Where they may be held: see `Surface`.
-    relays : container of int
-        Those of relays.
-    alone : container of int
-        Those of sliding that may be HELD without a place.
-    leaves : mapping of int to int, optional
-        Of walls, the switches at which what rests on them leaves.
-    """
-    released = {k for pair in slides.values() for k in pair} | set((leaves or {}).values())
-
-    def kind(k: int) -> Kind:
-        if k in resets:
-            return Kind.IMPACT
-        if k in sliders:
-            return Kind.SLIDER
-        if k in relays:
-            return Kind.RELAY
-        if k in jumps:
-            return Kind.SLIDING if k in slides else Kind.JUMP
-        plain = switches[k].levels == (0.0,) and switches[k].direction == 0
-        return Kind.KINK if plain else Kind.MARKER
-
-    return tuple(
-        Surface(
-            kind(k),
-            info.name,
-            k,
-            slides.get(k),
-            jumps.index(k) if k in jumps else None,
-            (places or {}).get(k) if k in slides else None,
-            k in alone,
-            (leaves or {}).get(k),
-        )
-        for k, info in enumerate(switches)
-        if k not in released
-    )

@@ -104,21 +104,31 @@ def struck(motions: Iterable[Motion], hit: Motion, after: ca.SX, omega: ca.SX) -
     coordinates that inertia couples to it.
     """
     every = list(motions)
-    rates = ca.vertcat(*[m.velocity.derivative for m in every])
-    coupling = ca.jacobian(ca.vertcat(*[m.force for m in every]), rates)
-    own = ca.diag(ca.vertcat(*[m.mass for m in every]))
-    mass = own - ca.substitute(coupling, omega, ca.SX(1))  # forces have rates times omega^2
-    place = next(i for i, m in enumerate(every) if m is hit)
-    joined = _joined(mass, place)
-    if joined == [place]:
+    changed = mobility(every, hit, omega)
+    place = next(i for i in changed if every[i] is hit)
+    if len(changed) == 1:
         return {hit.velocity: after}
-    unit = ca.SX([1.0 if i == place else 0.0 for i in joined])
-    change = ca.solve(mass[joined, joined], unit)
-    size = (after - hit.velocity.symbol) / change[joined.index(place)]
+    size = (after - hit.velocity.symbol) / changed[place]
     return {
-        every[i].velocity: every[i].velocity.symbol + change[row] * size if i != place else after
-        for row, i in enumerate(joined)
+        every[i].velocity: after if i == place else every[i].velocity.symbol + change * size
+        for i, change in changed.items()
     }
+
+
+def mobility(motions: Sequence[Motion], hit: Motion, omega: ca.SX) -> dict[int, ca.SX]:
+    """Return M^-1 e, e a coordinate's unit vector, by the indices of the coordinates that inertia couples.
+
+    The mass matrix M is read from the forces: they have -(M_ij q_j'') of the other coordinates.
+    """
+    rates = ca.vertcat(*[m.velocity.derivative for m in motions])
+    coupling = ca.jacobian(ca.vertcat(*[m.force for m in motions]), rates)
+    own = ca.diag(ca.vertcat(*[m.mass for m in motions]))
+    mass = own - ca.substitute(coupling, omega, ca.SX(1))  # forces have rates times omega^2
+    place = next(i for i, m in enumerate(motions) if m is hit)
+    joined = _joined(mass, place)
+    unit = ca.SX([1.0 if i == place else 0.0 for i in joined])
+    found = ca.solve(mass[joined, joined], unit)
+    return {i: found[row] for row, i in enumerate(joined)}
 
 
 def _joined(mass: ca.SX, place: int) -> list[int]:

@@ -170,61 +170,14 @@ class Coordinate:
         return f"Coordinate({self.name!r})"
 
 
+parameter, coordinate = Parameter, Coordinate
+"""What models are written with: parts are given any number of them."""
+
+
 def apart(field: str, one: Coordinate, other: Coordinate | None) -> None:
     """Refuse one coordinate for both ends, or both directions, of a part. Raises ValueError."""
     if one is other:
         raise ValueError(f"{field} is {one.name!r} too; it must be another coordinate")
-
-
-def parameter(name: str, value: float, unit: str = "") -> Parameter:
-    """Return a named parameter.
-
-    Parameters
-    ----------
-    name : str
-        Its name, one in a model.
-    value : float
-        Nominal value in SI.
-    unit : str
-        SI unit.
-
-    Returns
-    -------
-    Parameter
-        To be given to any number of parts.
-
-    Raises
-    ------
-    ValueError
-        For a value that is not finite, and a name that is empty or no text.
-    """
-    return Parameter(name, value, unit)
-
-
-def coordinate(name: str, unit: str = "m", scale: float | None = None, start: float = 0.0) -> Coordinate:
-    """Return a mechanical coordinate.
-
-    Parameters
-    ----------
-    name, unit : str
-        Name, and SI unit.
-    scale : float, optional
-        Length (SI) that is 1 in the scaled equations; by default that of a contact on the coordinate, else 1.
-    start : float
-        Where the search for the equilibrium begins (SI); needed where that lies beyond a clearance.
-
-    Returns
-    -------
-    Coordinate
-        To be given to any number of parts.
-
-    Raises
-    ------
-    ValueError
-        For a scale that is not a positive number, a start that is not finite, and a name that is empty, no
-        text or has a '.
-    """
-    return Coordinate(name, unit, scale, start)
 
 
 def coordinates(

@@ -161,6 +161,8 @@ class Follower:
             try:
                 return self.sweep(self._modes, y, phase[:count])
             except IntegrationError as error:
+                if self._raised:  # an integrator took it for a failure of the equations
+                    raise self._raised[0] from None
                 reached = int((phase[:count] <= error.phase).sum())
                 if not 1 < reached < count:
                     raise

@@ -28,6 +28,9 @@ Modes = tuple[int, ...]
 LOW = 0.1
 """Height of a bounce, in tolerances, that is none."""
 
+NONE = 1e-8
+"""What is left of a slider's rate of strain where those of others make it up, relatively: half the digits."""
+
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
 
@@ -245,9 +248,28 @@ class Switching:
                     wanted = _mode(surface, values, modes[i])
                     changed = (i, wanted) if wanted != modes[i] else None
             if changed is None:
-                return self._placed(modes, tau, state), modes
+                state = self._placed(modes, tau, state)
+                return state, self._held_by_friction(modes, tau, state)
             modes = (*modes[: changed[0]], changed[1], *modes[changed[0] + 1 :])
         raise IntegrationError(f"no joints were found that stick after tau = {tau:.6g}", tau)
+
+    def _held_by_friction(self, modes: Modes, tau: float, state: Array) -> Modes:
+        """The modes with those sliders held whose strain friction that sticks keeps as it is."""
+        stuck = self._having(modes, Kind.SLIDING, (STUCK,))
+        carried = self._having(modes, Kind.SLIDER, (PLUS, MINUS))
+        if not stuck or not carried:
+            return modes
+        gradient = self.system.switch_gradient(state[None], np.array([tau]), self.parameter)[0][0]
+        along = gradient[[self.surfaces[i].switch for i in stuck]]
+        rows = gradient[[self.surfaces[i].switch for i in carried]]
+        left = np.abs(rows - rows @ np.linalg.pinv(along) @ along).max(axis=1)
+        held = {i for i, off, row in zip(carried, left, rows, strict=True) if off <= NONE * np.abs(row).max()}
+        return tuple(STUCK if i in held else mode for i, mode in enumerate(modes))
+
+    def _having(self, modes: Modes, kind: Kind, those: Collection[int]) -> list[int]:
+        """The surfaces of a kind that are in some of the modes."""
+        each = enumerate(zip(self.surfaces, modes, strict=True))
+        return [i for i, (surface, mode) in each if surface.kind == kind and mode in those]
 
     def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
         """The nearest state at which what sticks is at rest, and what is carried at its limit."""

@@ -18,32 +18,24 @@ static inline double sign(double a) { return a != a ? a : (double)((a > 0) - (a 
 """
 """NumPy's minimum, maximum and sign, which keep NaN where C's own do not."""
 
-OPERATIONS = {
+ARITHMETIC = {
     ca.OP_ADD: "{0} + {1}",
     ca.OP_SUB: "{0} - {1}",
     ca.OP_MUL: "{0} * {1}",
     ca.OP_DIV: "{0} / {1}",
-    ca.OP_POW: "pow({0}, {1})",
-    ca.OP_CONSTPOW: "pow({0}, {1})",
-    ca.OP_LT: "{0} < {1}",
-    ca.OP_LE: "{0} <= {1}",
-    ca.OP_EQ: "{0} == {1}",
-    ca.OP_NE: "{0} != {1}",
-    ca.OP_AND: "{0} != 0 && {1} != 0",
-    ca.OP_OR: "{0} != 0 || {1} != 0",
-    ca.OP_FMOD: "fmod({0}, {1})",
-    ca.OP_COPYSIGN: "copysign({0}, {1})",
-    ca.OP_FMIN: "least({0}, {1})",
-    ca.OP_FMAX: "most({0}, {1})",
-    ca.OP_ATAN2: "atan2({0}, {1})",
-    ca.OP_HYPOT: "hypot({0}, {1})",
-    ca.OP_IF_ELSE_ZERO: "{0} != 0 ? {1} : 0",
     ca.OP_ASSIGN: "{0}",
     ca.OP_NEG: "-{0}",
     ca.OP_SQ: "{0} * {0}",
     ca.OP_TWICE: "{0} + {0}",
-    ca.OP_INV: "1 / {0}",
-    ca.OP_NOT: "{0} == 0",
+    ca.OP_INV: "1.0 / {0}",
+}
+FUNCTIONS = {
+    ca.OP_POW: "pow({0}, {1})",
+    ca.OP_CONSTPOW: "pow({0}, {1})",
+    ca.OP_FMOD: "fmod({0}, {1})",
+    ca.OP_COPYSIGN: "copysign({0}, {1})",
+    ca.OP_ATAN2: "atan2({0}, {1})",
+    ca.OP_HYPOT: "hypot({0}, {1})",
     ca.OP_EXP: "exp({0})",
     ca.OP_EXPM1: "expm1({0})",
     ca.OP_LOG: "log({0})",
@@ -65,6 +57,22 @@ OPERATIONS = {
     ca.OP_CEIL: "ceil({0})",
     ca.OP_FABS: "fabs({0})",
     ca.OP_SIGN: "sign({0})",
+}
+"""What C and NumPy write alike, and functions that they call by the same names."""
+
+OPERATIONS = {
+    **ARITHMETIC,
+    **FUNCTIONS,
+    ca.OP_LT: "{0} < {1}",
+    ca.OP_LE: "{0} <= {1}",
+    ca.OP_EQ: "{0} == {1}",
+    ca.OP_NE: "{0} != {1}",
+    ca.OP_AND: "{0} != 0 && {1} != 0",
+    ca.OP_OR: "{0} != 0 || {1} != 0",
+    ca.OP_NOT: "{0} == 0",
+    ca.OP_FMIN: "least({0}, {1})",
+    ca.OP_FMAX: "most({0}, {1})",
+    ca.OP_IF_ELSE_ZERO: "{0} != 0 ? {1} : 0",
     ca.OP_ERF: "erf({0})",
 }
 

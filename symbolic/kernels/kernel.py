@@ -16,57 +16,21 @@ import numpy as np
 import scipy
 
 from symbolic.kernels.choice import ChosenKernel, Kernels, Layout
-from symbolic.kernels.csource import csource
+from symbolic.kernels.csource import ARITHMETIC, FUNCTIONS, csource
 
-_BINARY = {
-    ca.OP_ADD: "{0} + {1}",
-    ca.OP_SUB: "{0} - {1}",
-    ca.OP_MUL: "{0} * {1}",
-    ca.OP_DIV: "{0} / {1}",
-    ca.OP_POW: "np.power({0}, {1})",
-    ca.OP_CONSTPOW: "np.power({0}, {1})",
+_OPERATIONS = {
+    **ARITHMETIC,
+    **{operation: f"np.{call}" for operation, call in FUNCTIONS.items()},
     ca.OP_LT: "np.less({0}, {1}) * 1.0",
     ca.OP_LE: "np.less_equal({0}, {1}) * 1.0",
     ca.OP_EQ: "np.equal({0}, {1}) * 1.0",
     ca.OP_NE: "np.not_equal({0}, {1}) * 1.0",
     ca.OP_AND: "np.logical_and({0}, {1}) * 1.0",
     ca.OP_OR: "np.logical_or({0}, {1}) * 1.0",
-    ca.OP_FMOD: "np.fmod({0}, {1})",
-    ca.OP_COPYSIGN: "np.copysign({0}, {1})",
+    ca.OP_NOT: "np.logical_not({0}) * 1.0",
     ca.OP_FMIN: "np.minimum({0}, {1})",
     ca.OP_FMAX: "np.maximum({0}, {1})",
-    ca.OP_ATAN2: "np.arctan2({0}, {1})",
-    ca.OP_HYPOT: "np.hypot({0}, {1})",
     ca.OP_IF_ELSE_ZERO: "np.where({0}, {1}, 0.0)",
-}
-_UNARY = {
-    ca.OP_ASSIGN: "{0}",
-    ca.OP_NEG: "-{0}",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_TWICE: "{0} + {0}",
-    ca.OP_INV: "1.0 / {0}",
-    ca.OP_NOT: "np.logical_not({0}) * 1.0",
-    ca.OP_EXP: "np.exp({0})",
-    ca.OP_EXPM1: "np.expm1({0})",
-    ca.OP_LOG: "np.log({0})",
-    ca.OP_LOG1P: "np.log1p({0})",
-    ca.OP_SQRT: "np.sqrt({0})",
-    ca.OP_SIN: "np.sin({0})",
-    ca.OP_COS: "np.cos({0})",
-    ca.OP_TAN: "np.tan({0})",
-    ca.OP_ASIN: "np.arcsin({0})",
-    ca.OP_ACOS: "np.arccos({0})",
-    ca.OP_ATAN: "np.arctan({0})",
-    ca.OP_SINH: "np.sinh({0})",
-    ca.OP_COSH: "np.cosh({0})",
-    ca.OP_TANH: "np.tanh({0})",
-    ca.OP_ASINH: "np.arcsinh({0})",
-    ca.OP_ACOSH: "np.arccosh({0})",
-    ca.OP_ATANH: "np.arctanh({0})",
-    ca.OP_FLOOR: "np.floor({0})",
-    ca.OP_CEIL: "np.ceil({0})",
-    ca.OP_FABS: "np.abs({0})",
-    ca.OP_SIGN: "np.sign({0})",
     ca.OP_ERF: "scipy.special.erf({0})",
 }
 
@@ -127,7 +91,7 @@ def build(
 
 
 def _check_operations(function: ca.Function) -> None:
-    known = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_UNARY, *_BINARY}
+    known = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_OPERATIONS}
     for k in range(function.n_instructions()):
         if (operation := function.instruction_id(k)) not in known:
             raise NotImplementedError(f"CasADi operation {operation} has no counterpart in symbolic.kernels")
@@ -171,5 +135,4 @@ def _statement(function: ca.Function, k: int, reads: list[str], targets: list[li
         return f"w{outputs[0]} = {reads[inputs[0]].format(k=inputs[1])}"
     if operation == ca.OP_OUTPUT:
         return f"{targets[outputs[0]][outputs[1]]} = w{inputs[0]}"
-    table = _UNARY if len(inputs) == 1 else _BINARY
-    return f"w{outputs[0]} = {table[operation].format(*[f'w{i}' for i in inputs])}"
+    return f"w{outputs[0]} = {_OPERATIONS[operation].format(*[f'w{i}' for i in inputs])}"

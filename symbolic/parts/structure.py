@@ -24,6 +24,9 @@ from symbolic.structures.matrices import DENSE, RELATIVE_STEP, Matrices, dense
 from symbolic.structures.modal import LooseError, ModalForm, holding, modal_form
 from symbolic.structures.modalslope import ModalSlope, modal_slope
 
+WHOLE = 40
+"""Most degrees of freedom of a structure that keeps all its states unasked, beside impacts."""
+
 Freedoms = int | Sequence[int]
 Given = Any
 """A matrix, a function of the speed Omega (rad/s) that returns one, or None."""
@@ -35,7 +38,8 @@ class Structure(Part):
 
     `structure["tip"]` is the coordinate of a place, to which springs, stops, films and forces attach as to
     any other. A model is compiled with its places alone, the rest of the structure condensed exactly
-    (`symbolic.compile`); with ``condense=False`` every degree of freedom brings its two states.
+    (`symbolic.compile`); with ``condense=False``, or beside a `RigidStop`, every degree of freedom brings its
+    two states.
 
     Parameters
     ----------
@@ -348,6 +352,19 @@ class Structure(Part):
                 assembly.sketch.structure(of, self.name, named)
                 return
 
+    def check_whole(self) -> None:
+        """Refuse a structure that is too large to have all its states, or whose matrices are functions."""
+        if any(callable(given) for given in (self.M, self.C, self.K)):
+            raise ValueError(
+                f"structure {self.name!r} has matrices that are functions of the speed; beside a RigidStop, "
+                f"or resets, it must have numbers: give the stop a stiffness, as OneSidedSpring has"
+            )
+        if self.size > WHOLE:
+            raise ValueError(
+                f"structure {self.name!r} has {self.size} degrees of freedom; beside a RigidStop, or resets, "
+                f"it keeps all its states and must have {WHOLE} at the most, as symbolic.craig_bampton leaves"
+            )
+
     def expand(self, assembly: Assembly) -> None:
         """Add the two states of every degree of freedom, inertia and internal forces."""
         speed = assembly.nominal(assembly.omega)
@@ -363,17 +380,17 @@ class Structure(Part):
         position = ca.vertcat(*[m.position.symbol for m in motions])
         velocity = assembly.omega * ca.vertcat(*[m.velocity.symbol for m in motions])
         rates = assembly.omega**2 * ca.vertcat(*[m.velocity.derivative for m in motions])
-        mass, damping = _constant(matrices.M), dense(matrices.C)
+        damping = dense(matrices.C)
         if not self.modal_damping.none:
             damping = damping + self.modal_damping.matrix(matrices)
         internal = _constant(matrices.K) @ position + _constant(damping) @ velocity
         if matrices.G is not None:
             internal += assembly.omega * (_constant(matrices.G) @ velocity)
         diagonal = matrices.M.diagonal()
-        inertia = mass @ rates
+        coupling = (_constant(matrices.M) - ca.diag(ca.DM(diagonal))) @ rates
         for k, motion in enumerate(motions):
             motion.mass += float(diagonal[k])
-            motion.force -= internal[k] + inertia[k] - float(diagonal[k]) * rates[k]
+            motion.force -= internal[k] + coupling[k]
 
 
 def _at(given: Given, speed: float) -> Given:

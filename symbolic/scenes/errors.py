@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-LONGEST_QUOTE = 60
-"""Names and values longer than this are cut in a sentence."""
+from symbolic.quoting import LONGEST_QUOTE, shortened
 
 HUGE = 10**LONGEST_QUOTE
 """Whole numbers of which it is enough to say so; Python refuses to write the largest out."""
@@ -90,8 +89,7 @@ def plain(text: str) -> str:
 
 def cut(text: str, longest: int = LONGEST_QUOTE) -> str:
     """Return the plain text, or as much of its beginning as is not too long."""
-    text = plain(text)
-    return text if len(text) <= longest else text[: longest - 3] + "..."
+    return shortened(plain(text), longest)
 
 
 def listed(names: Sequence[str], last: str = "or") -> str:

@@ -8,7 +8,7 @@ from pydantic import PrivateAttr, model_validator
 
 from symbolic.scenes.axes import AXES
 from symbolic.scenes.errors import InputError
-from symbolic.scenes.tables import Table, number
+from symbolic.scenes.scenetables import Table, number
 
 Speed = Annotated[float, number(0.1, 1e5, "rev/min")]
 Frequency = Annotated[float, number(1e-9, 1e9, "rad/s")]

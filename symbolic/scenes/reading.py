@@ -9,7 +9,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symbolic.scenes.errors import LONGEST_QUOTE, InputError, cut, refused
+from symbolic.quoting import LONGEST_QUOTE
+from symbolic.scenes.errors import InputError, cut, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene

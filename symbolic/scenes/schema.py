@@ -16,7 +16,7 @@ from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.laws import HERTZ, PALMGREN, TAKEN, contact_laws
 from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.ranges import FrequencyRange, SpeedRange
-from symbolic.scenes.tables import Table, Title, number, whole
+from symbolic.scenes.scenetables import Table, Title, number, whole
 
 
 class Discs(Table):

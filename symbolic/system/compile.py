@@ -15,7 +15,7 @@ from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
 from symbolic.structures.matrices import DENSE
 from symbolic.system.compiled import CompiledSystem
-from symbolic.system.split import condensed
+from symbolic.system.splitting import condensed
 
 
 def compile(  # noqa: A001
@@ -32,7 +32,9 @@ def compile(  # noqa: A001
         at once. By default the environment's ORBITRACE_KERNELS, or else "auto".
     condense : bool
         Whether a `Structure` brings two states at each place where other parts act, its linear rest
-        condensed exactly; else each of its degrees of freedom brings two.
+        condensed exactly; else each of its degrees of freedom brings two. Beside a `RigidStop`, or resets of
+        `Equations`, it has all of them whatever is asked, up to 40 degrees of freedom: an impulse moves the
+        whole structure at once.
 
     Returns
     -------

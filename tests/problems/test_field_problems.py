@@ -96,7 +96,7 @@ def test_electronic_oscillator() -> None:
     assert [p.label for p in found] == [label for label, _, _ in known]
     for point, (_, place, accuracy) in zip(found, known, strict=True):
         assert point.parameter == pytest.approx(place, rel=accuracy)
-    assert circuit_orbits().stop == per.Stop.limit("lower limit of omega")
+    assert circuit_orbits().stop == per.Stop(per.Reason.BOUND, "lower limit of omega")
 
 
 @cache

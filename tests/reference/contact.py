@@ -6,7 +6,10 @@ stay positive; no integrator takes part, and what is followed is exact to roundi
     Stop       G has column row', the mode with row z > 0; column force' where it jumps there
     Friction   G has side column at 1 while it slips, side = sign(row z); while it sticks the column carries
                the part L z of it, |L z| < 1, that keeps row z = 0
-    Wall       z becomes reset z where row z falls to 0
+    Wall       z becomes reset z where row z falls to 0; with a column, that of its force, z may rest there
+
+An impact slower than SLOW, pressed to the wall, is the last of impacts without number in finite time: z comes
+to rest, row z = row z' = 0, by an impulse along the column, and rests until the column's part L z is 0.
 
 Perturbations pass an event, z+ = R z, by S = R + (G+ R - R G-) z row / (row G- z) (di Bernardo et al.,
 Piecewise-smooth Dynamical Systems, 2.5).
@@ -43,6 +46,9 @@ SMALL = 1e-9
 SOON = 2.0 ** (-np.arange(120, -1, -1) / 4)
 """Parts of a piece in which they are looked for."""
 
+SLOW = 1e-6
+"""Speed of an impact that is the last before a rest: what is left out takes the cube of it in the mean."""
+
 Mode = tuple[int, ...]
 
 
@@ -65,10 +71,17 @@ class Friction:
 
 @dataclass(frozen=True)
 class Wall:
-    """An impact z+ = reset z where row z falls to 0. Mode 1."""
+    """An impact z+ = reset z where row z falls to 0. Mode 1, and 0 at rest on a wall with a column."""
 
     row: Array
     reset: Array
+    column: Array | None = None
+
+    def plastic(self, generator: Array) -> Array:
+        """R of the impulse that leaves no speed row z'."""
+        assert self.column is not None
+        speed = self.row @ generator
+        return np.asarray(np.eye(len(speed)) - np.outer(self.column, speed) / (speed @ self.column))
 
 
 Element = Stop | Friction | Wall
@@ -116,10 +129,12 @@ class Contact:
                 G += np.outer(element.column, element.row if element.force is None else element.force)
             if isinstance(element, Friction):
                 G[:, n] += side * element.column
-        stuck = [i for i, e in enumerate(self.elements) if isinstance(e, Friction) and mode[i] == 0]
+        stuck = [i for i, e in enumerate(self.elements) if not isinstance(e, Stop) and mode[i] == 0]
         if not stuck:
             return G, stuck, np.zeros((0, len(G)))
-        rows = np.array([self.elements[i].row for i in stuck])
+        free = self.free(Omega)
+        held = [self.elements[i] for i in stuck]
+        rows = np.array([e.row @ free if isinstance(e, Wall) else e.row for e in held])
         columns = np.array([self.elements[i].column for i in stuck]).T  # type: ignore[union-attr]
         carried = -np.linalg.solve(rows @ columns, rows @ G)
         return G + columns @ carried, stuck, carried
@@ -130,7 +145,10 @@ class Contact:
             G, stuck, carried = self.sticking(Omega, mode)
             one, rows, owners = np.eye(len(G))[len(self.matrix)], [], []
             for i, (element, side) in enumerate(zip(self.elements, mode, strict=True)):
-                if i in stuck:
+                if i in stuck and isinstance(element, Wall):
+                    rows.append(carried[stuck.index(i)])
+                    owners.append(i)
+                elif i in stuck:
                     rows += [one - carried[stuck.index(i)], one + carried[stuck.index(i)]]
                     owners += [i, i]
                 else:
@@ -138,7 +156,7 @@ class Contact:
                     owners.append(i)
             fastest = float(np.abs(np.linalg.eigvals(G)).max())
             step = min(TWO_PI / Omega / SAMPLES, 0.5 / fastest)
-            walls = np.array([isinstance(self.elements[i], Wall) for i in owners])
+            walls = np.array([isinstance(self.elements[i], Wall) and bool(mode[i]) for i in owners])
             self._pieces[Omega, mode] = Piece(G, np.array(rows), owners, walls, step, expm(G * step))
         return self._pieces[Omega, mode]
 
@@ -156,6 +174,10 @@ class Contact:
     def passed(self, Omega: float, mode: Mode, i: int, z: Array) -> tuple[Mode, Array]:
         """The mode after an event of element i, and R."""
         element, same = self.elements[i], np.eye(len(z))
+        if isinstance(element, Wall) and mode[i] == 0:
+            return _with(mode, i, 1), same
+        if isinstance(element, Wall) and self._rests(Omega, mode, i, z):
+            return _with(mode, i, 0), element.plastic(self.free(Omega))
         if isinstance(element, Wall):
             after = element.reset @ z
             slips = [isinstance(e, Friction) and abs(e.row @ after) > ROUNDING for e in self.elements]
@@ -168,6 +190,14 @@ class Contact:
         if mode[i] == 0 or abs(needed) >= 1:
             return _with(mode, i, int(np.sign(needed))), same
         return _with(mode, i, 0), same
+
+    def _rests(self, Omega: float, mode: Mode, i: int, z: Array) -> bool:
+        """Whether an impact is so slow that it comes to rest, and its wall has to push."""
+        wall, free = self.elements[i], self.free(Omega)
+        if not isinstance(wall, Wall) or wall.column is None or abs(wall.row @ free @ z) > SLOW:
+            return False
+        _, stuck, carried = self.sticking(Omega, _with(mode, i, 0))
+        return bool(carried[stuck.index(i)] @ wall.plastic(free) @ z > 0)
 
 
 def _with(mode: Mode, i: int, side: int) -> Mode:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from support.drawn.joints import DOWN, UP
+from support.drawn.jointcases import DOWN, UP
 
 from survey.rows import FEW, JUDGED, MANY, SEEDS, TOL, Row
 

@@ -14,7 +14,7 @@ from reference.joints.judging import judged as judged_joints
 from reference.judging import Verdict, judged
 from support.drawn import contact
 from support.drawn.contact import Case
-from support.drawn.joints import DOWN, UP, JointCase, drawn_joints
+from support.drawn.jointcases import DOWN, UP, JointCase, drawn_joints
 
 import periodic as per
 from reports.studies.extremes.survey import within
@@ -38,7 +38,7 @@ class Limits:
 
 FEW = Limits(400, 4000, 40.0)
 
-MANY = Limits(1000, 12000, 150.0)
+MANY = Limits(3000, 40000, 300.0)
 """Of models with several joints: a period has tens of events, and each two that change places are a point."""
 
 JUDGED = 8

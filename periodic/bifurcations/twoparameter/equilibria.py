@@ -12,7 +12,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.stationary import balance
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
-from periodic.equilibrium.method import Equilibrium
+from periodic.equilibrium.equilibrium import Equilibrium
 from periodic.equilibrium.normalform import first_lyapunov
 from periodic.stability.multipliers import Complex
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
-from periodic.condensed.method import mesh_method
+from periodic.condensed.condensedcollocation import mesh_method
 from periodic.conditions.flip import flip_coefficient
 from periodic.correction.outcome import FAILURES
 from periodic.correction.solution import Solution

@@ -9,7 +9,6 @@ along the same polynomials: those that decay fast too, as growth and decay may c
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.fastmotions.unresolved import jacobians
-from periodic.correction.newton import Correction
+from periodic.correction.newton import Correction, Linearise
 from periodic.linear.bordering import Chain
 from periodic.linear.operator import Operator
 from periodic.orbit.construction import transfer
@@ -35,15 +34,13 @@ EACH, FASTEST = 0.7, 2.0
 MOST_SUBSTEPS = 64
 """Most substeps of an interval."""
 
-Equations = Callable[[System, Orbit, tuple[int, ...]], Operator]
-
 
 @dataclass(frozen=True)
 class SteppedCorrection(Correction):
     """A correction with the propagation of perturbations, on intervals that resolve it."""
 
     system: System | None = None
-    equations: Equations | None = None
+    equations: Linearise | None = None
 
     @cached_property
     def stepping(self) -> Operator | None:
@@ -55,7 +52,7 @@ class SteppedCorrection(Correction):
 
 
 def stepping(
-    equations: Equations, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
+    equations: Linearise, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
 ) -> Operator | None:
     """Return equations that resolve how perturbations of an orbit grow: `operator` where that does.
 

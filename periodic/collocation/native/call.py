@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -17,10 +16,10 @@ from periodic.correction.newton import NewtonSettings
 from periodic.events.modes import sides
 from periodic.linear.bordering import GROWTH
 from periodic.orbit.mesh import Mesh
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, library_of, plain
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, address_of, compiling, jumps_of, resets_of
+from periodic.system import System, address_of, jumps_of, resets_of
 
 MOST_STATES = 60
 """Number of states up to which it is worth its while; where matrices are full, up to `LARGE`."""
@@ -63,9 +62,6 @@ _NUMBERS = (*_SETTINGS, "origin_parameter", "slope", "distance", *_MEASURED, "gr
 _GIVEN = (*_MARKS, *_MESH, *_SCHEME, *_SYSTEM, "side", *_CONSTRAINT, *(f"origin_{name}" for name in ORIGIN))
 _ADDRESSES = (*_GIVEN, "lengths", *FOUND, *SOLVED)
 
-Routine = Callable[..., int]
-"""A function of the library, of the addresses of what it takes."""
-
 
 class Call(ctypes.Structure):
     """`struct call` of newton.c."""
@@ -103,10 +99,10 @@ def prepared(
     if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system):
         return None
     own = sides(system, orbit)
-    with_compiler, functions = compiling(system), _functions(system, free, bool(own.any()))
-    if with_compiler is None or functions is None or (n >= LARGE and _full(system, orbit)):
+    functions = _functions(system, free, bool(own.any()))
+    if functions is None or (n >= LARGE and _full(system, orbit)):
         return None
-    library = with_compiler.library(source(*_SOURCES))
+    library = library_of(system, *_SOURCES)
     if library is None:
         return None
     call = Call.from_buffer_copy(_of_mesh(mesh)[0])
@@ -184,12 +180,3 @@ def _of_mesh(mesh: Mesh) -> tuple[Call, Sequence[Any]]:
         call.period, call.growth, call.growing = mesh.period, GROWTH, GROWING
         _meshes[mesh] = call, kept
     return _meshes[mesh]
-
-
-@cache
-def routine(library: ctypes.CDLL, name: str, arguments: int = 1) -> Routine:
-    """Return a function of the library by its name."""
-    function = getattr(library, name)
-    function.argtypes, function.restype = [ctypes.c_void_p] * arguments, ctypes.c_int
-    run: Routine = function
-    return run

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.collocation.residual import Evaluated
-from periodic.orbit.native.arrays import plain, source
+from periodic.orbit.native.addresses import library_of, plain
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import LinearisationLike, System, compiling
+from periodic.system import LinearisationLike, System
 
 NOT_FINITE, SINGULAR = 1, 2
 """What `eliminate_stages` answers where it fails."""
@@ -126,10 +126,9 @@ class Routines:
 
 def routines(system: System, line: LinearisationLike) -> Routines | None:
     """Return what a system has compiled, or None where NumPy is to do for its linearised equations."""
-    with_compiler = compiling(system)
-    if with_compiler is None or (len(system.states) >= LARGE and _full(line)):
+    if len(system.states) >= LARGE and _full(line):
         return None
-    library = with_compiler.library(source(ELIMINATION))
+    library = library_of(system, ELIMINATION)
     return None if library is None else _routines(library)
 
 

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from periodic.collocation.fastmotions.unresolved import FAST
-from periodic.collocation.native.call import FOUND, given, prepared, routine
+from periodic.collocation.native.call import FOUND, given, prepared
 from periodic.collocation.native.perturbations import carried, multiplied
 from periodic.collocation.rounding import TERMS
 from periodic.correction.error import LAST_DIGITS, REACH, STRAIGHT, ErrorEstimate, Halved, relative
@@ -20,6 +20,7 @@ from periodic.correction.problem import Problem
 from periodic.events.impacts import jumping
 from periodic.linear.unknowns import STEEP, Increment, size_of
 from periodic.orbit.construction import bisect
+from periodic.orbit.native.addresses import routine
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Spectrum

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from periodic.collocation.native.call import FOUND, ORIGIN, SOLVED, Call, given, laid_out, prepared, routine
+from periodic.collocation.native.call import FOUND, ORIGIN, SOLVED, Call, given, laid_out, prepared
 from periodic.collocation.native.perturbations import carried, multiplied, tame
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.condition import SideCondition
@@ -19,6 +19,7 @@ from periodic.correction.newton import Correction, NewtonSettings
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events.impacts import jumping
 from periodic.linear.unknowns import Increment
+from periodic.orbit.native.addresses import routine
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System

@@ -9,9 +9,10 @@ import numpy as np
 
 from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
-from periodic.events.modes import group, mode_after, relays, returns, surface_of
+from periodic.events.modes import group, mode_after, relays, release, returns, surface_of
 from periodic.events.rewrites.corners import corner
 from periodic.events.rewrites.meetings import meeting, met
+from periodic.events.rewrites.merging import merged, merging
 from periodic.events.rewrites.reversals import reversals, short_of
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strikes import last_impact
@@ -30,6 +31,7 @@ from periodic.events.rewrites.table import (
     GRAZING_SLIDING,
     IMPACT,
     LIMIT_GRAZING,
+    MERGING,
     RELAY,
     RELEASE_AT_IMPACT,
     REVERSAL,
@@ -104,9 +106,11 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
             yield Excursion(CORNER, i)
         if i in about:
             continue
-        meets = meeting(system, orbit, i)
+        meets, merges = meeting(system, orbit, i), merging(system, orbit, i)
         if meets is not None:
             yield Excursion(meets, i)
+        elif merges is not None:
+            yield Excursion(MERGING, i, segments=merges.segments)
         elif swaps(system, orbit, i):
             yield Excursion(SWAP, i)
 
@@ -122,6 +126,8 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
         return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
+    if excursion.row is MERGING:
+        return list(merged(system, orbit, excursion.index))
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
         return [met(system, orbit, excursion.row, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]
@@ -270,9 +276,8 @@ def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
     assert surface is not None and surface.releases is not None
     j, guard = (i + 1) % len(orbit.phases), surface.switch
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]
-    up, down = surface.releases
-    onward = up if first.direction > 0 else down
-    others = tuple(pair for pair in first.modes if pair[0] != guard)
+    onward = release(surface, first.direction)
+    others = first.modes_beside(guard)
     if row is CROSSING_SLIDING:
         passes = replace(first, modes=others)
         return Site(row, onward, i, Limit(i, onward, first.direction), 0.0, (), (j,), ((i, passes),))

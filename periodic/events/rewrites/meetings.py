@@ -75,7 +75,7 @@ def met(system: System, orbit: Orbit, row: Row, segment: int) -> Site:
 
 def leading(impact: EventNode, surface: SurfaceLike, earlier: int, later: int) -> EventNode:
     """Return an impact that takes a surface from one mode to another."""
-    others = tuple(pair for pair in impact.modes if pair[0] != surface.switch)
+    others = impact.modes_beside(surface.switch)
     own = ((surface.switch, later),) if later != earlier else ()
     return replace(impact, modes=(*own, *others))
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from periodic.events.modes import group, held_all_along, mode_after, surface_of
+from periodic.events.modes import group, held_all_along, mode_after, release, surface_of
 from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
@@ -129,12 +129,12 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     if surface.releases is None:
         return _grazing(system, orbit, at, side, value)
     if k == surface.switch:
-        surface = leading(system, surface)
-        assert surface.releases is not None
-        k, at = surface.switch, replace(at, switch=surface.switch)
-        release = EventNode(surface.releases[0] if side > 0 else surface.releases[1], side)
+        surface, sign = leading(system, orbit, surface, at.interval)
+        k, side = surface.switch, sign * side
+        at = replace(at, switch=k, value=sign * at.value)
+        let_go = EventNode(release(surface, side), side)
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
-        new = (EventNode(k, -side, modes=((k, STUCK),)), early), (release, late)
+        new = (EventNode(k, -side, modes=((k, STUCK),)), early), (let_go, late)
         row, left = GRAZING_SLIDING, 0.0
     else:
         early, late = (-1.0, 0.0) if surface.kind == Kind.SLIDER else (-1 / 3, 2 / 3)
@@ -169,7 +169,7 @@ def _limit(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation)
         return begun(system, orbit, surface, limit)
     node, event, guard = limit.at, orbit.mesh.events[limit.at], surface.switch
     phase, most = float(orbit.phases[node]), _largest_release(system, orbit, surface)
-    others = tuple(pair for pair in event.modes if pair[0] != guard)
+    others = event.modes_beside(guard)
     if mode_after(surface, event) == STUCK:
         passes = replace(event, modes=others)
         stop = EventNode(guard, -event.direction, modes=((guard, STUCK),))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from periodic.events.modes import group, of_held, returns, sliding, sticks
+from periodic.events.rewrites.sites import apart
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL
 from periodic.orbit.orbit import Orbit
@@ -80,11 +81,7 @@ def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
     """Return how far short of its level a touch is held: 0 but where friction turns the motion."""
     begin, end = held(system, orbit, switch, phase)
     events = zip(orbit.mesh.events, orbit.phases, strict=True)
-    apart = [abs(_wrapped(begin - tau, orbit)) for e, tau in events if sliding(system, e.switch) is not None]
-    if begin == end and min(apart, default=np.inf) > AT_EXTREMUM:
+    far = [apart(begin, float(tau), orbit) for e, tau in events if sliding(system, e.switch) is not None]
+    if begin == end and min(far, default=np.inf) > AT_EXTREMUM:
         return 0.0
     return AT_LEVEL * float(np.abs(SwitchPolynomials(system, orbit).knots[:, :, switch]).max())
-
-
-def _wrapped(phase: float, orbit: Orbit) -> float:
-    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)

@@ -23,7 +23,7 @@ from periodic.events.rewrites.onsets import at_once
 from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
 from periodic.events.rewrites.together import together
-from periodic.events.sideconditions import Clearance, Length, Limit, Speed
+from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
 from periodic.events.violations import largest
@@ -31,7 +31,7 @@ from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import density, redistribute, spread
-from periodic.system import System
+from periodic.system import HELD, System
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class Ends:
     ) -> SideCondition:
         """What is 0 where it ends, but for what rounding decides."""
         held, left = own.held, 0.0
-        if isinstance(held, Length):
+        if isinstance(held, Length | Lengths):
             return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         jump = sliding(system, own.switch)
         if jump is not None and own.row is not GRAZING_SLIDING:
@@ -199,7 +199,8 @@ def rewritten(
     system: System, orbit: Orbit, sites: Sequence[Site], size: float
 ) -> tuple[tuple[EventNode, ...], Array]:
     """Return event nodes and phases of an orbit after the edits at some sites, in order."""
-    return ordered(together(system, in_order(edited(orbit, sites, size), orbit), size), orbit)
+    held = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    return ordered(together(system, in_order(edited(orbit, sites, size), orbit), size, held), orbit)
 
 
 def _changed(site: Site) -> Sequence[int]:

@@ -10,7 +10,7 @@ import numpy as np
 from periodic.correction.condition import SideCondition
 from periodic.events.rewrites.table import Row
 from periodic.events.switchpolynomials import Extremum
-from periodic.orbit.mesh import EventNode
+from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 
@@ -107,5 +107,4 @@ def index_of(events: tuple[EventNode, ...], phases: Array, node: Node, orbit: Or
 
 def apart(one: float, other: float, orbit: Orbit) -> float:
     """Return how far two phases are from each other."""
-    period = orbit.mesh.period
-    return abs(float(np.mod(one - other + period / 2, period) - period / 2))
+    return abs(wrapped(one - other, orbit.mesh.period))

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from periodic.events.impacts import tied
-from periodic.events.modes import of_kind, surface_of, twins
+from periodic.events.modes import mode_after, of_kind, surface_of
 from periodic.events.rewrites.corners import reversed_by_impact
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
 from periodic.events.sideconditions import Length
+from periodic.events.twinguards import held_at, holding, twins
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import Kind, SurfaceLike, System
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, surfaces_of
 
 
 def swaps(system: System, orbit: Orbit, segment: int) -> bool:
@@ -19,15 +21,46 @@ def swaps(system: System, orbit: Orbit, segment: int) -> bool:
     if {first.switch, second.switch} & marked or len(orbit.phases) < 2:
         return False
     one, other = (surface_of(system, event.switch) for event in (first, second))
-    if one.switch == other.switch or _bound(system, one, other):
+    if one.switch == other.switch or _bound(system, orbit, segment):
         return False
     return not reversed_by_impact(system, orbit, segment)
 
 
-def _bound(system: System, one: SurfaceLike, other: SurfaceLike) -> bool:
-    """Whether two surfaces are friction and a slider beside it, which is not strained where it holds."""
-    both = {one.kind, other.kind} == {Kind.SLIDING, Kind.SLIDER}
-    return both and other.switch in twins(system, one.switch)
+def _bound(system: System, orbit: Orbit, segment: int) -> bool:
+    """Whether one node changes friction that what another one changes depends on.
+
+    What stops at once with it only where friction holds, or is not strained where it holds.
+    """
+    events, count = orbit.mesh.events, len(orbit.phases)
+    ends = segment, (segment + 1) % count
+    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    for node, other, beyond in ((*ends, (ends[1] + 1) % count), (*ends[::-1], (ends[0] - 1) % count)):
+        friction = [s.switch for s in _changed(system, events[node]) if s.kind == Kind.SLIDING]
+        if not friction:
+            continue
+        held = held_at(system, events, other, always)
+        held = [k for k in held if k not in friction]
+        for k in (s.switch for s in _changed(system, events[other])):
+            if holding(system, k, [*held, *friction]) and not holding(system, k, held):
+                return True
+        stopped = _stopped(events[other])
+        near = {*stopped, *(_stopped(events[beyond]) if beyond != node else ())}
+        for k in stopped:
+            alike = set(twins(system, k, [*held, *friction])) - set(twins(system, k, held))
+            if alike & near:
+                return True
+    return False
+
+
+def _stopped(event: EventNode) -> list[int]:
+    """The guards of what stops at an event node."""
+    return [k for k, mode in event.modes if mode == STUCK]
+
+
+def _changed(system: System, event: EventNode) -> list[SurfaceLike]:
+    """The surfaces at which motions may be held whose modes an event node changes."""
+    each = (surface for surface in surfaces_of(system) if surface.releases is not None)
+    return [surface for surface in each if mode_after(surface, event) is not None]
 
 
 def swapped(system: System, orbit: Orbit, segment: int) -> Site:

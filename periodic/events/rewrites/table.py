@@ -17,6 +17,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    merging of stops       a b F               F (a and b)       length           length
     grazing of a relay     nothing             ends              clearance        speed
     corner before impact   I from a            (a b) I from b    limit            length
     corner after impact    I to b              I to a, (a b)     limit            length
@@ -28,6 +29,7 @@ briefly, and so the multipliers jump, which they do not where friction slips.
 
 I is an impact that throws the guard of another surface, as that of friction against a belt: it takes it
 from a mode to a mode. Where the guard is 0 just before or after it the orbit passes the corner of both.
+F is friction between two masses that sticks: two joints at them have one guard then, and stop at once.
 w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
 joint where one is pulled most. Where a relay just reaches its threshold a branch ends: past it the relay
 switches, and the motion is another one. What begins is of no
@@ -122,3 +124,4 @@ RELAY = Row(
     name="grazing of a relay", touches=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
 )
 SWAP = Row(name="two events change places", touches=False, power=LINEAR)
+MERGING = Row(name="two stops become one", touches=False, power=LINEAR)

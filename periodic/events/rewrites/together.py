@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from periodic.events.modes import mode_after, of_kind, surface_of, twins
+from periodic.events.modes import mode_after, of_kind, release, surface_of
 from periodic.events.rewrites.sites import Node
+from periodic.events.twinguards import held_at, holding, twins
 from periodic.orbit.mesh import EventNode
 from periodic.system import STUCK, Kind, SurfaceLike, System
 
@@ -22,21 +23,45 @@ and after friction: the strain it has to make up for is as its square, and grows
 the cube of time."""
 
 
-def together(system: System, nodes: Sequence[Node], size: float) -> list[Node]:
+def together(system: System, nodes: Sequence[Node], size: float, held: Sequence[int] = ()) -> list[Node]:
     """Return event nodes in order with sliders let go together where they are, and by themselves elsewhere.
 
-    size: of what begins or ends, by which those that are let go by themselves are put aside.
+    size: of what begins or ends, by which those that are let go by themselves are put aside. held: the guards
+    of friction that is held all along.
     """
-    found = list(nodes)
-    for surface in of_kind(system, Kind.SLIDER):
-        if len(twins(system, surface.switch)) > 1:
-            for _ in nodes:
-                each = (_placed(system, surface, found, r, size) for r in _releases(surface, found))
-                changed = next((placed for placed in each if placed is not None), None)
-                if changed is None:
-                    break
-                found = sorted(changed, key=lambda node: node[1])
+    found, joints = list(nodes), of_kind(system, Kind.SLIDING, Kind.SLIDER)
+    for surface in of_kind(system, Kind.SLIDER) if len(joints) > 1 else ():
+        for _ in nodes:
+            word = Word(system, found, held)
+            each = (_placed(word, surface, r, size) for r in _releases(surface, found))
+            changed = next((placed for placed in each if placed is not None), None)
+            if changed is None:
+                break
+            found = sorted(changed, key=lambda node: node[1])
     return found
+
+
+@dataclass(frozen=True)
+class Word:
+    """The event nodes of an orbit of a system, and the guards of friction that is held all along."""
+
+    system: System
+    nodes: list[Node]
+    held: Sequence[int]
+
+    def twins(self, surface: SurfaceLike, node: int) -> list[tuple[SurfaceLike, int]]:
+        """Return the surfaces with the guard of one where an event node happens, and their signs."""
+        held = held_at(self.system, [event for event, _ in self.nodes], node, self.held)
+        each = twins(self.system, surface.switch, held).items()
+        return [(surface_of(self.system, k), sign) for k, sign in each if k != surface.switch]
+
+    def holding(self, surface: SurfaceLike, node: int) -> dict[int, int]:
+        """Return the guards of friction that holds the strain of a slider after a node, with signs."""
+        events = [event for event, _ in self.nodes]
+        each = ((k, mode_after(k, events[node])) for k in of_kind(self.system, Kind.SLIDING))
+        stopped = [k.switch for k, mode in each if mode == STUCK]
+        held = [*held_at(self.system, events, node, self.held), *stopped]
+        return holding(self.system, surface.switch, held)
 
 
 @dataclass(frozen=True)
@@ -60,15 +85,13 @@ def _releases(surface: SurfaceLike, nodes: Sequence[Node]) -> Iterator[Release]:
             yield Release(j, mode, stop if returns else None)
 
 
-def _placed(
-    system: System, surface: SurfaceLike, nodes: list[Node], own: Release, size: float
-) -> list[Node] | None:
+def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list[Node] | None:
     """The nodes with one release where it belongs; None where it is there."""
-    leader = _leader(system, surface, nodes, own)
-    joint = _partners(system, surface, nodes[own.node][0])
+    system, nodes = word.system, word.nodes
+    leader = _leader(word, surface, own)
+    joint = _partners(word, surface, own)
     if leader == own.node or (leader is None and not joint):
         return None
-    assert surface.releases is not None
     phase, found = nodes[own.node][1], list(nodes)
     rest = without(system, nodes[own.node][0], surface.switch)
     if leader is not None:
@@ -79,52 +102,70 @@ def _placed(
     if leader is None:
         friction = any(k.kind == Kind.SLIDING for k in joint)
         part, power = LATER if friction else EARLIER
-        alone = EventNode(surface.releases[0 if own.direction > 0 else 1], own.direction)
+        alone = EventNode(release(surface, own.direction), own.direction)
         found.append((alone, phase + part * size**power))
     elif rest is None:
         del found[own.node]
     return found
 
 
-def _leader(system: System, surface: SurfaceLike, nodes: Sequence[Node], own: Release) -> int | None:
+def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
     """The node at which a slider is let go with others; None where it is let go by itself."""
     if own.stop is None:
         return None
-    each = [surface_of(system, k) for k in twins(system, surface.switch) if k != surface.switch]
-    for other in each:
-        if other.kind == Kind.SLIDING and mode_after(other, nodes[own.stop][0]) == STUCK:
-            release = _after(other, nodes, own.stop)
-            return release if mode_after(other, nodes[release][0]) == own.direction else None
-    beside = (
-        r.node for k in each if k.kind == Kind.SLIDER for r in _releases(k, nodes) if r.stop == own.stop
-    )
-    return next(beside, None)
+    event, _ = word.nodes[own.stop]
+    if friction := word.holding(surface, own.stop):
+        each = ((_after(surface_of(word.system, k), word.nodes, own.stop), k) for k in friction)
+        after, k = min(((after, k) for after, k in each if after), default=(0, 0))
+        if not after:
+            return None
+        node = (own.stop + after) % len(word.nodes)
+        onward = mode_after(surface_of(word.system, k), word.nodes[node][0]) == friction[k] * own.direction
+        return node if onward else None
+    for other, _ in word.twins(surface, own.stop):
+        if other.kind == Kind.SLIDER and mode_after(other, event) == STUCK:
+            for release in _releases(other, word.nodes):
+                if release.stop == own.stop and _one_guard(word, surface, other, own.stop, release.node):
+                    return release.node
+    return None
+
+
+def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end: int) -> bool:
+    """Whether two surfaces are twins from one node to another."""
+    count = (end - begin) % len(word.nodes)
+    between = ((begin + m) % len(word.nodes) for m in range(count + 1))
+    return all(other in (k for k, _ in word.twins(one, node)) for node in between)
 
 
 def _after(surface: SurfaceLike, nodes: Sequence[Node], node: int) -> int:
-    """The next node that changes a surface's mode."""
+    """How many nodes after one the next is that changes a surface's mode; 0 where none does."""
     count = len(nodes)
-    each = ((node + m) % count for m in range(1, count + 1))
-    return next(j for j in each if mode_after(surface, nodes[j][0]) is not None)
+    changes = (m for m in range(1, count + 1) if _changes(surface, nodes[(node + m) % count]))
+    return next(changes, 0)
 
 
-def _partners(system: System, surface: SurfaceLike, event: EventNode) -> list[SurfaceLike]:
-    """The twins that an event node changes as well."""
-    each = (surface_of(system, k) for k in twins(system, surface.switch) if k != surface.switch)
+def _changes(surface: SurfaceLike, node: Node) -> bool:
+    return mode_after(surface, node[0]) is not None
+
+
+def _partners(word: Word, surface: SurfaceLike, own: Release) -> list[SurfaceLike]:
+    """The surfaces that may let go of a slider, and that its event node changes as well."""
+    friction = {} if own.stop is None else word.holding(surface, own.stop)
+    each = [*(k for k, _ in word.twins(surface, own.node)), *(surface_of(word.system, k) for k in friction)]
+    event, _ = word.nodes[own.node]
     return [other for other in each if mode_after(other, event) is not None]
 
 
 def without(system: System, event: EventNode, guard: int) -> EventNode | None:
     """Return the event node of twins without one of them; None where it is its alone."""
-    others = tuple(pair for pair in event.modes if pair[0] != guard)
+    others = event.modes_beside(guard)
     if surface_of(system, event.switch).switch != guard:
         return replace(event, modes=others)
     if not others:
         return None
     if event.switch == guard:
         return EventNode(others[0][0], event.direction, event.level, others)
-    second = surface_of(system, others[0][0]).releases
-    if second is None:
+    second = surface_of(system, others[0][0])
+    if second.releases is None:
         return None
-    switch = second[0 if event.direction > 0 else 1]
-    return EventNode(switch, event.direction, event.level, others[1:])
+    return EventNode(release(second, event.direction), event.direction, event.level, others[1:])

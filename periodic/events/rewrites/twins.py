@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.modes import mode_after, sticks, surface_of, twins
+from periodic.events.modes import mode_after, sticks, surface_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
+from periodic.events.twinguards import held_in, twins
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System
 
@@ -24,7 +25,8 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     """
     assert isinstance(site.at, Extremum)
     guard = surface_of(system, site.switch).switch
-    both = [k for k in twins(system, guard) if k != guard]
+    alike = twins(system, guard, held_in(system, orbit, site.at.interval))
+    both = {k: sign for k, sign in alike.items() if k != guard}
     if not both:
         return site
     if site.row is GRAZING_SLIDING:
@@ -39,7 +41,7 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     return replace(site, added=(release,), replaced=((turn, joined),))
 
 
-def _turn(system: System, orbit: Orbit, at: Extremum, both: list[int]) -> int | None:
+def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> int | None:
     """The event node at which others stop where a strain turns: at that phase, or where friction holds it."""
     for j, event in enumerate(orbit.mesh.events):
         if event.switch not in both:
@@ -57,19 +59,25 @@ def _turn(system: System, orbit: Orbit, at: Extremum, both: list[int]) -> int | 
     return None
 
 
-def leading(system: System, surface: SurfaceLike) -> SurfaceLike:
-    """Return the surface whose grazing-sliding that of another one is: of dry friction beside sliders its."""
-    each = (surface_of(system, k) for k in twins(system, surface.switch))
-    return next((own for own in each if own.kind == Kind.SLIDING), surface)
+def leading(system: System, orbit: Orbit, surface: SurfaceLike, interval: int) -> tuple[SurfaceLike, int]:
+    """Return the surface whose grazing-sliding that of another one is, and the sign between their guards.
+
+    Of dry friction beside sliders it is that of friction.
+    """
+    both = twins(system, surface.switch, held_in(system, orbit, interval))
+    each = ((surface_of(system, k), sign) for k, sign in both.items())
+    return next((own for own in each if own[0].kind == Kind.SLIDING), (surface, 1))
 
 
-def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: list[int]) -> Site:
+def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: dict[int, int]) -> Site:
     """All that slip about the turn are held for a while."""
     assert isinstance(site.at, Extremum)
     stop, release = site.added
-    slipping = [k for k in both if _mode(system, orbit, k, site.at.interval) == release.event.direction]
+    way = release.event.direction
+    ways = {k: sign * way for k, sign in both.items()}
+    slipping = [k for k in both if _mode(system, orbit, k, site.at.interval) == ways[k]]
     stuck = tuple((k, STUCK) for k in slipping)
-    onward = tuple((k, release.event.direction) for k in slipping)
+    onward = tuple((k, ways[k]) for k in slipping)
     first = Added(replace(stop.event, modes=(*stop.event.modes, *stuck)), stop.phase, stop.part)
     last = Added(replace(release.event, modes=onward), release.phase, release.part)
     return replace(site, added=(first, last))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.bifurcations.label import Label
+from periodic.checks import one_of
 from periodic.conditions.functionals import Functional
 from periodic.maps.numbers.reading import check_functional, parameter_unit, read, settled, unit_of
 from periodic.maps.task import Task
@@ -52,8 +53,7 @@ class Places:
     def units(self, task: Task) -> dict[str, str]:
         """Return the unit of the values. Raises ValueError for a label that branches do not have."""
         events = task.watch.events if task.watch is not None else {}
-        if self.label not in (known := [*map(str, Label.known()), *events]):
-            raise ValueError(f"label is {self.label!r}; it must be one of {', '.join(known)}")
+        one_of("label", self.label, [*map(str, Label.known()), *events])
         given = self.functional
         return {"": parameter_unit(task) if given is None else unit_of(task.system, given)}
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, library_of, plain, routine
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import System, address_of, compiling
+from periodic.system import System, address_of
 
 _SOURCES = ("periodic.orbit.native:outputs.c", "periodic.orbit.native:extremes.c")
 _SIZES = ("count", "ncol", "n", "m", "outputs", "points")
@@ -46,12 +44,12 @@ def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) 
     """
     if type(orbit) is not Orbit:
         return None
-    with_compiler, values_at = compiling(system), address_of(system, "output")
-    if with_compiler is None or values_at is None:
+    values_at = address_of(system, "output")
+    if values_at is None:
         return None
     (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
     rows = address_of(system, "linearise") if m else 0
-    library = with_compiler.library(source(*_SOURCES))
+    library = library_of(system, *_SOURCES)
     if rows is None or library is None:
         return None
     scheme, grid = orbit.mesh.scheme, orbit.grid
@@ -60,12 +58,4 @@ def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) 
     kept = [plain(array) for array in (*own, *fixed)]
     sizes, found = (count, ncol, n, m, len(system.outputs), len(tau)), address(values)
     call = Call(*sizes, *map(address, kept), rows, values_at, found, orbit.mesh.period)
-    return values if _routine(library, what)(ctypes.addressof(call)) == 0 else None
-
-
-@cache
-def _routine(library: ctypes.CDLL, name: str) -> Callable[[int], int]:
-    function = getattr(library, name)
-    function.argtypes, function.restype = [ctypes.c_void_p], ctypes.c_int
-    run: Callable[[int], int] = function
-    return run
+    return values if routine(library, what)(ctypes.addressof(call)) == 0 else None

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from periodic.condensed.whole.motion import displacements
+from periodic.condensed.whole.displacements import displacements
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.results.plots.units import prefixed

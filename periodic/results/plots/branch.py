@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from periodic.checks import one_of
 from periodic.results import frames
 from periodic.results.branch import Branch
 from periodic.results.plots.curve import draw_curve
@@ -60,9 +61,7 @@ def plot(
     if not isinstance(branch, Branch):
         raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
     outputs = [q.name for q in branch.layout.outputs]
-    name = output or outputs[0]
-    if name not in outputs:
-        raise ValueError(f"output is {name!r}; it must be one of {', '.join(outputs)}")
+    name = one_of("output", output or outputs[0], outputs)
     shown = Shown(quantities(branch.layout), units)
     heights, said, unit = _measured(branch, name, measure, shown)
     across = shown.unit(branch.parameter, branch.values)

@@ -8,7 +8,7 @@ import numpy as np
 
 from periodic.results.branch import Branch
 from periodic.results.plots.frame import dressed, fresh
-from periodic.results.plots.motion import shown_of, spectrum
+from periodic.results.plots.orbitplots import shown_of, spectrum
 from periodic.results.plots.units import Units
 
 if TYPE_CHECKING:

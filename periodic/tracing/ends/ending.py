@@ -9,7 +9,7 @@ import numpy as np
 from periodic.bifurcations.fold import LEAST_SLOPE
 from periodic.correction.problem import Problem
 from periodic.results.point import Point
-from periodic.results.stop import Stop
+from periodic.results.stop import Reason, Stop
 from periodic.system.precision import EPSILON
 from periodic.tracing.ends import homoclinic
 
@@ -24,8 +24,8 @@ def reached(problem: Problem, points: Sequence[Point]) -> Stop | None:
     """Return why a branch ends at its last point, if it does."""
     longest = homoclinic.period(problem, points)
     if longest is not None:
-        return Stop.homoclinic(longest)
-    return Stop.vanished(points[-1].orbit.span()) if vanished(problem, points) else None
+        return Stop.after(Reason.HOMOCLINIC, longest)
+    return Stop.after(Reason.VANISHED, points[-1].orbit.span()) if vanished(problem, points) else None
 
 
 def vanished(problem: Problem, points: Sequence[Point]) -> bool:

@@ -67,11 +67,9 @@ def comes_back(ends: tuple[float, float], rates: tuple[float, float]) -> bool:
 def _rate_of(functional: Smooth) -> Callable[[Solution], float]:
     def rate(solution: Solution) -> float:
         """d functional / d arclength."""
-        problem, tangent = solution.problem, solution.tangent
+        problem = solution.problem
         row = functional.linearise(problem.system, solution.orbit, problem.free)
-        found = float(np.vdot(row.nodes, tangent.nodes))
-        found += float(row.outer @ np.append(tangent.phases, tangent.parameters))
-        return found if row.stages is None else found + float(np.vdot(row.stages, tangent.stages))
+        return solution.tangent.rate_of(row)
 
     return rate
 

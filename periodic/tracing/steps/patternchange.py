@@ -86,11 +86,7 @@ def _comes_back(found: Solution, change: Change, at_base: bool) -> bool:
     row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
     if not change.strict or (row.stages is not None and not at_base):
         return False
-    way = found.tangent
-    ahead = np.vdot(row.nodes, way.nodes) + row.outer @ np.append(way.phases, way.parameters)
-    if row.stages is not None:
-        ahead += np.vdot(row.stages, way.stages)
-    return bool(ahead > 0)
+    return found.tangent.rate_of(row) > 0
 
 
 def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> Solution:

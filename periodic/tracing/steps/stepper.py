@@ -158,7 +158,7 @@ class Stepper:
         moved = carried(self.solver, base, mesh, base.orbit.phases)
         if not moved.ok:
             raise RejectedError(f"the mesh could not be adapted: {moved.outcome.value}")
-        if not self._alike(base, moved):
+        if not self.solver.alike(base, moved):
             raise RejectedError("on another mesh the orbit has other events")
         return moved
 
@@ -184,14 +184,9 @@ class Stepper:
         better = remeshed(solver, new)
         if better.ok and not is_refined(solver, better):
             better = refined(solver, better)
-        if not better.ok or better.error.motion > tolerance or not self._alike(new, better):
+        if not better.ok or better.error.motion > tolerance or not solver.alike(new, better):
             return new
         return better
-
-    def _alike(self, old: Solution, new: Solution) -> bool:
-        """Whether an orbit has the events on a new mesh that it had."""
-        method, system = self.solver.discretisation, self.solver.problem.system
-        return method.pattern(system, new.orbit) == method.pattern(system, old.orbit)
 
     def _too_fine(self, new: Solution) -> bool:
         """Whether a far smaller mesh would do."""

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from reports.app.request import Task
 from reports.app.view import View, view_of
 from symbolic import CompiledSystem
+from symbolic.motion.frequencyresponse import FrequencyResponse, peak, response
 from symbolic.motion.linear import Modes, modes, resonance
-from symbolic.motion.response import FrequencyResponse, peak, response
 from symbolic.scenes.building import build
 from symbolic.scenes.schema import Scene
 

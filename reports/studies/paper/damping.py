@@ -27,7 +27,7 @@ from reports.studies.paper.marching.transients import (
     record,
     stepped_decay,
 )
-from symbolic.motion.response import response
+from symbolic.motion.frequencyresponse import response
 from symbolic.scenes.axes import RPM
 
 STEP, STABLE_STEP = 1e-4, 8e-5

@@ -22,8 +22,8 @@ from reports.studies.paper.marching.transients import (
     record,
     within,
 )
+from symbolic.motion.frequencyresponse import response
 from symbolic.motion.linear import resonance
-from symbolic.motion.response import response
 from symbolic.scenes.axes import RPM
 
 OILS = {OIL_A: "oil A (Vitrea 79)", OIL_B: "oil B (Turbo 33)"}

@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.jumps.sides import Sided
 from symbolic.equations.packed import Packed
 from symbolic.equations.surfaces import STUCK
-from symbolic.equations.terms import Motion
+from symbolic.equations.terms import Motion, mobility
 
 
 @dataclass(frozen=True)
@@ -34,18 +35,24 @@ class Resting:
 def walls(assembly: Assembly) -> dict[int, tuple[int, ca.SX]]:
     """Return of each wall that a coordinate may rest on, by its switch, the coordinate's place and s'' (SI).
 
-    None of coordinates that inertia couples to others: an impulse would move these as well; nor where
-    friction on the coordinate turns with its own speed.
+    With M the mass matrix, f the forces without inertia and e the coordinate, q'' = e^T M^-1 f of its free
+    motion. None at a condensed structure; nor where friction on the coordinate turns with its own speed, or
+    forces jump on coordinates that inertia couples to it.
     """
     found, every = dict[int, tuple[int, ca.SX]](), list(assembly.motions.values())
     held = [id(place.motion) for place in assembly.places]
     for k, (motion, _) in assembly.impacts.items():
-        alone = list(assembly.resets[k]) == [motion.velocity] and id(motion) not in held
-        if alone and not _doubtful(assembly, motion):
-            free = motion.force / (motion.mass * assembly.omega**2)
-            by_position = ca.jacobian(assembly.switches[k][1], motion.position.symbol)
-            place = next(i for i, each in enumerate(every) if each is motion)
-            found[k] = place, by_position * free
+        if id(motion) in held or _doubtful(assembly, motion):
+            continue
+        changed = mobility(every, motion, assembly.omega)
+        rates = ca.vertcat(*[each.velocity.derivative for each in every])
+        joined = ca.vertcat(*[every[i].force for i in changed])
+        forces = ca.substitute(joined, rates, ca.SX.zeros(rates.numel()))
+        if len(changed) > 1 and any(node.op() in JUMPING for node in nodes(forces)):
+            continue
+        free = ca.dot(ca.vertcat(*changed.values()), forces) / assembly.omega**2
+        by_position = ca.jacobian(assembly.switches[k][1], motion.position.symbol)
+        found[k] = next(i for i, each in enumerate(every) if each is motion), by_position * free
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.branches import JUMPING, nodes
 from symbolic.equations.jumps.operations import Operations
-from symbolic.equations.jumps.relays import in_modes
+from symbolic.equations.jumps.relaysymbols import in_modes
 from symbolic.equations.jumps.sliding import EQUAL, Slide, sliding
 from symbolic.equations.packed import Packed
 from symbolic.equations.samples import Samples, multiples

@@ -79,7 +79,9 @@ def sliding(
         left = [k for k in left if k not in forces.crossed] if left == chosen else left
         if left == chosen:
             drawn = [_drawn(switches[k], places.get(k)) for k in chosen]
-            rows, slides = _slid(packed, plain, sides, switches, chosen, forces, pull, push, drawn)
+            given = [ca.if_else(sides[k] == 0, ca.sign(switches[k]), sides[k]) for k in chosen]
+            sigma, stuck, slides = _slid(sides, chosen, given, drawn, (pull, push))
+            rows = _rows(packed, plain, forces, sigma, stuck)
             free = [k for k in chosen if k not in places]
             return rows, slides, tuple(k for k in free if isolated(packed, rows[telling], sides, k))
         chosen = left
@@ -154,18 +156,14 @@ def _drawn(switch: ca.SX, place: ca.SX | None) -> ca.SX:
 
 
 def _slid(
-    packed: Packed,
-    plain: ca.SX,
     sides: Mapping[int, ca.SX],
-    switches: ca.SX,
     chosen: list[int],
-    forces: _Forces,
-    pull: ca.SX,
-    push: ca.SX,
+    given: list[ca.SX],
     drawn: list[ca.SX],
-) -> tuple[ca.SX, tuple[Slide, ...]]:
-    """The rows with what slides, and where sliding ends."""
-    given = [ca.if_else(sides[k] == 0, ca.sign(switches[k]), sides[k]) for k in chosen]
+    along: tuple[ca.SX, ca.SX],
+) -> tuple[ca.SX, list[ca.SX], tuple[Slide, ...]]:
+    """sigma of jumps with A and b, given where they do not slide; which do; and where sliding ends."""
+    pull, push = along
     held = [sides[k] == HELD for k in chosen]
     stuck = [(sides[k] == STUCK) + one for k, one in zip(chosen, held, strict=True)]
     wanted = [ca.if_else(one, by, 0) for one, by in zip(held, drawn, strict=True)]
@@ -181,14 +179,19 @@ def _slid(
         for row, i in enumerate(block):
             sigma[i] = system.solved()[row]
             slides.append((chosen[i], system.slope(row, 1), system.slope(row, -1)))
+    return sigma, stuck, tuple(sorted(slides, key=lambda slide: slide[0]))
+
+
+def _rows(packed: Packed, plain: ca.SX, forces: _Forces, sigma: ca.SX, stuck: list[ca.SX]) -> ca.SX:
+    """The rows with what slides."""
     slid = forces.mass @ packed.rate + forces.constant + forces.gains @ sigma
     rows = ca.SX(plain)
     for r in range(plain.numel()):
-        own = [i for i in range(len(chosen)) if not forces.gains[r, i].is_zero()]
+        own = [i for i in range(len(stuck)) if not forces.gains[r, i].is_zero()]
         if own:
             slides_here = sum((stuck[i] for i in own[1:]), stuck[own[0]])
             rows[r] = ca.if_else(slides_here > 0, slid[r], plain[r])
-    return rows, tuple(sorted(slides, key=lambda slide: slide[0]))
+    return rows
 
 
 def _blocks(pull: ca.SX) -> list[list[int]]:

@@ -8,6 +8,7 @@ one is g = w - X (Mehdigoli et al. 1990, eq. 10), shared by the elastic deflecti
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -16,6 +17,7 @@ import casadi as ca
 
 from symbolic.checks import typed
 from symbolic.equations.assembly import Assembly
+from symbolic.equations.model import Part
 from symbolic.equations.variables import Coordinate
 from symbolic.parts.contact.law import ContactLaw
 from symbolic.parts.contact.preloaded import Preloaded
@@ -174,3 +176,18 @@ def junction_of(assembly: Assembly, pair: ContactPair) -> Junction:
     found = assembly.joints.setdefault(pair, Junction(pair))
     assert isinstance(found, Junction)
     return found
+
+
+@dataclass(frozen=True)
+class FilmPart(Part, ABC):
+    """A film as a part of its contact: see `Film`."""
+
+    pair: ContactPair
+
+    def contribute(self, assembly: Assembly) -> None:
+        """Put this film into the contact."""
+        junction_of(assembly, self.pair).film = self
+
+    @abstractmethod
+    def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
+        """Add the film's states, unknowns and rows; return its load in N."""

@@ -16,7 +16,15 @@ from symbolic.equations.variables import Coordinate, Parameter, Value
 class RigidStop(Part):
     """Wall that a coordinate does not pass: q <= gap, and dq/dt becomes -e dq/dt where q arrives at the gap.
 
-    Coordinates that inertia couples to q, as in a structure, get what the wall's impulse gives them.
+    Coordinates that inertia couples to q, as in a structure, get what the wall's impulse gives them: with the
+    mass matrix M and the unit vector n of q the impulse is J = (1 + e) v / (n M^-1 n), v the speed before it,
+    and all speeds change by -M^-1 n J. At a node of finite elements 1/(n M^-1 n) is the mass of about one
+    element. It goes to zero as these get shorter: then it tells of the model, not of the beam.
+
+    Pressed to the wall q bounces ever lower, without number in finite time, and then rests on it. Not where
+    friction jumps on q, or on a coordinate that inertia couples to it: there the bounces go on without end.
+
+    A structure in the model keeps all its states (`symbolic.compile`).
 
     Parameters
     ----------

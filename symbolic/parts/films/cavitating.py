@@ -15,15 +15,14 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.model import Part
 from symbolic.equations.variables import Value
-from symbolic.parts.contact.pair import ContactPair, Loaded, junction_of
+from symbolic.parts.contact.pair import FilmPart, Loaded
 from symbolic.parts.films.squeeze import constants
 from symbolic.parts.films.thickness import ThicknessLaw
 
 
 @dataclass(frozen=True)
-class CavitatingFilm(Part):
+class CavitatingFilm(FilmPart):
     """Squeeze film with the floor phi = `floor` on the relative load that drives it: one state h.
 
     Parameters
@@ -48,17 +47,12 @@ class CavitatingFilm(Part):
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eq. (13), which has no floor.
     """
 
-    pair: ContactPair
     law: ThicknessLaw
     speed: Value
     radius: Value
     beta: Value = 22.23
     squeeze: Value = 2734.3
     floor: Value = 1e-4
-
-    def contribute(self, assembly: Assembly) -> None:
-        """Put this film into the contact."""
-        junction_of(assembly, self.pair).film = self
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Row: film law for h, explicit in dh/dt. Returns W."""

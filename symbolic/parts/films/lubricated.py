@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.model import Part
 from symbolic.equations.variables import Value
-from symbolic.parts.contact.pair import ContactPair, Loaded, junction_of
+from symbolic.parts.contact.pair import FilmPart, Loaded
 from symbolic.parts.films.law import FilmLaw
 from symbolic.parts.films.softplus import REST_XI, log_softplus, move_xi, softplus
 from symbolic.parts.films.squeeze import LEVELS, describe
@@ -23,7 +22,7 @@ from symbolic.parts.films.thickness import entraining_speed
 
 
 @dataclass(frozen=True)
-class LubricantFilm(Part):
+class LubricantFilm(FilmPart):
     """Film of any law with squeeze, h = H(W) exp(-s (dh/dt)/u): one state h and one unknown xi.
 
     Parameters
@@ -44,15 +43,10 @@ class LubricantFilm(Part):
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eqs. (5) and (6).
     """
 
-    pair: ContactPair
     law: FilmLaw
     speed: Value
     radius: Value
     squeeze: Value = 123.0
-
-    def contribute(self, assembly: Assembly) -> None:
-        """Put this film into the contact."""
-        junction_of(assembly, self.pair).film = self
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Rows: film law for xi, geometry for h. Returns W."""

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.model import Part
 from symbolic.equations.variables import Value
-from symbolic.parts.contact.pair import ContactPair, Loaded, junction_of
+from symbolic.parts.contact.pair import FilmPart, Loaded
 from symbolic.parts.films.softplus import REST_XI, log_softplus, move_xi, softplus
 from symbolic.parts.films.squeeze import describe
 from symbolic.parts.films.thickness import ThicknessLaw
@@ -20,7 +19,7 @@ CONTACT_LOST = 1e-3
 
 
 @dataclass(frozen=True)
-class QuasistaticFilm(Part):
+class QuasistaticFilm(FilmPart):
     """Film without squeeze, h = h0 (W/Q)^(-1/beta): one unknown xi.
 
     Parameters
@@ -37,13 +36,8 @@ class QuasistaticFilm(Part):
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eq. (13) with gamma = 0.
     """
 
-    pair: ContactPair
     law: ThicknessLaw
     beta: Value = 22.23
-
-    def contribute(self, assembly: Assembly) -> None:
-        """Put this film into the contact."""
-        junction_of(assembly, self.pair).film = self
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Row: geometry, s(xi) = 1 + (h(xi) - h0 + g)/delta0. Returns W."""

@@ -12,9 +12,8 @@ from typing import Protocol
 import casadi as ca
 
 from symbolic.equations.assembly import Assembly
-from symbolic.equations.model import Part
 from symbolic.equations.variables import Value
-from symbolic.parts.contact.pair import ContactPair, Loaded, junction_of
+from symbolic.parts.contact.pair import FilmPart, Loaded
 from symbolic.parts.films.softplus import REST_XI, log_softplus, move_xi, softplus
 from symbolic.parts.films.thickness import ThicknessLaw, entraining_speed
 
@@ -50,7 +49,7 @@ def constants(film: Squeezed, assembly: Assembly, contact: Loaded) -> tuple[ca.S
 
 
 @dataclass(frozen=True)
-class SqueezeFilm(Part):
+class SqueezeFilm(FilmPart):
     """Film with squeeze, W = Q (h/h0)^(-beta) exp(-gamma dh/dt): one state h and one unknown xi.
 
     Parameters
@@ -73,16 +72,11 @@ class SqueezeFilm(Part):
     Mehdigoli, Rahnejat & Gohar, Wear 139 (1990), eq. (13).
     """
 
-    pair: ContactPair
     law: ThicknessLaw
     speed: Value
     radius: Value
     beta: Value = 22.23
     squeeze: Value = 2734.3
-
-    def contribute(self, assembly: Assembly) -> None:
-        """Put this film into the contact."""
-        junction_of(assembly, self.pair).film = self
 
     def close(self, assembly: Assembly, contact: Loaded) -> ca.SX:
         """Rows: film law (its xi-derivative never vanishes) for xi, geometry for h. Returns W."""

@@ -271,7 +271,8 @@ def _modules() -> tuple[ModuleType, ...]:
 
 
 def _is_part(value: Any) -> bool:
-    return inspect.isclass(value) and issubclass(value, Part) and dataclasses.is_dataclass(value)
+    known = inspect.isclass(value) and issubclass(value, Part) and dataclasses.is_dataclass(value)
+    return known and not inspect.isabstract(value)
 
 
 def _parts_in(module: Any) -> Iterator[type[Part]]:

@@ -18,7 +18,7 @@ from symbolic.scenes.model.bench import unknown
 from symbolic.scenes.model.composing import composed
 from symbolic.scenes.model.structures import StructureTable
 from symbolic.scenes.ranges import Range
-from symbolic.scenes.tables import Table, Title
+from symbolic.scenes.scenetables import Table, Title
 from symbolic.system.compile import compile, with_nominal
 from symbolic.system.compiled import CompiledSystem, with_values
 

@@ -12,7 +12,7 @@ from symbolic.parts.structure import Structure
 from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.model.bench import Bench
 from symbolic.scenes.model.catalogue import Entry, entry_of
-from symbolic.scenes.tables import Table
+from symbolic.scenes.scenetables import Table
 from symbolic.structures.beam import beam
 from symbolic.structures.files import read_matrices
 from symbolic.structures.matrices import Matrices

@@ -18,7 +18,7 @@ from periodic.collocation.fastmotions.unresolved import lost
 from periodic.collocation.native import call, iteration
 from periodic.collocation.native.estimate import estimated
 from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.error import deferred
+from periodic.correction.error import Halving, deferred
 from periodic.correction.newton import NewtonSettings, correct
 from periodic.linear.unknowns import parameter_only, size_of
 from periodic.orbit.orbit import Orbit
@@ -142,7 +142,7 @@ def test_error_estimates_are_the_same(name: str, along: float) -> None:
     direction = replace(constraint.direction, parameters=np.array([along]))
     given = (problem, solution.orbit, direction, METHOD.spectrum(solution, 0))
     found = estimated(*given)
-    expected = deferred(METHOD.linearise, *given, solved=METHOD._beside)
+    expected = deferred(METHOD.linearise, *given, Halving(solved=METHOD._beside))
     assert found is not None and min(expected.orbit, expected.multiplier, expected.parameter) > 0
     assert found.error.orbit == pytest.approx(expected.orbit, rel=1e-4)
     assert found.error.parameter == pytest.approx(expected.parameter, rel=1e-4)

@@ -18,9 +18,9 @@ import symbolic as sym
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.newton import Correction, NewtonSettings, correct
 from periodic.correction.outcome import Outcome
-from periodic.events import tying as kinks
+from periodic.events import eventnodes as kinks
+from periodic.events.eventnodes import Crossing, KinkSettings, match
 from periodic.events.switchpolynomials import SwitchPolynomials
-from periodic.events.tying import Crossing, KinkSettings, match
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh, uniform
 

@@ -10,9 +10,8 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation import meshmethod
-from periodic.collocation import method as collocation
-from periodic.collocation.method import Collocation
+from periodic.collocation import collocation, meshmethod
+from periodic.collocation.collocation import Collocation
 from periodic.correction.error import ErrorEstimate
 from periodic.events.violations import Breach, Violation
 

@@ -13,8 +13,8 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 import symbolic as sym
 from periodic.condensed import floquet, subspace
+from periodic.condensed.condensedcollocation import CondensedCollocation
 from periodic.condensed.floquet import ModalFloquet
-from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import CondensedOperator
 
 

@@ -15,7 +15,7 @@ import symbolic as sym
 from periodic.condensed import floquet, operator
 from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.operator import CondensedOperator
-from periodic.events.noderows import event_rows
+from periodic.events.eventrows import event_rows
 
 ELEMENTS, RANGE = 2, (2.8, 2.95)
 

@@ -10,7 +10,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.condensed.method import mesh_method
+from periodic.condensed.condensedcollocation import mesh_method
 from periodic.correction.meanequilibrium import resting
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform

@@ -11,8 +11,8 @@ import pytest
 from support.traces import duffing, duffing_system
 
 import periodic as per
+from periodic.display.htmltables import table
 from periodic.display.sketch import Line, Mark, sketch
-from periodic.display.tables import table
 
 
 def parsed(text: str) -> ElementTree.Element:

@@ -29,21 +29,25 @@ def guards(system: sym.CompiledSystem, kind: Kind) -> list[tuple[int, int, int]]
     return [(s.switch, *s.releases) for s in each if s.releases is not None]
 
 
+def back_and_forth(
+    system: sym.CompiledSystem, direction: int, at: tuple[float, float, float], onward: int | None = None
+) -> list[tuple[EventNode, float]]:
+    """Two sliders that stop together in a direction of their guard, and slip one after the other."""
+    way = direction if onward is None else onward
+    (a, *first), (b, *second) = guards(system, Kind.SLIDER)
+    stop = EventNode(a, direction, modes=((a, STUCK), (b, STUCK)))
+    slips = [EventNode(releases[0 if way > 0 else 1], way) for releases in (first, second)]
+    return list(zip((stop, *slips), at, strict=True))
+
+
 def test_sliders_held_together_are_let_go_together() -> None:
     """Assert that two releases become one where both were carried on before their stop at one turn."""
     system = beside("sliders")
-    (a, up_a, down_a), (b, up_b, down_b) = guards(system, Kind.SLIDER)
-    both = ((a, STUCK), (b, STUCK))
+    (a, up_a, _), (b, up_b, _) = guards(system, Kind.SLIDER)
     word = [
-        (EventNode(a, -1, modes=both), 0.5),
-        (EventNode(up_a, 1), 1.0),
-        (EventNode(up_b, 1), 1.1),
-        (EventNode(a, -1, modes=both), 2.0),
-        (EventNode(down_a, -1), 2.5),
-        (EventNode(down_b, -1), 2.7),
-        (EventNode(a, 1, modes=both), 4.0),
-        (EventNode(up_a, 1), 4.5),
-        (EventNode(up_b, 1), 4.7),
+        *back_and_forth(system, -1, (0.5, 1.0, 1.1), onward=1),
+        *back_and_forth(system, -1, (2.0, 2.5, 2.7)),
+        *back_and_forth(system, 1, (4.0, 4.5, 4.7)),
     ]
     found = together(system, word, 0.1)
     assert len(found) == len(word) - 1
@@ -55,19 +59,15 @@ def test_sliders_held_together_are_let_go_together() -> None:
 def test_a_slider_that_has_slipped_is_let_go_by_itself() -> None:
     """Assert that a joint release is parted where one of both slips before, it earlier than the other."""
     system = beside("sliders")
-    (a, up_a, down_a), (b, up_b, down_b) = guards(system, Kind.SLIDER)
+    (a, up_a, down_a), (b, up_b, _) = guards(system, Kind.SLIDER)
     both = ((a, STUCK), (b, STUCK))
     word = [
         (EventNode(a, -1, modes=both), 0.5),
         (EventNode(down_a, -1), 0.8),
         (EventNode(a, 1, modes=((a, STUCK),)), 0.9),
         (EventNode(up_a, 1, modes=((b, 1),)), 1.5),
-        (EventNode(a, -1, modes=both), 3.0),
-        (EventNode(down_a, -1), 3.5),
-        (EventNode(down_b, -1), 3.7),
-        (EventNode(a, 1, modes=both), 5.0),
-        (EventNode(up_a, 1), 5.5),
-        (EventNode(up_b, 1), 5.7),
+        *back_and_forth(system, -1, (3.0, 3.5, 3.7)),
+        *back_and_forth(system, 1, (5.0, 5.5, 5.7)),
     ]
     found = together(system, word, 0.1)
     alone = [(event.switch, phase) for event, phase in found if 1.4 < phase < 1.6]

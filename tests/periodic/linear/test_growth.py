@@ -7,7 +7,7 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.linear.reduction import reduce
+from periodic.linear.pairwise import reduce
 from periodic.stability.product import multipliers
 
 DECADES = np.array([30.0, 4.0, -1.0, -1.0, -25.0])

@@ -113,7 +113,12 @@ def test_what_was_there_stays_until_the_first_step(make: Callable[[Path], None],
     path = tmp_path / "journal"
     make(path)
     before = path.read_bytes()
-    with Journal(path, per.Branch("Omega", traced(tmp_path / "layout").layout, (), per.Stop.interrupted(0))):
+    with Journal(
+        path,
+        per.Branch(
+            "Omega", traced(tmp_path / "layout").layout, (), per.Stop.after(per.Reason.INTERRUPTED, 0)
+        ),
+    ):
         pass
     assert path.read_bytes() == before
     branch = traced(path)

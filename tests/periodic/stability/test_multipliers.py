@@ -10,6 +10,7 @@ from support.numpy_systems import Array
 
 from periodic.stability.graded import spectrum_of
 from periodic.stability.multipliers import Pair, Spectrum, nearest
+from periodic.stability.product import multipliers
 from periodic.stability.winding import meetings
 
 
@@ -81,3 +82,20 @@ def test_flow_that_does_not_come_back_as_itself_is_told() -> None:
         flow[1] = np.cos(rotated), np.sin(rotated)
         spectrum = spectrum_of(fundamental, Joints(steps, flow), 1)
         assert spectrum.known is (rotated == 0.0)
+
+
+def test_a_sheared_pair_stays_one() -> None:
+    """Assert 0.43 exp(+-i w) beside 0.001, of two steps that are conditioned as 1e4, to 1e-8.
+
+    The pair turns in a plane stretched by 100: its columns grow apart by more in some periods, and never
+    settle; rounding keeps those of the third from settling early.
+    """
+    random, stretch = np.random.default_rng(0), np.diag([1.0, 100.0])
+    for _ in range(400):
+        angle, whole = random.uniform(0, np.pi), np.diag([0.0, 0.0, 1e-3])
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        whole[:2, :2] = 0.43 * stretch @ turn @ np.linalg.inv(stretch)
+        frame, left, right = np.linalg.qr(random.normal(size=(3, 3, 3)))[0]
+        first = left @ np.diag([1e4, 1.0, 1.0]) @ right
+        found = multipliers(np.array([first, frame @ whole @ frame.T @ np.linalg.inv(first)]))
+        assert np.sort(np.abs(found)) == pytest.approx([1e-3, 0.43, 0.43], abs=1e-8)

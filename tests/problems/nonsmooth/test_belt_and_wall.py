@@ -6,11 +6,9 @@ x'' + c x' + x = cos(w t) - f sign(x' - v), x' becomes -e x' at the wall; judged
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import casadi as ca
 import numpy as np
 import pytest
+from howto.test_joint import Belt
 from reference.beltwall import BeltWall
 
 import periodic as per
@@ -29,23 +27,6 @@ ALONE = BeltWall(c=0.145, v=0.834, f=0.238, gap=0.376, e=0.643, below=True)
 
 CAUGHT = BeltWall(c=0.17, v=0.5, f=0.43, gap=0.56, e=0.43, below=True)
 """It rebounds with the belt's speed, and is caught from either side."""
-
-
-@dataclass(frozen=True)
-class Belt(sym.Part):
-    """Dry friction on a belt: -F sign(x' - v)."""
-
-    q: sym.Coordinate
-    force: float
-    speed: float
-
-    def contribute(self, assembly: sym.Assembly) -> None:
-        """Add the force and the switch at which it jumps."""
-        force = assembly.parameter(self.force, "F_belt", "N")
-        slip = assembly.speed_of(self.q) - assembly.parameter(self.speed, "v_belt", "m/s")
-        assembly.motion(self.q).force -= force * ca.sign(slip)
-        scale = assembly.omega * assembly.motion(self.q).position.scale
-        assembly.switch("slips on the belt", slip / scale, 0)
 
 
 def system(machine: BeltWall) -> sym.CompiledSystem:

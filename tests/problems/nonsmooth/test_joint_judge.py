@@ -16,7 +16,8 @@ from reference.joints.model import Coulomb, Cubic, Jointed, Slider, Stop
 from reference.joints.period import Follower, peak_to_peak, periodic, settled
 from reference.joints.series import ORDER, first_below
 from scipy.integrate import solve_ivp
-from support.drawn.joints import Attached, JointCase, beam, compiled, joint_model
+from support.drawn.jointcases import JointCase, compiled
+from support.drawn.joints import Attached, beam, joint_model
 
 import periodic as per
 

@@ -22,7 +22,7 @@ from periodic.bifurcations.location import special_points
 from periodic.bifurcations.turningpoint import Found
 from periodic.collocation.rounding import of_events
 from periodic.correction.change import Beyond
-from periodic.events.noderows import event_rows
+from periodic.events.eventrows import event_rows
 from periodic.events.rewrites.rewrite import Ends
 from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit

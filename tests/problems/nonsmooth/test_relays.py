@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -217,45 +217,53 @@ def beside(other: str) -> sym.CompiledSystem:
     return sym.compile(machine + push + more)
 
 
+class Piece(NamedTuple):
+    """A motion between two events: where it begins, the relay's mode, the side of friction, past the stop."""
+
+    start: float
+    relay: int
+    side: int
+    past: bool
+
+
 def followed(other: str, force: float, t: float, begin: Any, relay: int) -> tuple[Any, list[str]]:
     """(x, dx/dtau) 2 pi later and what happened, event by event; friction is on the side of the speed."""
     w, last, y, names = 0.7, t + 2 * np.pi, np.array(begin), []
     slip, past = int(np.sign(y[1])), other == "stop" and y[0] > GAP
 
-    def pull(t: float, y: Any, relay: int) -> float:
+    def pull(t: float, y: Any, relay: int, past: bool) -> float:
         stop = STIFF * (y[0] - GAP) if past else 0.0
         return float(force * np.cos(t) + 0.3 * relay - y[0] - 0.2 * w * y[1] - stop)
 
+    def rates(t: float, y: Any, at: Piece) -> list[float]:
+        dry = DRY * at.side if other == "friction" else 0.0
+        stuck = other == "friction" and at.side == 0
+        return [y[1], 0.0 if stuck else (pull(t, y, at.relay, at.past) - dry) / w**2]
+
+    def switches(t: float, y: Any, at: Piece) -> float:
+        return float(at.relay * (y[0] + 0.5 * at.relay))
+
+    def turns(t: float, y: Any, at: Piece) -> float:
+        if other != "friction":
+            return 1.0
+        if at.side == 0:
+            return DRY - abs(pull(t, y, at.relay, at.past))
+        return float(at.side * y[1]) if t > at.start + 1e-6 else 1.0
+
+    def hits(t: float, y: Any, at: Piece) -> float:
+        return GAP - y[0] if other == "wall" and t > at.start + 1e-6 else 1.0
+
+    def bends(t: float, y: Any, at: Piece) -> float:
+        ahead = y[0] - GAP if at.past else GAP - y[0]
+        return float(ahead) if other == "stop" and t > at.start + 1e-6 else 1.0
+
+    events = [switches, turns, hits, bends]
+    for event in events:
+        event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
     while True:
-        now, side, start = relay, slip, t
-
-        def rates(t: float, y: Any) -> list[float]:
-            dry = DRY * side if other == "friction" else 0.0  # noqa: B023
-            stuck = other == "friction" and side == 0  # noqa: B023
-            return [y[1], 0.0 if stuck else (pull(t, y, now) - dry) / w**2]  # noqa: B023
-
-        def switches(t: float, y: Any) -> float:
-            return float(now * (y[0] + 0.5 * now))  # noqa: B023
-
-        def turns(t: float, y: Any) -> float:
-            if other != "friction":
-                return 1.0
-            if side == 0:  # noqa: B023
-                return DRY - abs(pull(t, y, now))  # noqa: B023
-            return float(side * y[1]) if t > start + 1e-6 else 1.0  # noqa: B023
-
-        def hits(t: float, y: Any) -> float:
-            return GAP - y[0] if other == "wall" and t > start + 1e-6 else 1.0  # noqa: B023
-
-        def bends(t: float, y: Any) -> float:
-            ahead = y[0] - GAP if past else GAP - y[0]  # noqa: B023
-            return float(ahead) if other == "stop" and t > start + 1e-6 else 1.0  # noqa: B023
-
-        events = [switches, turns, hits, bends]
-        for event in events:
-            event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
         tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": 0.05}
-        found = solve_ivp(rates, (t, last), y, events=events, **tight)
+        at = Piece(t, relay, slip, past)
+        found = solve_ivp(rates, (t, last), y, events=events, args=(at,), **tight)
         t, y = float(found.t[-1]), found.y[:, -1]
         if found.status == 0:
             return y, names
@@ -265,8 +273,8 @@ def followed(other: str, force: float, t: float, begin: Any, relay: int) -> tupl
             relay = -relay
         elif which == 1:
             y[1] = 0.0
-            force_now = pull(t, y, relay)
-            slip = 0 if side and abs(force_now) < DRY else int(np.sign(force_now))
+            force_now = pull(t, y, relay, past)
+            slip = 0 if slip and abs(force_now) < DRY else int(np.sign(force_now))
         elif which == 2:
             y[1] *= -LOST
         else:
@@ -302,12 +310,9 @@ def test_relay_beside_others(other: str, least: float, happens: str) -> None:
         np.testing.assert_allclose(later, y, atol=1e-8)
         assert " ".join(sorted(names)) == happens
         step = 1e-5
-
-        def moved(change: Any) -> Any:
-            return followed(other, point.parameter, begin, y + change, before[-1])[0]  # noqa: B023
-
-        columns = [(moved(u) - moved(-u)) / (2 * step) for u in np.eye(2) * step]
-        multipliers = np.linalg.eigvals(np.array(columns).T)
+        at = [y + sign * u for u in np.eye(2) * step for sign in (1, -1)]
+        ends = np.array([followed(other, point.parameter, begin, z, before[-1])[0] for z in at])
+        multipliers = np.linalg.eigvals((ends[::2] - ends[1::2]).T / (2 * step))
         np.testing.assert_allclose(in_order(point.multipliers), in_order(multipliers), atol=1e-6)
 
 

@@ -230,7 +230,7 @@ def test_first_order() -> None:
 
     for point in branch:
         leaves = -float(np.arccos(1 / point.parameter))
-        back = brentq(lambda t: excess(t, leaves, point.parameter), 0.01, 3.0, xtol=1e-14)  # noqa: B023
+        back = brentq(excess, 0.01, 3.0, args=(leaves, point.parameter), xtol=1e-14)
         each = [leaves, back, leaves + np.pi, back + np.pi]
         np.testing.assert_allclose(
             np.sort(np.mod(point.orbit.phases, 2 * np.pi)), np.sort(np.mod(each, 2 * np.pi)), atol=1e-9
@@ -250,31 +250,30 @@ def curved(force: float) -> Any:
     def slope(t: float, y: Any, mode: float) -> float:
         return free(t, y, mode) + (0.8 + 0.9 * y[0] ** 2) * y[1]
 
-    def rates(t: float, y: Any, mode: float) -> list[float]:
+    def rates(t: float, y: Any, mode: float, begin: float) -> list[float]:
         held = -(0.8 + 0.9 * y[0] ** 2) * y[1]
         return [y[1] / W, (held if mode == 0 else free(t, y, mode)) / W]
+
+    def first(t: float, y: Any, mode: float, begin: float) -> float:
+        if mode == 0:
+            return -slope(t, y, 1.0)
+        return guard(y) if t > begin + 1e-6 else mode
+
+    def second(t: float, y: Any, mode: float, begin: float) -> float:
+        return slope(t, y, -1.0) if mode == 0 else 1.0
 
     def period(t: float, y: Any, mode: float) -> tuple[Any, int]:
         last, slid = t + 2 * np.pi, 0
         while True:
-            begin, now = t, mode
-
-            def first(t: float, y: Any) -> float:
-                if now == 0:  # noqa: B023
-                    return -slope(t, y, 1.0)
-                return guard(y) if t > begin + 1e-6 else now  # noqa: B023
-
-            def second(t: float, y: Any) -> float:
-                return slope(t, y, -1.0) if now == 0 else 1.0  # noqa: B023
-
-            for event, way in ((first, -1.0 if now == 0 else -now), (second, -1.0)):
+            for event, way in ((first, -mode if mode else -1.0), (second, -1.0)):
                 event.terminal, event.direction = True, way  # type: ignore[attr-defined]
             tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": 0.05}
-            found = solve_ivp(lambda t, y: rates(t, y, now), (t, last), y, events=[first, second], **tight)  # noqa: B023
+            given = mode, t
+            found = solve_ivp(rates, (t, last), y, events=[first, second], args=given, **tight)
             t, y = float(found.t[-1]), found.y[:, -1]
             if found.status == 0:
                 return y, slid
-            if now == 0:
+            if mode == 0:
                 mode = 1.0 if len(found.t_events[0]) else -1.0
             else:
                 y[1] -= guard(y)

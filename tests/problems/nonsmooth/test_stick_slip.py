@@ -35,26 +35,24 @@ def after_a_period(tau: float, begin: Any, friction: float) -> tuple[Any, int]:
         a, b = free(t, z)
         return (a - b) / 2  # friction on x that keeps vx = vy
 
-    def rates(t: float, z: Any, mode: float) -> list[float]:
+    def rates(t: float, z: Any, mode: float, start: float) -> list[float]:
         a, b = free(t, z)
         drag = needed(t, z) if mode == 0 else friction * mode
         return [z[1] / W, (a - drag) / W, z[3] / W, (b + drag) / W]
+
+    def slips(t: float, z: Any, mode: float, start: float) -> float:
+        return (z[1] - z[3]) if t > start + 1e-7 else mode
+
+    def holds(t: float, z: Any, mode: float, start: float) -> float:
+        return friction - abs(needed(t, z))
 
     tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": 0.05}
     t, z, stops, last = tau, np.array(begin), 0, tau + 2 * np.pi
     mode = float(np.sign(z[1] - z[3]))
     while t < last:
-        start, known = t, mode
-
-        def slips(t: float, z: Any) -> float:
-            return (z[1] - z[3]) if t > start + 1e-7 else known  # noqa: B023
-
-        def holds(t: float, z: Any) -> float:
-            return friction - abs(needed(t, z))
-
         event = holds if mode == 0 else slips
         event.terminal, event.direction = True, -1.0 if mode == 0 else -mode  # type: ignore[attr-defined]
-        found = solve_ivp(lambda t, z: rates(t, z, known), (t, last), z, events=event, **tight)  # noqa: B023
+        found = solve_ivp(rates, (t, last), z, events=event, args=(mode, t), **tight)
         t, z = float(found.t[-1]), found.y[:, -1]
         if found.status == 0:
             break

@@ -16,8 +16,8 @@ from support.traces import disc_system, duffing_system
 import periodic as per
 import symbolic as sym
 from symbolic.equations.assembly import Assembly
+from symbolic.motion.frequencyresponse import peak, response
 from symbolic.motion.linear import NoRestError, modes, resonance
-from symbolic.motion.response import peak, response
 
 DELTA0 = (PRELOAD / HERTZ) ** (2 / 3)
 CONTACT = 1.5 * PRELOAD / DELTA0

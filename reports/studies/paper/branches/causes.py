@@ -19,8 +19,8 @@ from reports.studies.paper.marching.transients import (
     read_off,
     within,
 )
+from symbolic.motion.frequencyresponse import response
 from symbolic.motion.linear import modes
-from symbolic.motion.response import response
 from symbolic.scenes.axes import RPM
 
 PAPER_A, PAPER_B = 0.007, 0.0018

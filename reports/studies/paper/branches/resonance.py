@@ -9,8 +9,8 @@ from periodic import ArclengthControl, Branch
 from reports.studies.paper.common.scenes import nominal, system
 from reports.studies.paper.common.tracing import branch, traced
 from symbolic import CompiledSystem
+from symbolic.motion.frequencyresponse import peak
 from symbolic.motion.linear import resonance
-from symbolic.motion.response import peak
 from symbolic.scenes.axes import RPM
 
 RANGE = (100.0, 500.0)

@@ -19,16 +19,16 @@ from periodic.collocation.residual import evaluated
 from periodic.collocation.rounding import aside, of_events, of_states
 from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import UNKNOWN, ErrorEstimate, deferred
-from periodic.correction.newton import Correction, LinearisedEquations, NewtonSettings, in_order, linearised
+from periodic.correction.error import UNKNOWN, ErrorEstimate, Halving, deferred
+from periodic.correction.newton import Correction, Equations, LinearisedEquations, NewtonSettings, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events import impacts, tying
+from periodic.events import eventnodes, impacts
+from periodic.events.eventnodes import Crossing, KinkSettings
+from periodic.events.eventrows import event_rows
 from periodic.events.modes import of_held, relays
-from periodic.events.noderows import event_rows
-from periodic.events.resting import neglected
-from periodic.events.tying import Crossing, KinkSettings
+from periodic.events.resting import bounced, lengthened, neglected
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
@@ -113,22 +113,15 @@ class Collocation(MeshMethod):
         found = iteration.corrected(*given) if self._plain else None
         return super().corrected(*given) if found is None else found
 
-    def _beside(
-        self,
-        system: System,
-        orbit: Orbit,
-        free: tuple[int, ...],
-        conditions: Sequence[SideCondition],
-        settings: NewtonSettings,
-    ) -> LinearisedEquations:
+    def _beside(self, equations: Equations, orbit: Orbit) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
         Event nodes are put off their levels by as much as rounding may: that does not change the orbit
         noticeably, but the multipliers where a contact is shallow.
         """
-        off = aside(orbit, event_rows(system, orbit, free))
-        given = (system, orbit, free, conditions, settings)
-        found = linearised(partial(self._equations, off=off), *given)
+        system = equations.system
+        off = aside(orbit, event_rows(system, orbit, equations.free))
+        found = replace(equations, linearise=partial(self._equations, off=off)).solved(orbit)
         return replace(found, operator=stepping(self.linearise, system, found.orbit, found.operator, 2.0))
 
     @property
@@ -143,7 +136,8 @@ class Collocation(MeshMethod):
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
-            yield relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            found = relax(system, transfer(orbit, mesh, phases + before * self.tolerance * deep))
+            yield bounced(system, orbit, found) if len(mesh.events) > len(orbit.mesh.events) else found
 
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
@@ -153,7 +147,7 @@ class Collocation(MeshMethod):
         plain = self._plain and not isinstance(spectrum, GradedSpectrum)
         found = estimated(problem, orbit, tangent, spectrum) if plain else None
         if found is None:
-            error = deferred(self.linearise, problem, orbit, tangent, spectrum, solved=self._beside)
+            error = deferred(self.linearise, problem, orbit, tangent, spectrum, Halving(solved=self._beside))
             found = Estimated(error, error is not UNKNOWN)
         error = found.error
         if error is UNKNOWN:
@@ -194,9 +188,9 @@ class CollocationRefinement(Refinement):
     @cached_property
     def wanted(self) -> list[Crossing]:
         """The crossings to tie the mesh to, at levels not below the error of the orbit."""
-        settings, meaningful = self._settings, tying.DEEPEST * min(self.error.orbit, 1.0)
+        settings, meaningful = self._settings, eventnodes.DEEPEST * min(self.error.orbit, 1.0)
         deepest = max(settings.deepest or 0.0, meaningful)
-        return tying.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
+        return eventnodes.wanted(self.system, self.orbit, replace(settings, deepest=deepest))
 
     @property
     def _settings(self) -> KinkSettings:
@@ -205,7 +199,12 @@ class CollocationRefinement(Refinement):
     @property
     def fits(self) -> bool:
         """Whether the mesh is tied to just the crossings it should be."""
-        return tying.fits(self.wanted, self.orbit)
+        return self._longer is None and eventnodes.fits(self.wanted, self.orbit)
+
+    @cached_property
+    def _longer(self) -> tuple[tuple[EventNode, ...], Array] | None:
+        """Event nodes with more of the bounces before a rest, where too much of them is left out."""
+        return lengthened(self.system, self.orbit, self.method.tolerance)
 
     @property
     def mendable(self) -> bool:
@@ -220,13 +219,15 @@ class CollocationRefinement(Refinement):
     @property
     def shortfall(self) -> str:
         """Why the error exceeds its bound."""
-        brief = "the motion sticks or slips there for too short a while to be followed"
+        brief = "the motion sticks, slips or rests there for too short a while to be followed"
         return brief if self._in_wrong_mode else super().shortfall
 
     @cached_property
     def _in_wrong_mode(self) -> bool:
-        """Whether the orbit slips where it should stick, which no finer mesh mends."""
-        return bool(np.isinf(self.error.orbit)) and bool(mode_violations(self.system, self.orbit))
+        """Whether it slips where it should stick, or rests before it can, which no finer mesh mends."""
+        if not np.isinf(self.error.orbit):
+            return False
+        return np.isinf(neglected(self.system, self.orbit)) or bool(mode_violations(self.system, self.orbit))
 
     @property
     def _ntst(self) -> int:
@@ -234,7 +235,7 @@ class CollocationRefinement(Refinement):
 
     def _wanted_ntst(self, begun: float) -> int:
         method = self.method
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return self.orbit.mesh.ntst
         limits = (method.ntst_min, method.ntst_max)
         return wanted_ntst(self.orbit, self.error, method.tolerance, *limits, begun)
@@ -242,7 +243,7 @@ class CollocationRefinement(Refinement):
     @property
     def _demand(self) -> Array | None:
         """Where the multipliers need more intervals."""
-        if self._in_wrong_mode:
+        if self._in_wrong_mode or self._longer is not None:
             return None
         return demand(self.orbit, self.error, self.method.tolerance, self.method.ntst_max)
 
@@ -255,8 +256,11 @@ class CollocationRefinement(Refinement):
 
     def meshes(self) -> Iterator[tuple[Mesh, Array]]:
         """Yield meshes with the right event nodes and number of intervals, then with shallower ones."""
+        if self._longer is not None:
+            yield self._own(*self._longer), self._longer[1]
+            return
         for chosen in self._choices():
-            tied, phases = tying.placed(self.system, self.orbit, chosen)
+            tied, phases = eventnodes.placed(self.system, self.orbit, chosen)
             yield self._own(tied, phases), phases
 
     def _made(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
@@ -276,4 +280,4 @@ class CollocationRefinement(Refinement):
         levels = [c.event.level for c in self.wanted if c.event.level > 0]
         for factor in SHALLOWER if levels else ():
             shallower = replace(self._settings, deepest=factor * min(levels))
-            yield tying.wanted(self.system, self.orbit, shallower)
+            yield eventnodes.wanted(self.system, self.orbit, shallower)

@@ -11,8 +11,7 @@ so that the coefficients of the places are the unknowns, whatever number of stat
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import ClassVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,15 +19,13 @@ from numpy.typing import NDArray
 from periodic.condensed.floquet import Leading, LeadingSpectrum, ModalFloquet
 from periodic.condensed.linearised import Local, SplitLinearisation, local_rows
 from periodic.condensed.modal.response import Response
-from periodic.condensed.split import SplitMethod
-from periodic.correction.arclength import ArclengthConstraint
-from periodic.correction.discretisation import Discretisation
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.correction.error import UNKNOWN, ErrorEstimate
-from periodic.correction.newton import USUAL, Correction, moved, newton_step
+from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.harmonic.balance import on_coefficients, projected
-from periodic.harmonic.method import HarmonicBalance, with_unknowns
+from periodic.harmonic.harmonicbalance import HarmonicBalance, finer, with_unknowns
 from periodic.harmonic.series import (
     NO_PHASES,
     FourierOrbit,
@@ -44,9 +41,10 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.algebraic import algebraic_at
 from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import uniform
-from periodic.orbit.orbit import LEAST_SPAN, Orbit
+from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.orbit.shallow import shallow
 from periodic.stability.multipliers import Spectrum
 from periodic.system import LinearPart, ModesLike, System, linear_of
 
@@ -189,8 +187,6 @@ class SplitCorrection(Correction):
 class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
     """`HarmonicBalance` for a system with a linear part (`periodic.system.Split`)."""
 
-    whole: ClassVar[type[Discretisation]] = HarmonicBalance
-
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Operator:
         """Return the balanced equations."""
         part = linear_of(system)
@@ -204,8 +200,7 @@ class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
             fundamental = leading.fundamental
         except FAILURES as error:
             return replace(correction, outcome=outcome_of(error))
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return SplitCorrection(**{**given, "fundamental": fundamental}, leading=leading)
+        return SplitCorrection(**{**shallow(correction), "fundamental": fundamental, "leading": leading})
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the leading Floquet multipliers."""
@@ -220,17 +215,11 @@ class SplitHarmonicBalance(SplitMethod, HarmonicBalance):
         present = harmonics_of(orbit.mesh)
         more = mesh_for(present + max(4, present // 2), orbit.mesh.period)
         fine = with_unknowns(system, series(orbit, more))
-        direction = tangent.restricted(orbit, fine)
-        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
-            step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
-            factor = newton.max_change / max(step.length, newton.max_change)
-            better = moved(system, problem.free, fine, step.increment, factor)
+            error, better = finer(self.linearise, problem, orbit, fine, tangent)
             multiplier = spectrum.apart(_leading(system, replace(correction, orbit=better)).fundamental[-1])
         except FAILURES:
             return UNKNOWN
-        error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
         return ErrorEstimate(error, multiplier)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from periodic.checks import whole
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate
-from periodic.correction.newton import USUAL, Correction, moved, newton_step
+from periodic.correction.newton import USUAL, Correction, Equations, Linearise, moved
 from periodic.correction.outcome import FAILURES, outcome_of
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -26,6 +26,7 @@ from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import FORCED, LEAST_SPAN, Orbit
 from periodic.orbit.scheme import Array
+from periodic.orbit.shallow import shallow
 from periodic.refinement.demand import AIM
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
@@ -115,8 +116,7 @@ class HarmonicBalance(Discretisation):
             fundamental = form.fundamental(orbit)
         except FAILURES as error:
             return replace(correction, outcome=outcome_of(error))
-        given = {f.name: getattr(correction, f.name) for f in fields(Correction)}
-        return FourierCorrection(**{**given, "fundamental": fundamental}, floquet=form)
+        return FourierCorrection(**{**shallow(correction), "fundamental": fundamental, "floquet": form})
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
         """Yield the series cut or filled up with zeros, its unknowns solved for."""
@@ -135,16 +135,10 @@ class HarmonicBalance(Discretisation):
             return beside(problem, _series(orbit), tangent, spectrum, self.tolerance)
         more = harmonics_of(orbit.mesh) + max(4, harmonics_of(orbit.mesh) // 2)
         fine = with_unknowns(system, series(orbit, mesh_for(more, orbit.mesh.period)))
-        direction = tangent.restricted(orbit, fine)
-        arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
-        closing, newton = [*problem.side_conditions(fine), arclength], USUAL
         try:
-            step = newton_step(self.linearise, system, fine, problem.free, closing, newton)
+            error, better = finer(self.linearise, problem, orbit, fine, tangent)
         except FAILURES:
             return UNKNOWN
-        error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
-        factor = newton.max_change / max(step.length, newton.max_change)
-        better = moved(system, problem.free, fine, step.increment, factor)
         try:
             multiplier = correction.floquet.error(system, _series(better))
         except FAILURES:
@@ -154,6 +148,19 @@ class HarmonicBalance(Discretisation):
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
         """Say how many harmonics the orbit needs."""
         return FourierRefinement(self, _series(orbit), error)
+
+
+def finer(
+    linearise: Linearise, problem: Problem, orbit: Orbit, fine: Orbit, tangent: Increment
+) -> tuple[float, Orbit]:
+    """Return the error of an orbit and a better one, by a Newton step from a finer one. Raises FAILURES."""
+    direction = tangent.restricted(orbit, fine)
+    arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
+    closing = [*problem.side_conditions(fine), arclength]
+    step = Equations(linearise, problem.system, problem.free, closing).step(fine)
+    factor = USUAL.max_change / max(step.length, USUAL.max_change)
+    error = float(np.abs(step.increment.stages).max()) / max(orbit.span(), LEAST_SPAN)
+    return error, moved(problem.system, problem.free, fine, step.increment, factor)
 
 
 class FourierRefinement(Refinement):

@@ -15,7 +15,7 @@ import numpy as np
 from periodic.checks import number, whole
 from periodic.collocation.meshmethod import check_intervals, check_scheme, scheme_for
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.error import ErrorEstimate, Halving, deferred
 from periodic.correction.newton import Correction
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
@@ -125,8 +125,8 @@ class Shooting(Discretisation):
             tolerance = TIGHTER * self.tolerance
             return Chain(segment_maps(_flowing(system), orbit, free, self.segments, tolerance))
 
-        kinked = bool(problem.system.switches)
-        return deferred(tighter, problem, correction.orbit, tangent, spectrum, kinked=kinked)
+        how = Halving(kinked=bool(problem.system.switches))
+        return deferred(tighter, problem, correction.orbit, tangent, spectrum, how)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
         """Return the multipliers, where motions grow by many decades from the segments one by one."""

@@ -17,10 +17,10 @@ from periodic.checks import at_least_0, number
 from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
 from periodic.events.modes import bends, relays, surface_of
-from periodic.events.relays import switched
+from periodic.events.relaypassages import switched
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SAME_PHASE
-from periodic.orbit.mesh import EventNode
+from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import Kind, System, surfaces_of
@@ -126,7 +126,11 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     for k in bends(system):
         passages = switched(system, orbit, k) if k in relays(system) else dense.crossings(k)
         new = [Crossing(*passage, 0.0) for passage in passages]
-        found += [c for c in new if all(abs(_wrapped(c.phase - f.phase, orbit)) > SAME_PHASE for f in found)]
+        found += [
+            c
+            for c in new
+            if all(abs(wrapped(c.phase - f.phase, orbit.mesh.period)) > SAME_PHASE for f in found)
+        ]
     return found
 
 
@@ -255,16 +259,12 @@ def _kink(
         inside = [
             c for c in level if c.event.direction == direction and _inside(c, excursion, orbit.mesh.period)
         ]
-        candidates += sorted(inside, key=lambda c: abs(_wrapped(c.phase - edge.phase, orbit)))[:1]
+        candidates += sorted(inside, key=lambda c: abs(wrapped(c.phase - edge.phase, orbit.mesh.period)))[:1]
     steep = [c for c in candidates if c.slope >= settings.steep * edge.slope]
     deepest = min(steep, key=lambda c: c.event.level)
     reach = settings.exchange * deepest.event.level
     used = [c for c in steep if _is_tied(c, orbit) and c.event.level <= reach]
     return used[0] if used else deepest
-
-
-def _wrapped(phase: float, orbit: Orbit) -> float:
-    return float(np.mod(phase + orbit.mesh.period / 2, orbit.mesh.period) - orbit.mesh.period / 2)
 
 
 def _excursions(kept: list[Crossing]) -> list[tuple[Crossing, Crossing]]:
@@ -309,7 +309,7 @@ def match(crossing: Crossing, orbit: Orbit, tolerance: float = 0.02) -> int | No
     """Return the index of the orbit's event node that is this crossing, if one is."""
     both = zip(orbit.mesh.events, orbit.phases, strict=True)
     apart = [
-        abs(_wrapped(crossing.phase - phase, orbit)) if event == crossing.event else np.inf
+        abs(wrapped(crossing.phase - phase, orbit.mesh.period)) if event == crossing.event else np.inf
         for event, phase in both
     ]
     nearest = int(np.argmin(apart)) if apart else 0

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from periodic.display.htmltables import beside, paragraph, table, with_unit
 from periodic.display.sketch import Line, sketch
-from periodic.display.tables import beside, paragraph, table, with_unit
 from periodic.orbit.signal import Signal
 
 SAMPLES = 400

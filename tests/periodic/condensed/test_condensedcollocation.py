@@ -12,10 +12,10 @@ from support.cantilevers import cantilever, cubic
 
 import periodic as per
 import symbolic as sym
+from periodic.condensed.condensedcollocation import CondensedCollocation
 from periodic.condensed.floquet import LASTING, Leading
-from periodic.condensed.method import CondensedCollocation
 from periodic.condensed.operator import CondensedOperator
-from periodic.harmonic.split import SeriesLeading
+from periodic.harmonic.splitbalance import SeriesLeading
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
 from periodic.tracing.methodchoice import chosen_method

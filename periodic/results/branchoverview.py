@@ -7,8 +7,8 @@ from itertools import groupby
 import numpy as np
 
 from periodic.bifurcations.label import Label
+from periodic.display.htmltables import beside, paragraph, table, with_unit
 from periodic.display.sketch import Line, Mark, sketch
-from periodic.display.tables import beside, paragraph, table, with_unit
 from periodic.results.point import Point
 from periodic.results.record import Record
 

@@ -3,45 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from periodic.condensed.settling import settled
-from periodic.correction.discretisation import Discretisation
 from periodic.correction.meanequilibrium import resting
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family
+from periodic.orbit.shallow import shallow
 from periodic.system import Kind, System, jumps_of, linear_of, resets_of, slides_of, surfaces_of
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 class SplitMethod:
     """A method for systems with a linear part (`periodic.system.Split`), in the place of one for all states.
 
-    `whole` is that one; the settings are the same.
+    The settings are the same.
     """
 
-    whole: ClassVar[type[Discretisation]]
-
     @classmethod
-    def takes(cls, system: System) -> bool:
-        """Return whether a system is one of those that the method is for, and that no other takes."""
-        return linear_of(system) is not None
-
-    @classmethod
-    def like(cls, method: Discretisation, system: System) -> Self:
+    def like(cls, method: DataclassInstance, system: System) -> Self:
         """Return it with the settings of a method for all states that are not usual.
 
         Raises ValueError for a scheme that does not suit it, and a system with events that it does not know.
         """
         _check_events(system)
-        scheme = getattr(method, "scheme", None)
+        given, usual = shallow(method), shallow(type(method)())
+        scheme = given.get("scheme")
         if scheme is not None and scheme.family is not Family.RADAU:
             raise ValueError(f"scheme is {scheme.family.value}; condensation takes Radau IIA")
-        chosen = {field.name: getattr(method, field.name) for field in fields(method)}  # type: ignore[arg-type]
-        usual = type(method)()
-        return cls(**{k: value for k, value in chosen.items() if value != getattr(usual, k)})
+        return cls(**{name: value for name, value in given.items() if value != usual[name]})
 
     def settled(self, system: System, start: Orbit) -> Iterator[Orbit]:
         """Yield the motion to which a system with sliding jumps settles: `periodic.condensed.settling`."""

@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.collocation.collocation import Collocation
 from periodic.collocation.meshmethod import MeshMethod, scheme_for
-from periodic.collocation.method import Collocation
 from periodic.condensed.estimate import ContactError, OneSided, applies, estimate
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.condensed.linearised import SplitLinearisation, exempt
 from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.settling import followed
-from periodic.condensed.split import SplitMethod
+from periodic.condensed.splitmethod import SplitMethod
 from periodic.condensed.variations import CondensedVariations
 from periodic.correction.discretisation import Discretisation
-from periodic.correction.error import ErrorEstimate, deferred
+from periodic.correction.error import ErrorEstimate, Halving, deferred
 from periodic.correction.newton import Correction, briefest, in_order
 from periodic.correction.outcome import EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events.noderows import event_rows
+from periodic.events.eventrows import event_rows
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.linear.variation import Variations
@@ -34,8 +34,9 @@ from periodic.orbit.construction import transfer
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Family, Scheme
+from periodic.orbit.shallow import shallow
 from periodic.stability.multipliers import Spectrum
-from periodic.system import System, jumps_of, slides_of
+from periodic.system import System, jumps_of, linear_of, slides_of
 
 BRIEF_CONTACT = 0.05
 """Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
@@ -55,7 +56,6 @@ class CondensedCollocation(SplitMethod, MeshMethod):
     ntst: int = 12
     ntst_min: int = 6
 
-    whole: ClassVar[type[Discretisation]] = Collocation
     ends_below: ClassVar[float] = 0.1
     all_states: ClassVar[bool] = False
 
@@ -113,20 +113,20 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         if isinstance(operator, CondensedOperator) and applies(operator):
             return estimate(problem, operator, tangent, spectrum)
         exempted = self._exempted(problem.system, operator)
-        beside = OneSided(self._brief)
-        given = self._brief, problem, correction.orbit, tangent, spectrum, exempted, beside
+        beside = OneSided()
         brief = len(correction.orbit.phases) > 0 and briefest(correction.orbit) < BRIEF_CONTACT
         digits = (
             PARAMETER_SHARE * operator.rounding if brief and isinstance(operator, CondensedOperator) else 0.0
         )
-        found = deferred(*given, lengths=True, digits=digits)
+        how = Halving(only_at_points=exempted, solved=beside, lengths=True, digits=digits)
+        found = deferred(self._brief, problem, correction.orbit, tangent, spectrum, how)
         missing = self._misheld(problem.system, correction.orbit, found)
         if missing:
             return replace(found, orbit=missing)
         if beside.known is None or not correction.orbit.mesh.events:
             return found
         variation = spectrum.apart(beside.known[0].fundamental[-1])
-        named = {f.name: getattr(found, f.name) for f in fields(found)}
+        named = shallow(found)
         if isinstance(operator, CondensedOperator):
             share = min(1.0, operator.rounding / max(found.orbit, found.parameter, operator.rounding))
             named["rounding"] = max(found.rounding, share * found.by_orbit)
@@ -164,4 +164,4 @@ class CondensedCollocation(SplitMethod, MeshMethod):
 
 def mesh_method(system: System) -> MeshMethod:
     """Return the method that piecewise polynomials of a system are of: of all states, or of its places."""
-    return CondensedCollocation() if CondensedCollocation.takes(system) else Collocation()
+    return CondensedCollocation() if linear_of(system) is not None else Collocation()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from periodic.condensed.modal.moments import SERIES_UP_TO, TERMS, Complex, Table
 from periodic.condensed.modal.response import Response, moments_of
 from periodic.orbit.mesh import Grid
-from periodic.orbit.native.arrays import address, plain, source
+from periodic.orbit.native.addresses import address, library_of, plain, routine
 from periodic.orbit.scheme import Array, Scheme
-from periodic.system import ModesLike, System, compiling
+from periodic.system import ModesLike, System
 
 MANY = 12
 """Columns from which products of matrices are BLAS's."""
@@ -69,7 +69,7 @@ class NativeResponse(Response):
         growth, moment, slope, impulse, stage_outputs = _room(complex_)
         local = np.empty((count, a, s, a, k))
         found = self._with((growth, moment, slope, local, impulse, stage_outputs))
-        _routine(self.library, "lay_out", 1)(ctypes.addressof(found[0]))
+        routine(self.library, "lay_out", 1)(ctypes.addressof(found[0]))
         return found
 
     def _with(self, tables: Sequence[NDArray[Any]]) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
@@ -178,7 +178,7 @@ class NativeResponse(Response):
         begin = None if begun is None else _complex(begun)
         kicks, history = _room([(count, size, columns), (count + 1, size, columns)])
         states = np.empty((count, self.scheme.ncol, call.states, columns) if with_states else 0)
-        _routine(self.library, "driven", 8)(
+        routine(self.library, "driven", 8)(
             *(ctypes.addressof(call), columns, address(given), address(ends)),
             *(None if begin is None else address(begin), address(kicks), address(history)),
             address(states) if with_states else None,
@@ -199,7 +199,7 @@ class NativeResponse(Response):
         states_at_points, after = _room([(count, size, columns), (size, columns)])
         found = np.empty((count, points, call.forces, columns))
         arrays = given, ends, states_at_points, after, found
-        _routine(self.library, "pulled", 7)(ctypes.addressof(call), columns, *map(address, arrays))
+        routine(self.library, "pulled", 7)(ctypes.addressof(call), columns, *map(address, arrays))
         return found
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
@@ -210,7 +210,7 @@ class NativeResponse(Response):
         ends = None if closing is None else _complex(closing)
         passed, later = _room([(call.modes, *shape)])[0], np.empty((count, points, len(coupled), *shape))
         found = np.empty((count, points, len(coupled), count, *shape))
-        _routine(self.library, "circulant", 9)(
+        routine(self.library, "circulant", 9)(
             *(ctypes.addressof(call), None if ends is None else address(ends)),
             *(len(coupled), address(coupled), len(acting), address(acting)),
             *(address(passed), address(later), address(found)),
@@ -242,7 +242,7 @@ class NativeResponse(Response):
         own = _Change(widths.shape[1], len(changes))
         for name, array in zip(_CHANGE, (*kept, begun, found, history, inner, kicks, moved), strict=True):
             setattr(own, name, address(array))
-        _routine(self.library, "sloped", 5)(
+        routine(self.library, "sloped", 5)(
             ctypes.addressof(call), ctypes.addressof(own), *map(address, (given, ends, stages))
         )
         return found, begun
@@ -250,8 +250,7 @@ class NativeResponse(Response):
 
 def response_of(system: System, modes: ModesLike, scheme: Scheme, grid: Grid, period: float) -> Response:
     """Return the response of modes on a mesh, in C where the system can compile it."""
-    with_compiler = compiling(system)
-    library = None if with_compiler is None else with_compiler.library(source(*_SOURCES))
+    library = library_of(system, *_SOURCES)
     if library is None:
         return Response(modes, scheme, grid, period)
     return NativeResponse(modes, scheme, grid, period, library)
@@ -285,11 +284,3 @@ def _of_scheme(scheme: Scheme) -> tuple[_Call, Sequence[Array]]:
     for name, array in zip(_OF_SCHEME, kept, strict=True):
         setattr(call, name, address(array))
     return call, kept
-
-
-@cache
-def _routine(library: ctypes.CDLL, name: str, arguments: int) -> Callable[..., int]:
-    function = getattr(library, name)
-    function.argtypes, function.restype = [ctypes.c_void_p] * arguments, ctypes.c_int
-    run: Callable[..., int] = function
-    return run

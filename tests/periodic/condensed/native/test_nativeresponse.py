@@ -11,10 +11,10 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 from periodic.condensed.linearised import answer
 from periodic.condensed.modal.flexibility import Flexibility
-from periodic.condensed.modal.reduction import Modes
+from periodic.condensed.modal.modalreduction import Modes
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes
-from periodic.condensed.native.response import MANY, NativeResponse, response_of
+from periodic.condensed.native.nativeresponse import MANY, NativeResponse, response_of
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.scheme import Array, Family, Scheme
 from symbolic.kernels import native

@@ -16,6 +16,7 @@ from periodic.correction.error import ErrorEstimate
 from periodic.linear.unknowns import Increment
 from periodic.orbit.layout import Layout, Quantity
 from periodic.orbit.orbit import Orbit
+from periodic.orbit.shallow import shallow
 from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, known_of, multipliers_of
 from periodic.results.ragged import Arrays, Tables, orbit_tables, orbits_of, scheme_said
@@ -140,7 +141,7 @@ def _parts(checkpoint: Checkpoint) -> list[np.ndarray]:
 
 def _progress(checkpoint: Checkpoint) -> dict[str, Any]:
     """A checkpoint without its arrays, but with their shapes."""
-    plain = {f.name: getattr(checkpoint, f.name) for f in fields(checkpoint)}
+    plain = shallow(checkpoint)
     del plain["tangent"], plain["fundamental"]
     course = {"gone": checkpoint.course.gone, "margins": dict(checkpoint.course.margins)}
     return {**plain, "course": course, "shapes": [a.shape for a in _parts(checkpoint)]}

@@ -1,0 +1,101 @@
+"""Stops of two joints that become one where friction holds both masses together: their guards are one then.
+
+As friction between two masses sticks earlier, two joints at them that stop just before it come to do so at
+one instant just after it; as it is released earlier, two that stop at once do so one after the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from periodic.events.impacts import tied
+from periodic.events.modes import surface_of
+from periodic.events.rewrites.sites import Added, Site
+from periodic.events.rewrites.table import MERGING
+from periodic.events.sideconditions import Lengths
+from periodic.events.twinguards import held_at, twins
+from periodic.orbit.mesh import EventNode
+from periodic.orbit.orbit import Orbit
+from periodic.system import HELD, STUCK, Kind, System
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Event nodes next to each other: where friction sticks or is released, and stops of two joints.
+
+    node: the first of them. friction: that of friction. stops: those of the stops, two or a joint one.
+    alike: the guards that are one where friction holds, with their signs.
+    """
+
+    node: int
+    friction: int
+    stops: tuple[int, ...]
+    alike: dict[int, int]
+
+    @property
+    def segments(self) -> tuple[int, ...]:
+        """The segments between them, by their first nodes."""
+        own = (self.friction, *self.stops)
+        return own[:-1] if self.friction == self.node else (*self.stops,)
+
+
+def merging(system: System, orbit: Orbit, node: int) -> Meeting | None:
+    """Return the event nodes from one on at which stops become one, or part; None where they do not."""
+    events, count = orbit.mesh.events, len(orbit.phases)
+    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    for size in (2, 3) if count > 2 else ():
+        nodes = [(node + m) % count for m in range(size)]
+        if set(nodes) & set(tied(system, orbit)):
+            return None
+        for friction, stops in ((nodes[-1], nodes[:-1]), (nodes[0], nodes[1:])):
+            own = surface_of(system, events[friction].switch)
+            sticks = events[friction].modes == ((own.switch, STUCK),)
+            held_last = (friction == nodes[-1]) == (size == 3)
+            if own.kind != Kind.SLIDING or sticks != held_last or (not sticks and events[friction].modes):
+                continue
+            held = [k for k in held_at(system, events, stops[0], always) if k != own.switch]
+            guards = _stopped(events, stops)
+            if len(guards) != 2 or guards[1] in twins(system, guards[0], held):
+                continue
+            alike = twins(system, guards[0], [*held, own.switch])
+            if guards[1] in alike:
+                return Meeting(node, friction, tuple(stops), alike)
+    return None
+
+
+def _stopped(events: Sequence[EventNode], stops: Sequence[int]) -> list[int]:
+    """The guards of two joints that stop at event nodes where nothing else happens; [] if there is more."""
+    each = [events[j] for j in stops]
+    found = [k for event in each for k, mode in event.modes if mode == STUCK]
+    plain = all(event.switch in dict(event.modes) for event in each)
+    alone = len(found) == sum(len(event.modes) for event in each)
+    return found if plain and alone else []
+
+
+def merged(system: System, orbit: Orbit, node: int) -> Iterator[Site]:
+    """Yield the sites where they have become one, or have parted, in either order."""
+    found = merging(system, orbit, node)
+    assert found is not None
+    events, begin = orbit.mesh.events, float(orbit.phases[node])
+    friction, removed = events[found.friction], (found.friction, *found.stops)
+    last = found.friction != node
+    for stops in _other(system, [events[j] for j in found.stops], found.alike):
+        each = [friction, *stops] if last else [*stops, friction]
+        added = tuple(Added(event, begin, float(k)) for k, event in enumerate(each))
+        held = Lengths(found.segments, 0.0)
+        yield Site(MERGING, friction.switch, node, held, 0.0, added, removed)
+
+
+def _other(system: System, stops: Sequence[EventNode], alike: dict[int, int]) -> Iterator[list[EventNode]]:
+    """Yield the joint stop of two, or two for a joint one, in either order."""
+    if len(stops) == 2:
+        first = next((e for e in stops if surface_of(system, e.switch).kind == Kind.SLIDING), stops[0])
+        others = [event for event in stops if event is not first]
+        yield [replace(first, modes=(*first.modes, *(pair for e in others for pair in e.modes)))]
+        return
+    (event,) = stops
+    own = alike[event.switch] * event.direction
+    each = [EventNode(k, alike[k] * own, modes=((k, STUCK),)) for k, _ in event.modes]
+    yield each
+    yield each[::-1]
