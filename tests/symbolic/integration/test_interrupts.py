@@ -38,7 +38,8 @@ def timed():
 threading.Timer(0.3, os.kill, (os.getpid(), signal.Signals[number])).start()
 begin = time.monotonic()
 try:
-    blocks = {"plain": nullcontext, "timed": timed, "once": interrupting_once, "at once": interrupting_at_once}
+    blocks = {"plain": nullcontext, "timed": timed, "once": interrupting_once}
+    blocks["at once"] = interrupting_at_once
     with (blocks | {"ignored": ignoring_interrupts})[block]():
         run()
         print("returned")
