@@ -31,7 +31,7 @@ test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST)
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
-	ORBITRACE_KERNELS=c $(PYTEST) tests/periodic tests/problems
+	ORBITRACE_KERNELS=c $(PYTEST) tests/periodic
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long

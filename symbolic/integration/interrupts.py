@@ -1,4 +1,4 @@
-"""Ctrl-C inside CasADi: an exception that a signal's handler raises there is taken for a failed step.
+"""Ctrl-C, or a timer, inside CasADi: what a signal's handler raises there is taken for a failed step.
 
 The handlers that are in force stay in force; what they raise is kept and raised again after the call, which
 ends early for it.
@@ -12,12 +12,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+INTERRUPTING = [
+    each
+    for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGVTALRM", "SIGPROF")
+    if (each := getattr(signal, name, None)) is not None
+]
+"""Signals whose handlers end a computation: of keys, of other processes and of timers, as there are."""
+
 Handler = Callable[[int, FrameType | None], object]
 
 
 @contextmanager
 def heard() -> Iterator[list[BaseException]]:
-    """Raise at the end of the block what a handler of SIGINT or SIGTERM raised inside.
+    """Raise at the end of the block what a handler of an interrupting signal raised inside.
 
     The block is given the list of it, to end where CasADi drops it. Only the main thread is interrupted;
     elsewhere the block is as it is.
@@ -26,7 +33,7 @@ def heard() -> Iterator[list[BaseException]]:
     if threading.current_thread() is not threading.main_thread():
         yield raised
         return
-    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    before = {each: signal.getsignal(each) for each in INTERRUPTING}
     ours = {each: _kept(old, raised) for each, old in before.items() if callable(old)}
     for each, handler in ours.items():
         signal.signal(each, handler)

@@ -30,10 +30,16 @@ run = {
 }[how]
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have had it ignored
 before = signal.getsignal(signal.SIGINT)
+
+def timed():
+    signal.signal(signal.SIGPROF, signal.default_int_handler)
+    return nullcontext()
+
 threading.Timer(0.3, os.kill, (os.getpid(), signal.Signals[number])).start()
 begin = time.monotonic()
 try:
-    blocks = {"plain": nullcontext, "once": interrupting_once, "at once": interrupting_at_once}
+    blocks = {"plain": nullcontext, "timed": timed, "once": interrupting_once}
+    blocks["at once"] = interrupting_at_once
     with (blocks | {"ignored": ignoring_interrupts})[block]():
         run()
         print("returned")
@@ -51,6 +57,7 @@ print(time.monotonic() - begin < 5, signal.getsignal(signal.SIGINT) is before)
         ("once", "SIGINT", "KeyboardInterrupt"),
         ("once", "SIGTERM", "KeyboardInterrupt"),
         ("at once", "SIGTERM", "Ended"),
+        ("timed", "SIGPROF", "KeyboardInterrupt"),
     ],
 )
 def test_signal_ends_a_long_integration(block: str, number: str, raised: str, how: str) -> None:
