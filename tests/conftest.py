@@ -1,4 +1,4 @@
-"""The back end that the tests run with: NumPy, unless the environment says otherwise.
+"""The back end that the tests run with: NumPy, C for problems, unless the environment says otherwise.
 
 The automatic choice depends on what the user's cache holds. And the ledger: on every branch that a test
 traces each change of stability and direction must be accounted for by a labelled point.
@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-os.environ.setdefault("ORBITRACE_KERNELS", "numpy")
+if "ORBITRACE_KERNELS" not in os.environ:
+    os.environ |= {"ORBITRACE_KERNELS": "numpy", "ORBITRACE_KERNELS_UNASKED": "1"}
 
 import periodic as per  # noqa: E402
 from periodic.tracing import trace as tracing  # noqa: E402

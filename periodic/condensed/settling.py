@@ -12,7 +12,7 @@ from periodic.condensed.timestepping import Changed, Joint, Motion
 from periodic.correction.outcome import FAILURES
 from periodic.events.eventnodes import exact_crossings
 from periodic.events.modes import sides
-from periodic.events.motions import word_of
+from periodic.events.motions import PERIODS, STILL, word_of
 from periodic.events.rewrites.sites import ordered
 from periodic.events.twinguards import twins
 from periodic.orbit.construction import transfer
@@ -27,17 +27,11 @@ STEPS = 512
 FINE = 4096
 """Steps in the period that is kept."""
 
-PERIODS = 100
-"""Most periods of the excitation that a motion is given to settle."""
-
 SHORTEST = 1e-6
 """Least width (rad) of steps and intervals, in which changes of mode are located."""
 
-STILL = 1e-3
-"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
-
 CLOSE = 10 * SHORTEST
-"""The same where changes of mode lie so near to each other that their order asks for it."""
+"""As `STILL`, where changes of mode lie so near to each other that their order asks for it."""
 
 INTERVALS = 192
 """Intervals of the guess."""

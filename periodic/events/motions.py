@@ -6,9 +6,8 @@ were: that is the orbit's word. Joints that neither slip nor come to rest in all
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby
 from typing import cast
 
 import numpy as np
@@ -42,6 +41,12 @@ from periodic.system import (
 PER_PERIOD = 60
 """Intervals in a period of the guess."""
 
+PERIODS = 100
+"""Most periods of the excitation that a motion is given to settle."""
+
+STILL = 1e-3
+"""A motion has settled that changes by less than this part of its peak to peak from period to period."""
+
 FOLLOWED = 1e-8
 """Tolerance with which motions are followed in time for their events."""
 
@@ -57,7 +62,7 @@ def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = 
     surfaces, found = surfaces_of(system), list[Node]()
     rows = sorted(events, key=lambda event: event.phase)
     modes = {event.surface: event.after for event in rows}
-    for _, group in groupby(rows, key=lambda event: round(event.phase / SAME_PHASE)):
+    for group in _at_once(rows):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
         held = [surfaces[i].switch for i in _stuck(surfaces, modes) - {event.surface for event in each}]
         for count, apart in enumerate(_together(system, each, [*held, *always])):  # which is first is open
@@ -65,6 +70,18 @@ def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = 
             found.append((node, apart[0].phase + count * APART))
         modes |= {event.surface: event.after for event in each}
     return together(system, found, APART, always)
+
+
+def _at_once(rows: Sequence[Happened]) -> Iterator[list[Happened]]:
+    """Yield what happens at one phase, of events in order."""
+    group = list[Happened]()
+    for event in rows:
+        if group and event.phase - group[-1].phase > SAME_PHASE:
+            yield group
+            group = []
+        group.append(event)
+    if group:
+        yield group
 
 
 def _stuck(surfaces: Sequence[SurfaceLike], modes: Mapping[int, int]) -> set[int]:

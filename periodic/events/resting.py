@@ -30,6 +30,7 @@ import numpy as np
 from periodic.events.impacts import slope_before, tied
 from periodic.events.modes import surface_of
 from periodic.events.rates import before
+from periodic.events.rewrites.sites import apart, ordered
 from periodic.events.saltation import bounce, mapped
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -94,22 +95,21 @@ def lengthened(system: System, orbit: Orbit, tolerance: float) -> tuple[tuple[Ev
 
     Each lasts e times as long as the one before; k more of them lessen the error by e^(3k/2).
     """
-    error, span = neglected(system, orbit), SHORT * tolerance
+    error, least = neglected(system, orbit), SHORT * tolerance
     if not tolerance < error < np.inf:
         return None
     nodes = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
     for index in settling(system, orbit):
         left, (event, phase) = tail(system, orbit, index), nodes[index]
         own = np.sqrt(left.square) / max(orbit.span(), 1e-300)
-        count = int(np.ceil(np.log(own / span) / (-1.5 * np.log(left.ratio)))) if own > span else 0
+        count = int(np.ceil(np.log(own / least) / (-1.5 * np.log(left.ratio)))) if own > least else 0
         ends = phase + left.first * (1 - left.ratio ** np.arange(count + 1)) / (1 - left.ratio)
         plain = tuple(pair for pair in event.modes if pair != (event.switch, STUCK))
         nodes[index] = (replace(event, modes=plain) if count else event), phase
         between = [(replace(event, modes=()), float(end)) for end in ends[1:-1]]
         last = [(replace(event, modes=((event.switch, STUCK),)), float(ends[-1]))] if count else []
         nodes += [*between, *last]
-    nodes.sort(key=lambda node: node[1])
-    return tuple(event for event, _ in nodes), np.array([phase for _, phase in nodes])
+    return ordered(nodes, orbit)
 
 
 def bounced(system: System, orbit: Orbit, guess: Orbit) -> Orbit:
@@ -137,9 +137,5 @@ def _falling(orbit: Orbit, node: int) -> Iterator[tuple[int, Array]]:
 
 def _nearest(orbit: Orbit, switch: int, phase: float) -> int:
     """The event node of a switch nearest to a phase."""
-    own, period = (
-        [i for i, event in enumerate(orbit.mesh.events) if event.switch == switch],
-        orbit.mesh.period,
-    )
-    away = [abs(np.mod(orbit.phases[i] - phase + period / 2, period) - period / 2) for i in own]
-    return own[int(np.argmin(away))]
+    own = (i for i, event in enumerate(orbit.mesh.events) if event.switch == switch)
+    return min(own, key=lambda i: apart(float(orbit.phases[i]), phase, orbit))

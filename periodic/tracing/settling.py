@@ -7,11 +7,10 @@ from typing import cast
 
 import numpy as np
 
-from periodic.condensed.settling import PERIODS, STILL
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
-from periodic.events.motions import FOLLOWED, motion_from, orbit_of
+from periodic.events.motions import FOLLOWED, PERIODS, STILL, motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
 from periodic.orbit.scheme import Array
@@ -19,10 +18,10 @@ from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
 
 CLOSE = 1e-2 * STILL
-"""The same where events lie so near to each other that their order asks for it."""
+"""As `STILL`, where events lie so near to each other that their order asks for it."""
 
 NEAR = 1e-2
-"""The same of an orbit on which Newton's method on the return map ends: its word can be read."""
+"""As `STILL`, of an orbit on which Newton's method on the return map ends: its word can be read."""
 
 TRANSIENTS = (10, 40)
 """Periods after which an orbit is looked for near the motion."""

@@ -254,7 +254,10 @@ class Switching:
         raise IntegrationError(f"no joints were found that stick after tau = {tau:.6g}", tau)
 
     def _held_by_friction(self, modes: Modes, tau: float, state: Array) -> Modes:
-        """The modes with those sliders held whose strain friction that sticks keeps as it is."""
+        """The modes with those sliders held whose strain friction that sticks keeps as it is.
+
+        Their guards are sums of those of friction, and 0: held on a moving belt a mass goes on to strain one.
+        """
         stuck = self._having(modes, Kind.SLIDING, (STUCK,))
         carried = self._having(modes, Kind.SLIDER, (PLUS, MINUS))
         if not stuck or not carried:
@@ -263,7 +266,9 @@ class Switching:
         along = gradient[[self.surfaces[i].switch for i in stuck]]
         rows = gradient[[self.surfaces[i].switch for i in carried]]
         left = np.abs(rows - rows @ np.linalg.pinv(along) @ along).max(axis=1)
-        held = {i for i, off, row in zip(carried, left, rows, strict=True) if off <= NONE * np.abs(row).max()}
+        rates = np.abs(self._at(modes, tau, state)[[self.surfaces[i].switch for i in carried]])
+        still = (left <= NONE * np.abs(rows).max(axis=1)) & (rates <= self.tolerance)
+        held = {i for i, none in zip(carried, still, strict=True) if none}
         return tuple(STUCK if i in held else mode for i, mode in enumerate(modes))
 
     def _having(self, modes: Modes, kind: Kind, those: Collection[int]) -> list[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 import pytest
@@ -11,7 +12,8 @@ from symbolic.kernels import native
 
 @pytest.fixture(autouse=True, scope="module")
 def kernels() -> Iterator[None]:
-    """Systems of a module are compiled with the kernels that a user gets."""
+    """Systems of a module are compiled with the kernels that a user gets, unless some are asked for."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ORBITRACE_KERNELS", "numpy" if native.compiler() is None else "c")
+        if "ORBITRACE_KERNELS_UNASKED" in os.environ and native.compiler() is not None:
+            patch.setenv("ORBITRACE_KERNELS", "c")
         yield

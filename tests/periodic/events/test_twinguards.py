@@ -56,7 +56,7 @@ def test_friction_that_holds_a_strain_between_others() -> None:
 
 
 def test_a_slider_goes_with_the_friction_that_held_it() -> None:
-    """Assert that a slider stopped by friction at its mass, held to another one, is let go with either."""
+    """Assert that a slider stopped by friction at its mass, held to another one, is let go with that one."""
     ground, between = sym.CoulombFriction(X, 0.2), sym.CoulombFriction(X, 0.3, to=Y)
     system = two_masses(ground, between, sym.Jenkins(Y, 0.5, 0.1))
     surfaces = [s for s in surfaces_of(system) if s.releases is not None]

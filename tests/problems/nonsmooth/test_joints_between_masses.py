@@ -62,7 +62,7 @@ def test_stops_become_one_and_part(both_ways: list[tuple[JointCase, per.Branch]]
 
 
 def test_both_ways_alike(both_ways: list[tuple[JointCase, per.Branch]]) -> None:
-    """Assert the same special points, and the same ends to 1e-6."""
+    """Assert the same ends to 1e-6."""
     up, down = (branch for _, branch in both_ways)
     for one, other in ((up[0], down[-1]), (up[-1], down[0])):
         for name in ("q0", "q1"):

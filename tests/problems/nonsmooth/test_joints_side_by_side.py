@@ -5,9 +5,12 @@ Models are those of the survey from somewhere in their ranges, the judge is `tes
 
 from __future__ import annotations
 
+import numpy as np
+from howto.test_joint import Belt
 from survey.rows import TOL, drawn, verdicts
 
 import periodic as per
+import symbolic as sym
 
 
 def some(seed: int, start: float | None, points: int, beyond: float) -> per.Branch:
@@ -44,3 +47,15 @@ def test_a_slider_leaves_its_limit_beside_friction() -> None:
     branch = some(127, None, 400, 1.25)
     assert branch.stop.reason is per.Reason.BOUND
     assert branch.newton_iterations < 300
+
+
+def test_a_slider_slips_while_its_mass_is_held_on_a_belt() -> None:
+    """Assert that it is at its limit, to 1e-8, where friction holds a mass that moves with a belt."""
+    x = sym.coordinate("x", unit="m")
+    model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.1) + sym.HarmonicForce(x, 0.5)
+    system = sym.compile(model + Belt(x, 0.6, 0.2) + sym.Jenkins(x, 0.5, 0.05))
+    motion = sym.simulate(system, {"Omega": 0.7}, settle=3, samples=400, tolerance=1e-9)
+    force = 0.5 * (motion["x"] - motion["z of x"])
+    assert np.abs(force).max() < 0.05 + 1e-8
+    with_belt = np.abs(motion["x'"] - 0.2) < 1e-9
+    assert (force[with_belt] > 0.05 - 1e-8).sum() > 20
