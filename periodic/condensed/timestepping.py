@@ -158,12 +158,17 @@ class Motion:
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
-        """Return the motion from rest of the linear part, own states and guesses of the unknowns given."""
+        """Return the motion from rest of the linear part, own states and guesses of the unknowns given.
+
+        Joints begin as held: along a jump of 0 the equations have no side.
+        """
         part = linear_of(system)
         assert part is not None
         modes = part.modes(parameter)
         rest = np.zeros(len(modes.exponents), dtype=complex)
-        return cls(system, parameter, state, unknown, modes, rest, np.zeros(len(jumps_of(system))))
+        side = np.zeros(len(jumps_of(system)))
+        side[[joint.column for joint in joints_of(system)]] = STUCK
+        return cls(system, parameter, state, unknown, modes, rest, side)
 
     def _slider(self, joint: Joint) -> tuple[int, int]:
         """The row of a slider, another one where it is carried, and the state that is its place."""

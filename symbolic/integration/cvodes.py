@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -20,8 +21,8 @@ KEPT = 128
 LENGTH = 1e6
 """Every interval is run through in this time: CasADi takes times for one that are nearer than 1e-9."""
 
-DIGITS = 15
-"""Of the parts of an interval at which a solution is wanted."""
+ROUNDING = 4.0
+"""By how many units in its last place a phase is rounded, so that like parts of intervals are the same."""
 
 
 class IntegrationError(ArithmeticError):
@@ -51,7 +52,7 @@ class Cvodes:
         tolerance: relative and absolute.
         """
         begin, width = phase[0], phase[-1] - phase[0]
-        parts, place = np.unique(np.round((phase - begin) / (width or 1.0), DIGITS), return_inverse=True)
+        parts, place = np.unique(_rounded(phase), return_inverse=True)
         if len(parts) == 1:
             return np.repeat(start[None], len(phase), axis=0)
         given = np.concatenate([parameter, [begin, width / LENGTH]])
@@ -81,9 +82,18 @@ class Cvodes:
             self._integrators[key] = made
         return self._integrators[key]
 
-    @property
+    @cached_property
     def _stretched(self) -> dict[str, ca.SX]:
         """The problem with its interval, (begin, width / LENGTH), as parameters."""
         interval, own = ca.SX.sym("interval", 2), self.problem
         ode = ca.substitute(own["ode"], own["t"], interval[0] + interval[1] * own["t"])
         return own | {"p": ca.vertcat(own["p"], interval), "ode": interval[1] * ode}
+
+
+def _rounded(phase: Array) -> Array:
+    """Phases as parts of their interval, to the decimals that their own rounding leaves."""
+    width = phase[-1] - phase[0]
+    if not width:
+        return np.zeros(len(phase))
+    unit = ROUNDING * np.spacing(np.abs(phase).max()) / width
+    return np.round((phase - phase[0]) / width, max(0, math.floor(-math.log10(unit))))

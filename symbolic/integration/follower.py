@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from symbolic.arrays import Array
 from symbolic.integration.cvodes import IntegrationError
-from symbolic.integration.enclosures import Root, lowest, root
+from symbolic.integration.enclosures import Passed, Root, crossing, lowest, root
 from symbolic.integration.interrupts import heard
 from symbolic.integration.modes import Event, Guard, Modes, Switching
 
@@ -80,6 +80,22 @@ class Followed:
         places = np.repeat(np.searchsorted(phase, at), 2)
         each = np.reshape([y for p in impacts for y in (p.root.y_before, p.y)], (-1, self.values.shape[1]))
         return np.insert(phase, places, np.repeat(at, 2)), np.insert(self.values, places, each, axis=0)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Guards and their derivatives along a piece, (K, guards) each, with phases (K,) and y (K, w)."""
+
+    phase: Array
+    y: Array
+    guards: Array
+    rates: Array
+
+    def at(self, j: int, level: Array) -> list[Passed]:
+        """Return the guards above their levels at a phase."""
+        tau, y = float(self.phase[j]), self.y[j]
+        each = zip(self.guards[j] - level, self.rates[j], strict=True)
+        return [Passed(tau, y, float(value), float(rate)) for value, rate in each]
 
 
 @dataclass(eq=False)
@@ -149,6 +165,8 @@ class Follower:
     def _enter(self, modes: Modes) -> None:
         """Begin a piece in some modes."""
         self._modes, self._guards = modes, self.switching.guards(modes)
+        self._places = [guard.switch for guard in self._guards]
+        self._signs = np.array([guard.sign for guard in self._guards])
         self._size = np.zeros(len(self._guards))
         self._least: Array | None = None
 
@@ -168,36 +186,36 @@ class Follower:
                     raise
                 count = reached
 
-    def _values(self, values: Array, phase: Array) -> tuple[Array, Array]:
-        """The guards and their derivatives along a piece, (K, guards) each."""
-        places, signs = [each for each in zip(*((g.switch, g.sign) for g in self._guards), strict=True)]
+    def _seen(self, values: Array, phase: Array) -> Seen:
+        """The guards along a piece."""
         s, rate = self.look(self._modes, values, phase)
-        return s[:, places] * signs, rate[:, places] * signs
+        return Seen(phase, values, s[:, self._places] * self._signs, rate[:, self._places] * self._signs)
 
     def _looked(self, values: Array, phase: Array) -> tuple[int, tuple[Array, float] | None]:
         """The last value of a piece before an event, and y and phase after that, None where there is none."""
-        for j, fallen, certain in self._doubts(values, phase):
+        if not self._guards:
+            return len(values) - 1, None
+        seen = self._seen(values, phase)
+        for j, fallen, certain in self._doubts(seen):
             before, left, right = len(self._passages), float(phase[j]), float(phase[j + 1])
             if right - left > SHORTEST and not certain:
                 after = self._across(values[j], left, right), right
             elif len(fallen):
-                after = self._event(values[j], left, right, fallen)
+                after = self._event(seen, j, fallen)
             if len(self._passages) > before:
                 return j, after
         return len(values) - 1, None
 
-    def _doubts(self, values: Array, phase: Array) -> list[tuple[int, NDArray[np.int_], bool]]:
+    def _doubts(self, seen: Seen) -> list[tuple[int, NDArray[np.int_], bool]]:
         """The intervals in which guards may fall to 0, with those that are below it at their ends.
 
         And whether no other guard may fall there.
         """
-        if not self._guards:
-            return []
-        g, rate = self._values(values, phase)
+        g = seen.guards
         self._size = np.maximum(self._size, np.abs(g).max(axis=0))
         if self._least is None:
             self._least = np.minimum(g[0], 0.0)
-        below = lowest(g, rate, phase) < self._floor
+        below = lowest(g, seen.rates, seen.phase) < self._floor
         ends = below & (g[1:] < self._floor)
         at = np.flatnonzero(below.any(axis=1))
         return [(int(j), np.flatnonzero(ends[j]), bool((ends[j] == below[j]).all())) for j in at]
@@ -211,33 +229,31 @@ class Follower:
     def _across(self, y: Array, begin: float, end: float) -> Array:
         """y at the end of an interval, through all events in it."""
         while begin < end:
-            phase = np.linspace(begin, end, PARTS + 1)
+            phase = np.linspace(begin, end, (PARTS if end - begin > SHORTEST else 1) + 1)
             values = self._ahead(y, phase)
             last, event = self._looked(values, phase[: len(values)])
             y, begin = (values[last], float(phase[last])) if event is None else event
         return y
 
-    def _event(self, y: Array, begin: float, end: float, fallen: NDArray[np.int_]) -> tuple[Array, float]:
+    def _event(self, seen: Seen, j: int, fallen: NDArray[np.int_]) -> tuple[Array, float]:
         """y after the first event in an interval, and where it is."""
-        floor = self._floor
-
-        def motion(tau: float) -> Array:
-            return self.sweep(self._modes, y, np.array([begin, tau]))[-1]
-
-        def at(k: int) -> Root:
-            level = 0.0 if guard(k, 0.0)(begin, y)[0] > 0 else float(floor[k])
-            return root(motion, guard(k, level), begin, end, BESIDE * float(self._size[k]))
-
-        def guard(k: int, level: float) -> Callable[[float, Array], tuple[float, float]]:
-            def value(tau: float, y: Array) -> tuple[float, float]:
-                g, rate = self._values(y[None], np.array([tau]))
-                return float(g[0, k]) - level, float(rate[0, k])
-
-            return value
-
-        found = min((at(int(k)) for k in fallen), key=lambda each: each.after)
-        now = self._values(found.y_after[None], np.array([found.after]))[0][0]
+        level = np.where(seen.guards[j] > 0, 0.0, self._floor)  # or where a guard begins, if it is below 0
+        low, high, found, earlier = seen.at(j, level), seen.at(j + 1, level), None, list(fallen)
+        while earlier:  # another may have fallen before the one whose cubic did first
+            k = min(earlier, key=lambda k: crossing(low[k], high[k])) if len(earlier) > 1 else earlier[0]
+            found = root(self._onward, self._above(k, level), low[k], high[k], BESIDE * float(self._size[k]))
+            high = self._seen(found.y_before[None], np.array([found.before])).at(0, level)
+            earlier = [k for k in fallen if high[k].value < 0 and found.before > low[k].phase]
+        assert found is not None
+        now = self._seen(found.y_after[None], np.array([found.after])).guards[0]
         return self._passed(found, [self._guards[k] for k in fallen if now[k] <= 0])
+
+    def _onward(self, tau: float, y: Array, later: float) -> Array:
+        return self.sweep(self._modes, y, np.array([tau, later]))[-1]
+
+    def _above(self, k: int, level: Array) -> Callable[[float, Array], Passed]:
+        """A guard above its level along a motion."""
+        return lambda tau, y: self._seen(y[None], np.array([tau])).at(0, level)[k]
 
     def _passed(self, found: Root, fallen: Sequence[Guard]) -> tuple[Array, float]:
         """What an event makes of a motion."""
