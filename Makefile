@@ -11,6 +11,9 @@ PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadf
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
+# The rooms of periodic/ whose computations kernels do.
+KERNEL_ROOMS := bifurcations collocation condensed conditions correction events linear refinement stability tracing
+
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
 SEED ?= 2028
@@ -31,7 +34,7 @@ test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST)
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
-	ORBITRACE_KERNELS=c $(PYTEST) tests/periodic
+	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%)
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
