@@ -42,7 +42,7 @@ class Entry:
     value : float
         The continuation parameter (SI).
     slope : float
-        d parameter / d arclength, in ranges of the parameter.
+        d parameter / d arclength over the length of the parameter's range.
     growth : ndarray
         log |mu| of the multipliers that are not 1 whatever the parameters; of an equilibrium the real parts
         over the largest eigenvalue.

@@ -31,7 +31,7 @@ NEAR_CIRCLE = 0.3
 
 
 class Beside(Protocol):
-    """Motions beside an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
+    """Linearised motions about an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
 
     @property
     def given(self) -> SplitLinearisation:

@@ -74,7 +74,7 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         return CondensedOperator(given, event_rows(system, orbit, free))
 
     def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations:
-        """Return the motions beside an orbit. Raises UnknownVariationsError where forces jump."""
+        """Return the linearised motions about an orbit. Raises UnknownVariationsError where forces jump."""
         return CondensedVariations.about(system, orbit, free)
 
     @property

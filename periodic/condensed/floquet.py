@@ -300,7 +300,7 @@ class Leading:
         return found
 
     def start(self, change: Increment) -> Array:
-        """Return what a change of the orbit changes at the beginning of the period, in the basis (r,)."""
+        """Return the change at the beginning of the period that a change of the orbit makes, (r,)."""
         given = self.floquet.given
         forces = change.algebraic[:, :, list(given.part.forces)]
         modes = given.response.history(forces)[0]
@@ -311,7 +311,7 @@ class Leading:
 
 @dataclass(frozen=True, eq=False)
 class LeadingSpectrum(Spectrum):
-    """The leading multipliers of a split system; see `Spectrum`. leading: the subspace that they are of."""
+    """The leading multipliers of a split system; see `Spectrum`. leading: their invariant subspace."""
 
     leading: Leading | None = None
 
@@ -351,7 +351,7 @@ class LeadingSpectrum(Spectrum):
         return float(apart.max(initial=0.0) / self.radius)
 
     def start(self, change: Increment) -> Array:
-        """Return what a change of the orbit changes at the beginning of the period, in the subspace."""
+        """Return the change at the beginning of the period that a change of the orbit makes, (r,)."""
         if self.leading is None:
             return np.zeros(len(self.multipliers))
         return self.leading.start(change)

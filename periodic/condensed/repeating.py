@@ -1,4 +1,4 @@
-"""Motions of a split system beside an orbit that are multiplied by a number over the period.
+"""Linearised motions of a split system about an orbit that are multiplied by a number over the period.
 
 With G_mu what forces with f(T) = mu f(0) do to the places, whose modes close with 1/(mu - exp(lambda T)),
 

@@ -1,4 +1,4 @@
-"""All motions of a split system beside an orbit: its leading multipliers, with their derivatives."""
+"""All linearised motions of a split system about an orbit: the leading multipliers and their derivatives."""
 
 from __future__ import annotations
 

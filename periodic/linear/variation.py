@@ -1,4 +1,4 @@
-"""Motions beside an orbit that are multiplied by a number over the period: what special points are made of.
+"""Linearised motions about an orbit that are multiplied by a number over the period, as at special points.
 
 An orbit has the Floquet multiplier mu where its linearised equations, closed by v(T) = mu v(0), are singular,
 
@@ -24,7 +24,7 @@ Complex = NDArray[np.complex128]
 
 
 class UnknownVariationsError(ValueError):
-    """The motions beside an orbit are not known: what asks for them is refused, or not found."""
+    """The linearised motions about an orbit are not known: what asks for them is refused, or not found."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Repeating(Protocol):
 
 
 class Variations(Protocol):
-    """All motions beside an orbit."""
+    """All linearised motions about an orbit: solutions of the variational equations."""
 
     def repeating(self, multiplier: float) -> Repeating:
         """Return the equations of those that are multiplied by a number."""

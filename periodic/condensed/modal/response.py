@@ -65,7 +65,7 @@ class Response:
         return self.grid.width[first], which
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Response:
-        """Return that of some of the states to some of the forces."""
+        """Return the response of some of the states to some of the forces."""
         modes = self.modes
         chosen = Modes(
             modes.exponents,
@@ -106,7 +106,7 @@ class Response:
 
     @cached_property
     def closing(self) -> Complex:
-        """1/(1 - exp(lambda T)): how a mode's periodic motion follows from that of one period, (J,)."""
+        """1/(1 - exp(lambda T)), (J,): periodic z(0) over the z(T) that the same forces reach from rest."""
         with np.errstate(all="ignore"):
             return np.asarray(-1 / np.expm1(self.modes.exponents * self.period))
 
@@ -139,7 +139,7 @@ class Response:
 
     @cached_property
     def impulse(self) -> Complex:
-        """What forces leave in the modes at the end of their interval, (N, J, b, k)."""
+        """Modes at the end of an interval by the forces in it, the modes at rest before: (N, J, b, k)."""
         widths, which = self._distinct
         moment = self._table.moment[:, -1].reshape(len(widths), len(self.modes.exponents), -1, 1)
         return np.asarray((widths[:, None, None, None] * moment * self.modes.inputs[:, None, :])[which])
@@ -152,9 +152,9 @@ class Response:
         return np.asarray((growth[:, :, None, :] * self.modes.outputs)[which])
 
     def history(self, forces: Array, closing: Complex | None = None) -> Complex:
-        """Return the modes at the left ends and at the end in periodic motion, (N+1, J, ...).
+        """Return the modes at the mesh points in periodic motion, (N+1, J, ...); forces (N, b, k, ...).
 
-        Forces (N, b, k, ...). Another `closing` than the periodic one is that of `closings`.
+        With a `closing` of `closings`, in motion that is multiplied by a number over the period.
         """
         found = self.closed(self._kicks(forces), self.closing if closing is None else closing)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
@@ -173,9 +173,9 @@ class Response:
         return self._states(forces, history[:-1])
 
     def pulled(self, weights: Array, closing: Complex | float) -> Array:
-        """Return the weights of forces, (N, b, k, r), in those of the states that `stages` makes of them.
+        """Return the adjoint of `stages`: weights of states to weights of forces, (N, b, k, r).
 
-        It is the adjoint, and goes from interval to interval backwards.
+        It goes backwards from interval to interval.
         """
         count, points, s, r = weights.shape
         flat = weights.reshape(count, points * s, r)
@@ -183,7 +183,7 @@ class Response:
         transposed = np.swapaxes(self.stage_outputs.reshape(count, -1, size), 1, 2) @ flat
         driven, grown = _joined(transposed[::-1].copy(), self.grown[::-1].copy())
         ends = np.zeros_like(driven)
-        # the period before takes what all of this one asks for at its beginning
+        # adjoint of z(0) = closing z(T): the weight of z(0) goes to the end of the period
         ends[0] = np.asarray(closing).reshape(-1, 1) * driven[-1]
         ends[1:] = driven[:-1] + grown[:-1, :, None] * ends[0]
         impulse = np.swapaxes(self.impulse.reshape(count, size, -1), 1, 2)
@@ -211,7 +211,7 @@ class Response:
         return np.concatenate([np.zeros_like(left[:1]), self._chain(left)[0]])
 
     def _kicks(self, forces: Array) -> Complex:
-        """What forces (N, b, k, ...) leave in the modes at the end of their interval, (N, J, r)."""
+        """Modes at the end of each interval by forces (N, b, k, ...) in it, from rest before: (N, J, r)."""
         count, size = len(forces), len(self.modes.exponents)
         flat = forces.reshape(count, forces.shape[1] * forces.shape[2], -1)
         if not self.uniform:
@@ -254,24 +254,25 @@ class Response:
         closing: Complex,
         history: Complex | None = None,
     ) -> tuple[NDArray[Any], Complex]:
-        """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
+        """Return the derivatives of states at the points, (N, a, s, q), and modes at the beginning, (J, q).
 
-        With widths in the first directions, and with modes in further ones; see `slopes`, which is for all.
+        The first directions change the intervals' widths, further ones the modes. States are complex here;
+        `slopes` makes the real ones of them, and allows for modes that do not change and for complex forces.
         """
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
         stretch = np.zeros((len(width), q))
         stretch[:, :first] = widths
-        faster = np.zeros((len(modes.exponents), q), dtype=complex)
+        by_exponent = np.zeros((len(modes.exponents), q), dtype=complex)
         for i, change in enumerate(changes):
-            faster[:, first + i] = change.exponents
-        # x = lambda h
-        shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
+            by_exponent[:, first + i] = change.exponents
+        # derivative of lambda h, h the width
+        shift = width[:, None, None] * by_exponent + stretch[:, None, :] * modes.exponents[:, None]
         history = self.history(forces, closing) if history is None else history
         driven = _driving(forces, modes.inputs)
-        answer, steeper = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
-        inner = stretch[:, None, None, :] * answer[..., None]
-        inner += (width[:, None, None] * steeper)[..., None] * shift[:, :, None, :]
+        own, own_slope = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
+        inner = stretch[:, None, None, :] * own[..., None]
+        inner += (width[:, None, None] * own_slope)[..., None] * shift[:, :, None, :]
         turn = self.scheme.points[:, None] * shift[:, :, None, :]
         inner += (table.growth * history[:-1, :, None])[..., None] * turn
         for i, change in enumerate(changes):
@@ -282,7 +283,7 @@ class Response:
         count, points = len(width), len(self.scheme.points)
         flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
         found = (modes.outputs @ flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
-        stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
+        stages = table.growth * history[:-1, :, None] + width[:, None, None] * own
         rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
         for i, change in enumerate(changes):
             found[..., first + i] += (change.outputs @ stages).transpose(0, 2, 1)
@@ -292,15 +293,15 @@ class Response:
         return np.asarray(found), moved[0]
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
-        """Return what some forces do to some states everywhere on a uniform mesh, (N, a, s, N, b, k).
+        """Return the map from some forces to some states on a uniform mesh, (N, a, s, N, b, k).
 
-        Without `closing` from rest. Only how many intervals later counts.
+        It depends on the number of intervals in between alone. Without `closing` the modes begin at rest.
         """
         modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
         s, k = len(states), len(forces)
         impulse = self.impulse[0][:, :, forces]
         impulse = impulse if closing is None else impulse * closing[:, None, None]
-        # by falling number of intervals, as the columns of a row have it
+        # from the largest number of intervals in between to the smallest, as along a row of the map
         ahead = np.exp(modes.exponents[:, None] * (self.grid.width[0] * np.arange(count - 1.0, -1.0, -1.0)))
         moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
         stage_outputs = self.stage_outputs[0][:, states].reshape(points * s, -1)
@@ -318,7 +319,7 @@ class Response:
         return whole
 
     def closed(self, left: Complex, closing: Complex) -> Complex:
-        """Return the history, (N+1, J, ...), of what each interval leaves in the modes, (N, J, ...)."""
+        """Return the modes at the mesh points, (N+1, J, ...); `left`: what each interval adds at its end."""
         size = [1] * (left.ndim - 2)
         driven, grown = self._chain(left)
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
@@ -327,7 +328,7 @@ class Response:
         return found
 
     def _chain(self, left: Complex) -> tuple[Complex, Complex]:
-        """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J)."""
+        """Modes at the right ends from z(0) = 0 by additions `left`, and their growth since tau_0, (N, J)."""
         return _joined(left.copy(), self.grown.copy())
 
     @cached_property
@@ -352,9 +353,9 @@ class Response:
 
 
 def _joined(driven: Complex, grown: Complex) -> tuple[Complex, Complex]:
-    """Add up what intervals leave in the modes, (N, J, ...), while these grow by (N, J) in each.
+    """Return z_j = grown_j z_{j-1} + driven_j from z = 0, (N, J, ...), and products of the grown_j, (N, J).
 
-    Neighbours are joined in pairs, pairs in fours, and so on.
+    It is a parallel prefix scan, in about log2 N array operations.
     """
     size, step = [1] * (driven.ndim - 2), 1
     while step < len(driven):

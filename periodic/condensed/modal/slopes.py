@@ -1,4 +1,4 @@
-"""How the motion of the modes changes where intervals are wider and the modes are others, forces held."""
+"""Derivatives of the modes' motion in the intervals' widths and in the modes themselves, forces fixed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def slopes(
     multiplier: complex = 1.0,
     history: Complex | None = None,
 ) -> tuple[Array, Complex]:
-    """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
+    """Return the derivatives of states at the points, (N, a, s, q), and of modes at the beginning, (J, q).
 
     Parameters
     ----------

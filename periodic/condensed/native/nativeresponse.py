@@ -61,7 +61,7 @@ class NativeResponse(Response):
 
     @cached_property
     def _laid(self) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
-        """The call, its tables by name, of the distinct widths, and what is to be kept meanwhile."""
+        """The call, its tables by name, of the distinct widths, and the arrays to be kept alive."""
         count, size, a = len(self._distinct[0]), len(self.modes.exponents), self.scheme.ncol
         s, k = self.modes.direct.shape
         table = (count, size, a)
