@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.modes import mode_after, sticks, surface_of
+from periodic.events.modes import column, sides, sticks, surface_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
@@ -75,19 +75,10 @@ def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: dict[in
     stop, release = site.added
     way = release.event.direction
     ways = {k: sign * way for k, sign in both.items()}
-    slipping = [k for k in both if _mode(system, orbit, k, site.at.interval) == ways[k]]
+    modes = sides(system, orbit)[site.at.interval]
+    slipping = [k for k in both if modes[column(system, k)] == ways[k]]
     stuck = tuple((k, STUCK) for k in slipping)
     onward = tuple((k, ways[k]) for k in slipping)
     first = Added(replace(stop.event, modes=(*stop.event.modes, *stuck)), stop.phase, stop.part)
     last = Added(replace(release.event, modes=onward), release.phase, release.part)
     return replace(site, added=(first, last))
-
-
-def _mode(system: System, orbit: Orbit, switch: int, interval: int) -> int:
-    """The mode of a surface in an interval; 0 where no event node says it."""
-    surface, mesh = surface_of(system, switch), orbit.mesh
-    each = zip(mesh.starts, mesh.events, strict=True)
-    changes = [(int(j), mode_after(surface, event)) for j, event in each]
-    known = [(j, mode) for j, mode in changes if mode is not None]
-    before = [mode for j, mode in known if j <= interval] or [mode for _, mode in known]
-    return before[-1] if before else 0
