@@ -1,7 +1,7 @@
 """Branches of autonomous orbits that end at a homoclinic or heteroclinic orbit: their periods grow forever.
 
 The nearer the orbits pass to an equilibrium the longer they stay, T ~ -log|p - p*|, so that the parameter
-stops changing long before the period does: nothing of the branch is left that its arclength could find.
+stops changing long before the period does: arclength steps get no further.
 
 References
 ----------
@@ -24,7 +24,7 @@ LONGER_PERIOD = 10.0
 """How many times as long orbits have become since the parameter changed by more than its error."""
 
 LEAST_SPEED = 1e-3
-"""Least speed on such an orbit, in peaks to peak a rad: a canard is slow, but does not stand still."""
+"""Least speed above which an orbit is none (peak to peak per rad): a canard is slow, but never stops."""
 
 
 def period(problem: Problem, points: Sequence[Point]) -> float | None:
