@@ -41,7 +41,7 @@ _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Arra
 
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
-    """Return the surface of a switch: of its guard, of a release, or of a departure from a wall."""
+    """Return the surface that a switch is the guard of, a release of, or a departure from."""
     return next(s for s in surfaces_of(system) if switch in (s.switch, s.leaves, *(s.releases or ())))
 
 

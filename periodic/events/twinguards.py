@@ -43,19 +43,8 @@ _KEPT: weakref.WeakKeyDictionary[System, _Known] = weakref.WeakKeyDictionary()
 def twins(system: System, switch: int, held: Sequence[int] = ()) -> dict[int, int]:
     """Return the guards of surfaces that hold motions that are the same function, this one first.
 
-    Parameters
-    ----------
-    system : System
-        The system.
-    switch : int
-        A guard.
-    held : sequence of int
-        Guards of friction that is held: guards that differ by multiples of these are the same.
-
-    Returns
-    -------
-    dict of int to int
-        The guards, each with the sign of the factor between it and the first.
+    Each has the sign of the factor between it and the first. held: guards of friction that is held; guards
+    that differ by multiples of these are the same.
     """
     every = of_held(system)
     if switch not in every or len(every) < 2:

@@ -45,7 +45,7 @@ NEARER = 0.25
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
-    """Return the orbit near a motion at its parameters; while it violates its word, this is read again."""
+    """Return the orbit near a motion at its parameters; a word that it violates is read again."""
     found = _fixed(solver, guess, sign)
     for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):

@@ -26,7 +26,7 @@ Modes = tuple[int, ...]
 """The mode of every surface of a system, in their order; 0 of surfaces that have none."""
 
 LOW = 0.1
-"""Height of a bounce, in tolerances, up to which it is rest."""
+"""Height of a bounce, in tolerances, up to which the motion rests."""
 
 NONE = 1e-8
 """Relative residual up to which a slider's guard is a combination of friction's guards: half the digits."""
@@ -94,7 +94,7 @@ class Switching:
     parameter : ndarray, shape (p,)
         SI.
     tolerance : float
-        Values of guards below this are 0.
+        Values of guards up to this count as 0.
     """
 
     system: Switched
@@ -223,21 +223,7 @@ class Switching:
     ) -> tuple[Array, Modes]:
         """Return consistent modes, in which joints at rest stick or begin to slip, and the state projected.
 
-        Parameters
-        ----------
-        modes : tuple of int
-            Initial modes.
-        tau : float
-            Phase.
-        state : ndarray, shape (n,)
-            State.
-        tossed : collection of int
-            Surfaces that have just begun to slip.
-
-        Raises
-        ------
-        IntegrationError
-            Where no modes are consistent.
+        tossed: surfaces that have just begun to slip. Raises IntegrationError where no modes are consistent.
         """
         for _ in range(PIVOTS):
             values, changed = self._at(modes, tau, state), None
@@ -256,7 +242,7 @@ class Switching:
     def _held_by_friction(self, modes: Modes, tau: float, state: Array) -> Modes:
         """The modes with those sliders held whose strain is kept constant by friction that sticks.
 
-        Their guards are combinations of friction's, and 0: on a moving belt a stuck mass goes on to strain one.
+        Their guards are combinations of friction's, and 0: on a moving belt a stuck mass strains one further.
         """
         stuck = self._having(modes, Kind.SLIDING, (STUCK,))
         carried = self._having(modes, Kind.SLIDER, (PLUS, MINUS))

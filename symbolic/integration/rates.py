@@ -17,7 +17,7 @@ import casadi as ca
 from symbolic.equations.expressions import Expressions
 
 SENSITIVITY = 1e-8
-"""Added to the derivative of each constraint in its unknown, which is positive."""
+"""Added to the derivative, which is positive, of each constraint in its unknown."""
 
 
 def constraint_rows(e: Expressions) -> list[int]:

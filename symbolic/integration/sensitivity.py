@@ -29,7 +29,7 @@ from symbolic.integration.modes import Modes, Switched, Switching
 from symbolic.integration.rates import constraint_rows
 
 EPSILON = 1e-10
-"""Added to the derivative of each constraint in its unknown, which is positive."""
+"""Added to the derivative, which is positive, of each constraint in its unknown."""
 
 TIGHTER = (1.0, 0.1, 0.01)
 """Tolerances tried in turn, as parts of the wanted one."""

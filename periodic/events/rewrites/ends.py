@@ -116,7 +116,7 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
 
 
 def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
-    """Return the sites at which an excursion may end: event nodes removed, and the condition."""
+    """Return the sites at which an excursion may end: nodes removed, and the condition there."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
     if excursion.row in (FIRST_SLIPS, FIRST_DEPARTURES):
