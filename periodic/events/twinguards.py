@@ -1,7 +1,8 @@
-"""Guards that are one function, up to a factor: always, or where joints are held.
+"""Guards that are the same function, up to a factor: always, or where joints are held.
 
-The speeds at which sliders side by side are strained are one. Where friction between two masses holds, they
-have one speed: so have the joints from either of them to the same place. What has one guard stops at once.
+Sliders in parallel are strained at the same speed. Where friction between two masses holds, both have the
+same speed, and so have the joints from either of them to the same place. Joints with the same guard stop
+simultaneously.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ SAME = EPSILON**0.5
 
 @dataclass
 class _Known:
-    """Gradients and values of a system at some states, and what was found of them, by guards."""
+    """Gradients and values of a system's switches at some states, and the twins found, by guards."""
 
     rows: Array
     twins: dict[tuple[int, ...], dict[int, int]] = field(default_factory=dict)
@@ -40,21 +41,10 @@ _KEPT: weakref.WeakKeyDictionary[System, _Known] = weakref.WeakKeyDictionary()
 
 
 def twins(system: System, switch: int, held: Sequence[int] = ()) -> dict[int, int]:
-    """Return the guards of surfaces at which motions may be held that are one function, this one first.
+    """Return the guards of surfaces that hold motions that are the same function, this one first.
 
-    Parameters
-    ----------
-    system : System
-        The system.
-    switch : int
-        A guard.
-    held : sequence of int
-        Guards of friction that is held: what differs by multiples of these is one.
-
-    Returns
-    -------
-    dict of int to int
-        The guards, each with the sign of the factor between it and the first.
+    Each has the sign of the factor between it and the first. held: guards of friction that is held; guards
+    that differ by multiples of these are the same.
     """
     every = of_held(system)
     if switch not in every or len(every) < 2:
@@ -67,9 +57,9 @@ def twins(system: System, switch: int, held: Sequence[int] = ()) -> dict[int, in
 
 
 def holding(system: System, switch: int, held: Sequence[int]) -> dict[int, int]:
-    """Return which of the held joints hold a guard at 0, with the signs of its parts along theirs.
+    """Return which of the held joints hold a guard at 0, with the signs of its coefficients.
 
-    Its guard is a sum of multiples of theirs. Empty where it is not.
+    The guard is a linear combination of their guards. Empty where it is not.
     """
     if not held or switch in held:
         return {}
@@ -80,7 +70,7 @@ def holding(system: System, switch: int, held: Sequence[int]) -> dict[int, int]:
 
 
 def _parts(rows: Array, switch: int, held: Sequence[int]) -> dict[int, int]:
-    """The signs of a guard's parts along those of held joints, if it has no others."""
+    """The signs of a guard's coefficients in the guards of held joints; empty if it is no combination."""
     if _less(rows, switch, held).any():
         return {}
     along = rows[:, list(held)]
@@ -90,7 +80,7 @@ def _parts(rows: Array, switch: int, held: Sequence[int]) -> dict[int, int]:
 
 
 def _alike(rows: Array, switch: int, every: Sequence[int], held: Sequence[int]) -> dict[int, int]:
-    """The twins, by gradients and values at some states, less what they have of those of held joints."""
+    """The twins, by gradients and values at some states, less their parts along the held joints' guards."""
     own, found = _less(rows, switch, held), {switch: 1}
     for k in every if own.any() else ():
         other = _less(rows, k, held)
@@ -101,7 +91,7 @@ def _alike(rows: Array, switch: int, every: Sequence[int], held: Sequence[int]) 
 
 
 def _known(system: System) -> _Known:
-    """What is known: gradients and values of all switches at some states, shape (LOOKS, switches, n+1)."""
+    """Gradients and values of all switches at some states, shape (LOOKS, switches, n+1), from a cache."""
     if system not in _KEPT:
         state, _ = system.rest(system.nominal)
         moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
@@ -112,7 +102,7 @@ def _known(system: System) -> _Known:
 
 
 def _less(rows: Array, switch: int, held: Sequence[int]) -> Array:
-    """A guard's gradients and values, (LOOKS, n+1), less their parts along those of held joints."""
+    """A guard's gradients and values, (LOOKS, n+1), less their projection on those of held joints."""
     own = rows[:, switch]
     if not held:
         return own

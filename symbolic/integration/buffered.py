@@ -1,4 +1,4 @@
-"""A CasADi function at one point again and again, without conversion of what it takes and returns."""
+"""A CasADi function evaluated point by point, without conversion of its arguments and results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Buffered:
         self.results: list[Array] = [np.zeros(_turned(function.size_out(k))) for k in range(function.n_out())]
         buffer: Any
         buffer, self._run = function.buffer()
-        self._buffer = buffer  # it must live as long as the other
+        self._buffer = buffer  # it must live as long as `_run`
         for k, array in enumerate(self.given):
             buffer.set_arg(k, array.data)
         for k, array in enumerate(self.results):

@@ -19,7 +19,7 @@ KEPT = 128
 """How many integrators are kept; each is for certain parts of an interval."""
 
 LENGTH = 1e6
-"""Every interval is run through in this time: CasADi takes times for one that are nearer than 1e-9."""
+"""Length to which every interval is scaled: CasADi takes times nearer than 1e-9 for the same time."""
 
 ROUNDING = 4.0
 """By how many units in its last place a phase is rounded, so that like parts of intervals are the same."""
@@ -65,7 +65,7 @@ class Cvodes:
         return found[place] if np.isfinite(found).all() else None
 
     def _integrator(self, parts: tuple[float, ...], tolerance: float) -> ca.Function:
-        """CVODES from the first of some parts of an interval to the others, kept; the oldest goes for it."""
+        """CVODES from the first of some parts of an interval to the others, from a cache."""
         key = (*parts, tolerance)
         if key not in self._integrators:
             while len(self._integrators) >= KEPT:
@@ -91,7 +91,7 @@ class Cvodes:
 
 
 def _rounded(phase: Array) -> Array:
-    """Phases as parts of their interval, to the decimals that their own rounding leaves."""
+    """Phases as parts of their interval, rounded to the decimals that are significant."""
     width = phase[-1] - phase[0]
     if not width:
         return np.zeros(len(phase))

@@ -2,9 +2,9 @@
 
 The step control of an integrator sees a kink where it evaluates the rates beside it. A short excursion past a
 level - a stop that is just touched - lies between two evaluations, and the motion goes on as if there were
-none. So the guards are looked at along the motion. Between neighbouring phases each is the cubic with its
-values and rates at both ends, known to the error of such cubics over two of these intervals; its Bernstein
-coefficients enclose it.
+none. So the guards are evaluated along the motion. Between neighbouring phases each is represented by the
+cubic with its values and rates at both ends; the error is estimated from such cubics over two of these
+intervals. Bernstein coefficients enclose the guard.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def lowest(values: Array, rates: Array, phase: Array) -> Array:
 
 
 def _fourth(s: Array, rate: Array, phase: Array) -> Array:
-    """s''''/24 on the K-1 intervals, by what cubics over two of them miss in between.
+    """s''''/24 on the K-1 intervals, from the error of cubics over two of them at the phase in between.
 
-    A cubic is off by s''''/24 (t - a)^2 (b - t)^2; of a single interval nothing is known.
+    A cubic is off by s''''/24 (t - a)^2 (b - t)^2; for a single interval that is unknown.
     """
     if len(phase) < 3:
         return np.full((len(phase) - 1, s.shape[1]), np.inf)

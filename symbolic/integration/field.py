@@ -1,7 +1,8 @@
 """The vector field of a system on given sides of its jumps, and the motions along it.
 
 The ODE is y' = f(y, tau, p, sigma), y = (x, z), of `symbolic.integration.rates`. CVODES integrates it: fast,
-though it gives up now and then where contact is lost; LSODA is slower and then takes its place.
+though it gives up now and then where contact is lost; LSODA is slower and then takes its place. A few single
+Runge-Kutta steps come before both, and Radau takes over for fast oscillations beside friction.
 """
 
 from __future__ import annotations
@@ -21,16 +22,16 @@ from symbolic.integration.rates import SENSITIVITY, constraint_rows, explicit_ra
 from symbolic.integration.runge import Steps
 
 RINGING = 1000.0
-"""Rad by which a mode turns along a motion from which on Radau integrates it: CVODES follows each cycle."""
+"""Oscillation of a mode (rad) in a motion above which Radau is used: CVODES resolves each cycle."""
 
 LOOSE = 1e-6
-"""Tolerance from which on it does; to a finer one it takes as many steps."""
+"""Finest tolerance at which Radau is used; at finer ones it takes as many steps."""
 
 CONSTRAINT_ITERATIONS = 20
 """Most Gauss-Newton steps onto the constraints."""
 
 FULFILLED = 1e-14
-"""Residual at which they are fulfilled."""
+"""Residual at which the constraints are fulfilled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,9 +41,9 @@ class VectorField:
     Parameters
     ----------
     expressions : Expressions
-        The equations; ValueError where they do not tell the rates.
+        The equations; ValueError where they are condensed, or not linear in the rates.
     sensitivity : float
-        Of their constraints: see `symbolic.integration.rates`.
+        Added to the derivatives of constraints: see `symbolic.integration.rates`.
     """
 
     expressions: Expressions
@@ -87,7 +88,7 @@ class VectorField:
         return np.concatenate([start[None], later])
 
     def _rings(self, start: Array, phase: Array, given: Array) -> bool:
-        """Whether beside friction a mode turns so often that Radau, which lets it die away, is faster."""
+        """Whether beside friction a mode oscillates so often that Radau, which damps it, is faster."""
         if not self.expressions.sided.slides:
             return False
         slope = np.array(self._slope(start, phase[0], given))

@@ -1,8 +1,8 @@
 """A motion followed from event to event: pieces in the same modes, from one zero of a guard to the next.
 
-A piece is integrated ahead, and the guards of its modes are looked at along it: where their enclosures do not
-say that they stay positive the phases are put closer, until that is known. Where one falls to 0 the motion
-is begun anew in the modes after the event, and mapped at an impact.
+A piece is integrated ahead, and the guards of its modes are evaluated along it. Where their enclosures do not
+prove that they stay positive, the phases are refined until that is decided. Where a guard falls to 0 the
+motion starts anew in the modes after the event, and is mapped at an impact.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from symbolic.integration.interrupts import heard
 from symbolic.integration.modes import Event, Guard, Modes, Switching
 
 LONGEST = math.pi / 32
-"""Longest interval (rad) between two phases at which guards are looked at."""
+"""Longest interval (rad) between two phases at which guards are evaluated."""
 
 PERIOD = 2 * math.pi
-"""Of the excitation, in tau: no more is integrated at once before it is known whether a piece ends."""
+"""Of the excitation, in tau: the longest stretch integrated before guards are checked along it."""
 
 LEAST = 4
 """Fewest intervals that are integrated at once."""
@@ -42,7 +42,7 @@ SHARP = 1e-3
 """The same in tolerances of the integration."""
 
 BESIDE = 1e-13
-"""How far beside its zero a guard is, in the same part, where a piece ends and the next begins."""
+"""Distance of a guard from 0, as a part of its largest value, where a piece ends and the next begins."""
 
 MOST_EVENTS = 1000
 """Most events in a period: after more they pile up in a point."""
@@ -66,7 +66,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Followed:
-    """A motion at the phases asked for, (K, w), the events on its way, and the modes at its end."""
+    """A motion at the given phases, (K, w), the events on its way, and the modes at its end."""
 
     values: Array
     passages: list[Passage]
@@ -92,7 +92,7 @@ class Seen:
     rates: Array
 
     def at(self, j: int, level: Array) -> list[Passed]:
-        """Return the guards above their levels at a phase."""
+        """Return the guards less their levels at a phase."""
         tau, y = float(self.phase[j]), self.y[j]
         each = zip(self.guards[j] - level, self.rates[j], strict=True)
         return [Passed(tau, y, float(value), float(rate)) for value, rate in each]
@@ -130,7 +130,7 @@ class Follower:
         """Integrate from phase[0] to all of `phase`, which rises. Raises IntegrationError.
 
         modes: those to begin with, by default as the state has them; earlier: those before, of which relays
-        and what slides keep theirs.
+        and friction that sticks keep theirs.
         """
         y = start
         if modes is None:
@@ -171,7 +171,7 @@ class Follower:
         self._least: Array | None = None
 
     def _ahead(self, y: Array, phase: Array) -> Array:
-        """The piece as far as it can be integrated at once: an event may come before the rest."""
+        """The piece as far as integration succeeds: an event may come before the point of failure."""
         count = len(phase)
         while True:
             if self._raised:
@@ -207,10 +207,7 @@ class Follower:
         return len(values) - 1, None
 
     def _doubts(self, seen: Seen) -> list[tuple[int, NDArray[np.int_], bool]]:
-        """The intervals in which guards may fall to 0, with those that are below it at their ends.
-
-        And whether no other guard may fall there.
-        """
+        """Intervals in which guards may fall to 0, those below 0 at the end, and whether no others may."""
         g = seen.guards
         self._size = np.maximum(self._size, np.abs(g).max(axis=0))
         if self._least is None:
@@ -222,7 +219,7 @@ class Follower:
 
     @property
     def _floor(self) -> Array:
-        """What guards fall below at an event: 0, or where they begin."""
+        """The levels that guards fall below at an event: 0, or where they begin, less rounding."""
         assert self._least is not None
         return np.asarray(self._least - NOISE * self._size - SHARP * self.switching.tolerance)
 
@@ -252,11 +249,11 @@ class Follower:
         return self.sweep(self._modes, y, np.array([tau, later]))[-1]
 
     def _above(self, k: int, level: Array) -> Callable[[float, Array], Passed]:
-        """A guard above its level along a motion."""
+        """A guard less its level along a motion."""
         return lambda tau, y: self._seen(y[None], np.array([tau])).at(0, level)[k]
 
     def _passed(self, found: Root, fallen: Sequence[Guard]) -> tuple[Array, float]:
-        """What an event makes of a motion."""
+        """Apply an event to the motion: y and the phase after it."""
         mapped, before = self.switching.maps(fallen), self._modes
         at, y = (found.before, found.y_before) if mapped else (found.after, found.y_after)
         if len(self._passages) == self._most:
@@ -275,7 +272,7 @@ class Follower:
 
 
 def _power_of_2(number: int) -> int:
-    """The largest that is no larger, so that few integrators do; 0 for 0."""
+    """The largest power of 2 up to a number, so that few integrators are needed; 0 for 0."""
     return 1 << number.bit_length() >> 1
 
 

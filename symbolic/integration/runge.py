@@ -1,8 +1,8 @@
 """Single steps of the method of Dormand and Prince of order 8, one from each phase to the next.
 
-A motion that is followed closely is wanted at phases so near to each other that one step leads from each to
-the next: faster than an integrator that begins anew with small ones. Where the error that the method
-estimates (Hairer, Norsett & Wanner 1993, II.10) is too large, nothing is returned.
+Where phases lie so near to each other that one step leads from each to the next, this is faster than an
+integrator that starts anew with small steps. Where the error that the method estimates (Hairer, Norsett &
+Wanner 1993, II.10) is too large, nothing is returned.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MOST = 32
 times of models with joints differ by no more than a tenth."""
 
 WEIGHTS = DOP853.B, DOP853.E5, DOP853.E3
-"""Of the stages in a step, and in the differences of methods of orders 5 and 3 from it."""
+"""Weights of the stages in a step, and in the differences of methods of orders 5 and 3 from it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,7 @@ class Steps:
 
     @cached_property
     def _step(self) -> Buffered:
-        """Of y, (tau, width), p: y after a step, and what methods of orders 5 and 3 differ from it."""
+        """Function of y, (tau, width), p: y after a step, and its differences for orders 5 and 3."""
         y, p, at = self.rates.sx_in(0), self.rates.sx_in(2), ca.SX.sym("at", 2)
         stages: list[ca.SX] = []
         for row, c in zip(DOP853.A, DOP853.C[: DOP853.n_stages], strict=False):

@@ -1,6 +1,6 @@
-"""Joints side by side: their guards are one function, so those that slip stop together, at one event node.
+"""Joints in parallel: their guards are the same function, so those that slip stop at one event node.
 
-Where they are let go together is said by `together`.
+Which of them are released together is decided by `together`.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
-    """Return where a joint begins to slip, or to be held, with what its twins do at the same event nodes.
+    """Return a site where a joint begins to slip, or to be held, with its twins at the same event nodes.
 
-    A slider that begins to slip where the strain turns stops where the others do; where the strain turns back
-    for a while all that slip are held together, and let go together.
+    A slider that begins to slip where the strain turns stops where the others do. Where the strain turns back
+    for a while, all sliders that slip are held together, and released together.
     """
     assert isinstance(site.at, Extremum)
     guard = surface_of(system, site.switch).switch
@@ -42,7 +42,7 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
 
 
 def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> int | None:
-    """The event node at which others stop where a strain turns: at that phase, or where friction holds it."""
+    """The event node at which twins stop as the strain turns: at that phase, or before, held by friction."""
     for j, event in enumerate(orbit.mesh.events):
         if event.switch not in both:
             continue
@@ -60,9 +60,9 @@ def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> i
 
 
 def leading(system: System, orbit: Orbit, surface: SurfaceLike, interval: int) -> tuple[SurfaceLike, int]:
-    """Return the surface whose grazing-sliding that of another one is, and the sign between their guards.
+    """Return the surface whose row grazing-sliding of a surface is, and the sign between their guards.
 
-    Of dry friction beside sliders it is that of friction.
+    It is dry friction in parallel with sliders, where there is any, else the surface itself.
     """
     both = twins(system, surface.switch, held_in(system, orbit, interval))
     each = ((surface_of(system, k), sign) for k, sign in both.items())
@@ -70,7 +70,7 @@ def leading(system: System, orbit: Orbit, surface: SurfaceLike, interval: int) -
 
 
 def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: dict[int, int]) -> Site:
-    """All that slip about the turn are held for a while."""
+    """The site at which all joints that slip about the turn are held for a while."""
     assert isinstance(site.at, Extremum)
     stop, release = site.added
     way = release.event.direction
