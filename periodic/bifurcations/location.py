@@ -137,8 +137,7 @@ def _check_ways(pieces: list[Found]) -> None:
 def _folds(within: WithinStep, new: Solution, ds: float, sought: Sought) -> list[Found]:
     """Locate the folds within a step, those that are more than an error of the parameter.
 
-    A fold that cannot be told from a change of pattern at the step's end is put there, or named with the
-    points beyond it.
+    One that cannot be told from a change of pattern at the end is put there, or named with points beyond.
     """
     base = within.base
     if FOLD.value(base) * FOLD.value(new) < 0 and not has_fold(base, new, ds):

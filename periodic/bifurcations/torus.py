@@ -24,8 +24,7 @@ def noise(solution: Solution) -> float:
 def torus(solution: Solution) -> float:
     """prod over i < j of (1 - mu_i mu_j) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error.
 
-    It is also 0 where multipliers are lost to rounding. The product for damped multipliers alone is positive,
-    so the sign does not depend on how many of them are known.
+    It is also 0 where they are lost to rounding. How many damped ones are known does not change its sign.
     """
     spectrum = solution.spectrum
     return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0

@@ -182,14 +182,8 @@ class ModalFloquet:
     def left(self, states: Array, modes: Complex) -> Array:
         """Return the coordinates at the end of the period, (coordinates, r), due to a disturbed motion.
 
-        Of systems without own states.
-
-        Parameters
-        ----------
-        states : ndarray, shape (N, a, s, r)
-            The disturbance of the states at the points.
-        modes : ndarray of complex, shape (J, r)
-            The disturbance of the modes at the end.
+        Of systems without own states. The disturbances are `states` (N, a, s, r) at the points, and `modes`
+        (J, r) at the end.
         """
         system = self._system
         flat = states.reshape(system.points, len(system.places), -1)

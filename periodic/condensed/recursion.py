@@ -119,17 +119,9 @@ class IntervalRecursion:
     ) -> tuple[Array, Complex, Array]:
         """Return unknowns (size, r), modes (J, r) and own states (o, r) at the end of the period.
 
-        Parameters
-        ----------
-        right : ndarray, shape (size, r), optional
-            Right-hand sides of the system's equations; none by default.
-        modes : ndarray of complex, shape (J, r)
-            Modes at the beginning.
-        own : ndarray, shape (o, r)
-            Own states at the beginning.
-        passed : dict, optional
-            Filled with the jumps of modes and own states at events, at fixed tau, by interval; without it
-            event nodes are held, and nothing jumps.
+        `right` (size, r) are right-hand sides of the system's equations, None for 0; `modes` and `own` are
+        those at the beginning. `passed` is filled with the jumps of modes and own states at events, at fixed
+        tau, by interval; without it event nodes are held, and nothing jumps.
         """
         response, exponents = self.response, self.response.modes.exponents
         found = np.zeros((len(self.intervals), self.inverse.shape[1], modes.shape[1]))

@@ -34,8 +34,8 @@ LARGEST = 1e9
 class CondensedRefinement(CollocationRefinement):
     """Uniform meshes for systems without switches: tables of one interval then serve for all.
 
-    With switches, intervals whose forces do not depend on the motion need only resolve it and its excitation,
-    as it is exact for its forces; the others are also as short as the multipliers require.
+    With switches, as motion is exact for its forces, intervals without active forces need only resolve the
+    motion and its excitation, evenly; the others are also as short as the multipliers require.
     """
 
     @property

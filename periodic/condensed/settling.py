@@ -61,7 +61,7 @@ def settled(system: System, start: Orbit) -> Iterator[Orbit]:
 
 
 def _settles(motion: Motion, still: float) -> bool:
-    """Whether a motion, followed for PERIODS, comes to change in one by at most `still` of peak to peak."""
+    """Advance a motion, up to PERIODS, until it repeats to `still` of its peak to peak; whether it does."""
     for _ in range(PERIODS):
         side = motion.side
         motion.period()

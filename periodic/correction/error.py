@@ -173,7 +173,7 @@ def deferred(
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
     Where the equations change at events, the multipliers depend on the events' phases, so on the orbit's own
-    error: they are compared with those of the better orbit, at the same parameter but near a fold.
+    error: they are compared with those of the better orbit, at the same parameter except near a fold.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ class _OnBranch:
     size: float
 
     def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
-        """Return them at the better orbit of the same parameter, or beside a fold. Raises FAILURES.
+        """Return them at the better orbit of the same parameter, beside a fold the nearest. Raises FAILURES.
 
         Rounding of the parameter, which beside a grazing moves a contact, is added to the way with the sign
         for which lengths of excursions change more.

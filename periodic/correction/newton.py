@@ -303,8 +303,7 @@ class Equations:
 def stretched(orbit: Orbit, increment: Increment) -> float:
     """Return the largest change of a segment's length, relative to it where it is less than 1 rad.
 
-    Multipliers depend on how long a contact is. For convergence the change's square counts, which is about
-    the error that the step leaves.
+    Multipliers depend on a contact's length. For convergence the change counts squared, as the error left.
     """
     if len(increment.phases) == 0:
         return 0.0

@@ -76,8 +76,7 @@ class Problem:
     Raises
     ------
     ValueError
-        For names that are no parameters of the system, bounds that are no range, and objects of `determined`
-        that are no conditions.
+        For names that are no parameters of the system, bounds that are no range, and a wrong condition.
     """
 
     system: System = field(repr=False)

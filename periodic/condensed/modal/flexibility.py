@@ -37,7 +37,7 @@ class Flexibility:
         Factors, (J,) each, for the modes and their conjugates: z(0) is the factor times the response at the
         end of the period of modes that begin at rest. Default 0, z(0) = 0.
     past : bool
-        Whether forces act directly on later states of the same period; else through `closing` alone.
+        Whether forces act directly on states in the same period; else through `closing` alone.
     """
 
     response: Response

@@ -192,14 +192,9 @@ class Response:
         return np.asarray(found.reshape(count, points, -1, r))
 
     def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
-        """Return states at the points (N, a, s, r) and modes at the end (J, r) of motions from z(0).
+        """Return states at the points (N, a, s, r) and modes at the end (J, r) of r motions.
 
-        Parameters
-        ----------
-        forces : ndarray, shape (N, b, k, r)
-            Forces of r motions.
-        begun : ndarray of complex, shape (J, r)
-            z(0).
+        They begin with z(0) = `begun`, (J, r), under forces (N, b, k, r).
         """
         driven, grown = self._chain(self._kicks(forces))
         at = np.concatenate([begun[None], driven + grown[:, :, None] * begun])

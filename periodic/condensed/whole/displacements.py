@@ -67,8 +67,7 @@ def displacements(
 ) -> Array:
     """Return displacements (SI) of nodes of a structure, (K, nodes), whether it is condensed or not.
 
-    A node is the name of its output, read from a system with all states, and the index of its degree of
-    freedom, read from a condensed one.
+    A node is its output's name, for systems with all states, and its degree of freedom, for condensed ones.
     """
     if linear_of(system) is None:
         return np.stack([orbit[name](tau / orbit.omega) for name, _ in nodes], axis=1)
