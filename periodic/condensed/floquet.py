@@ -135,7 +135,7 @@ class ModalFloquet:
 
     @cached_property
     def _grown(self) -> tuple[Array, Array, NDArray[np.int_]]:
-        """Growth of uncoupled modes over a period: factors of a coordinate and of its partner, partners."""
+        """Growth of uncoupled modes over a period: factors of coordinates and of partners, the partners."""
         growth, own = self.given.response.growth[-1], np.zeros(len(self.given.others))
         count = len(growth)
         factor = np.concatenate([growth.real, growth.real, own])[self.kept]

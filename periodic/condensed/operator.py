@@ -163,5 +163,5 @@ class CondensedOperator:
 
     @property
     def fundamental(self) -> Array:
-        """Fundamental matrices in the basis of the leading subspace, (N+1, r, r); the last if `brief`."""
+        """Fundamental matrices in the basis of the leading subspace, (N+1, r, r); or the last alone."""
         return self.leading.monodromy[None] if self.brief else self.leading.fundamental

@@ -4,8 +4,8 @@ With G_mu the map from forces with f(T) = mu f(0) to the places, its modes close
 
     K_mu (f, s) = f - F'(G_mu f, s),  s' - S'(G_mu f, s),
 
-is singular just where mu is a Floquet multiplier. Its gradient in the orbit needs the second derivatives of
-the system's own rows, and those of G, by differences only in parameters that the motion changes.
+is singular just where mu is a Floquet multiplier. Its gradient in the orbit is exact, from derivatives of G
+and second derivatives of the system's rows, but for differences of G in parameters that the motion changes.
 """
 
 from __future__ import annotations
