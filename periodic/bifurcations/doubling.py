@@ -51,7 +51,7 @@ def doubling(solution: Solution) -> float:
 
 
 def known(solution: Solution) -> bool:
-    """Whether rounding has left the multipliers, with errors small enough to locate special points."""
+    """Whether the multipliers are known despite rounding, and well enough to locate special points."""
     return solution.spectrum.known and trusted(solution)
 
 

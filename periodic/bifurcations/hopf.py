@@ -30,7 +30,7 @@ ON_AXIS = 1e-4
 """Largest real part of a pair that counts as imaginary, as a part of its modulus."""
 
 FIRST_LENGTHS = (1.0, 0.25, 1 / 16)
-"""Where the first orbit is looked for, in units of FIRST_DISTANCE."""
+"""Distances at which the first orbit is sought, in units of FIRST_DISTANCE."""
 
 
 def eigenvalues(system: System, orbit: Orbit, frequency: str = "omega") -> NDArray[np.complex128]:

@@ -26,7 +26,7 @@ class Local:
     """The rows at the points, each a map of (1, d rate, d state, dy) with y the event phases and parameters.
 
     forces (P, k, w): the increments of the forces; own (P, o, w): rows of the own states; unknowns (P, m, w):
-    increments of all unknowns; residual the largest one; rows (o,): which rows are those of own states.
+    increments of all unknowns; residual: the largest one; rows (o,): which rows are those of own states.
     """
 
     forces: Array
@@ -37,9 +37,9 @@ class Local:
 
 
 def exempt(system: System) -> tuple[int, ...]:
-    """Return the states of the linear part that are exempt from interpolation between mesh points.
+    """Return the states of the linear part whose interpolation errors between mesh points do not count.
 
-    These are the velocities, to which all modes contribute, without those on which a jump's switch depends.
+    They are the velocities, to which all modes contribute, without those on which a jump's switch depends.
     """
     part, jumps = linear_of(system), list(jumps_of(system))
     if part is None or not jumps:
@@ -98,7 +98,7 @@ class SplitLinearisation:
     Parameters
     ----------
     orbit : Orbit
-        Where it is linearised.
+        The orbit about which it is linearised.
     part : LinearPart
         The linear part.
     response : Response
@@ -160,7 +160,7 @@ class SplitLinearisation:
 
     @cached_property
     def _motion(self) -> tuple[Complex, Array]:
-        """The modes' periodic motion under the forces, (N+1, J), and the states that it shows, (N, a, s)."""
+        """The modes' periodic motion under the forces, (N+1, J), and the states in it, (N, a, s)."""
         return self.response.motion(self.forces)
 
     @cached_property
@@ -175,7 +175,7 @@ class SplitLinearisation:
 
     @cached_property
     def affine(self) -> Array:
-        """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
+        """Increments of the linear part's states as a map of (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
         return np.concatenate([(self._motion[1] - stages)[..., None], self._slopes[0]], axis=3).reshape(

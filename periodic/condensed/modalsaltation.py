@@ -41,7 +41,7 @@ class ModalSaltation:
 
 
 def saltations(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[ModalSaltation]:
-    """Return the events of an orbit at which forces jump, or rates of own states, in order.
+    """Return the events of an orbit at which forces or rates of own states jump, in order.
 
     Raises numpy.linalg.LinAlgError where ds/dtau is 0 at an event, or forces there are not found.
     """

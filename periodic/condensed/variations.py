@@ -31,7 +31,7 @@ class CondensedVariations:
     system : System
         The equations.
     given : SplitLinearisation
-        The same about the orbit, with all modes.
+        The system about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change.
     """

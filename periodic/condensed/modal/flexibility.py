@@ -17,9 +17,9 @@ Matrix = NDArray[Any]
 """Real or complex."""
 
 SPREAD = 300.0
-"""Largest decay (nepers) of a mode over a run of intervals at which one matrix product does for all of them.
+"""Largest decay (nepers) of a mode over a run of intervals whose responses one matrix product gives.
 
-Factors as large as exp(SPREAD) appear in it: a mode that decays faster is followed from interval to interval.
+Its factors are as large as exp(SPREAD): a mode that decays faster is followed from interval to interval.
 """
 
 
@@ -37,7 +37,7 @@ class Flexibility:
         Factors, (J,) each, for the modes and their conjugates: z(0) is the factor times the response at the
         end of the period of modes that begin at rest. Default 0, z(0) = 0.
     past : bool
-        Whether the effect of forces within the same period counts; else only that through `closing` does.
+        Whether forces act directly on states in the same period; else through `closing` alone.
     """
 
     response: Response
@@ -62,7 +62,7 @@ class Flexibility:
 
     @property
     def intervals(self) -> NDArray[np.int_]:
-        """All of them."""
+        """Indices of all intervals."""
         return np.arange(len(self.response.grid.width))
 
     @cached_property
@@ -107,7 +107,7 @@ class Flexibility:
         return found[self.intervals if everywhere else intervals][:, :, :, intervals]
 
     def block(self, intervals: NDArray[np.int_], *, everywhere: bool) -> Matrix:
-        """Return the same block for all forces and states."""
+        """Return the block of `part` for all forces and states."""
         rows = self.intervals if everywhere else intervals
         if len(intervals) == len(self.intervals):
             return self.whole
@@ -184,7 +184,7 @@ class Flexibility:
             found[here + count :] += real_product(outputs, columns).reshape(len(start), *found.shape[1:])
 
     def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
-        """Responses of some modes to earlier intervals of a run by one product."""
+        """Responses of some modes to forces in earlier intervals of a run, by one matrix product."""
         response = self.response
         exponents, begun = response.modes.exponents[chosen], response.start[inside.start]
         ahead = np.exp(exponents * (response.start[inside] - begun)[:, None])
@@ -195,7 +195,7 @@ class Flexibility:
         return found.reshape(*outputs.shape[:3], *left.shape[1:])
 
     def _chained(self, chosen: NDArray[np.int_], inside: slice) -> Array:
-        """The same, step by step from interval to interval, for modes that decay too fast for one product."""
+        """Responses as in `_spread`, interval by interval, for modes that decay too fast for one product."""
         response, size = self.response, len(chosen)
         outputs = response.stage_outputs[inside][..., chosen]
         left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)

@@ -80,7 +80,7 @@ class Response:
 
     @property
     def _shared(self) -> Sequence[str]:
-        """What depends on mesh and exponents alone."""
+        """Names of cached values that depend on mesh and exponents alone."""
         return "_distinct", "_table", "closing"
 
     @property
@@ -90,17 +90,17 @@ class Response:
 
     @cached_property
     def _table(self) -> Table:
-        """Of the distinct widths, (U J, ...)."""
+        """Moments for the distinct widths, (U J, ...)."""
         return self.moments.table((self._distinct[0][:, None] * self.modes.exponents).ravel())
 
     @cached_property
     def table(self) -> Table:
-        """Of all intervals, (N, J, ...)."""
+        """Moments for all intervals, (N, J, ...)."""
         return self._table.take(self._distinct[1], len(self.modes.exponents))
 
     @cached_property
     def grown(self) -> Complex:
-        """How the modes grow in each interval, (N, J)."""
+        """Growth factors of the modes over each interval, (N, J)."""
         growth = self._table.growth[:, -1].reshape(-1, len(self.modes.exponents))
         return np.asarray(growth[self._distinct[1]])
 
@@ -117,12 +117,12 @@ class Response:
 
     @cached_property
     def end(self) -> Array:
-        """Phases of their right ends, (N,)."""
+        """Phases of the intervals' right ends after the first left end, (N,)."""
         return self.start + self.grid.width
 
     @cached_property
     def local(self) -> Array:
-        """States at the points of an interval by its own forces, (N, a, s, b, k)."""
+        """States at the points of an interval per unit of its own forces, (N, a, s, b, k)."""
         widths, which = self._distinct
         modes, count = self.modes, self.scheme.ncol
         s, k = modes.direct.shape
@@ -139,14 +139,14 @@ class Response:
 
     @cached_property
     def impulse(self) -> Complex:
-        """Modes at the end of an interval by the forces in it, the modes at rest before: (N, J, b, k)."""
+        """Modes at the end of an interval per unit of the forces in it, from rest before: (N, J, b, k)."""
         widths, which = self._distinct
         moment = self._table.moment[:, -1].reshape(len(widths), len(self.modes.exponents), -1, 1)
         return np.asarray((widths[:, None, None, None] * moment * self.modes.inputs[:, None, :])[which])
 
     @cached_property
     def stage_outputs(self) -> Complex:
-        """States at the points by the modes at the left end, (N, a, s, J)."""
+        """States at the points per unit of the modes at the left end, (N, a, s, J)."""
         widths, which = self._distinct
         growth = np.swapaxes(self._table.growth.reshape(len(widths), len(self.modes.exponents), -1), 1, 2)
         return np.asarray((growth[:, :, None, :] * self.modes.outputs)[which])
@@ -154,7 +154,7 @@ class Response:
     def history(self, forces: Array, closing: Complex | None = None) -> Complex:
         """Return the modes at the mesh points in periodic motion, (N+1, J, ...); forces (N, b, k, ...).
 
-        With a `closing` of `closings`, in motion that is multiplied by a number over the period.
+        With one of `closings` as `closing`, the motion is multiplied by a number over the period.
         """
         found = self.closed(self._kicks(forces), self.closing if closing is None else closing)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
@@ -192,14 +192,9 @@ class Response:
         return np.asarray(found.reshape(count, points, -1, r))
 
     def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
-        """Return states at the points (N, a, s, r) and modes at the end (J, r) of motions from z(0).
+        """Return states at the points (N, a, s, r) and modes at the end (J, r) of r motions.
 
-        Parameters
-        ----------
-        forces : ndarray, shape (N, b, k, r)
-            Forces of r motions.
-        begun : ndarray of complex, shape (J, r)
-            z(0).
+        They begin with z(0) = `begun`, (J, r), under forces (N, b, k, r).
         """
         driven, grown = self._chain(self._kicks(forces))
         at = np.concatenate([begun[None], driven + grown[:, :, None] * begun])
@@ -211,7 +206,7 @@ class Response:
         return np.concatenate([np.zeros_like(left[:1]), self._chain(left)[0]])
 
     def _kicks(self, forces: Array) -> Complex:
-        """Modes at the end of each interval by forces (N, b, k, ...) in it, from rest before: (N, J, r)."""
+        """Modes at the end of each interval due to forces (N, b, k, ...) in it, from rest: (N, J, r)."""
         count, size = len(forces), len(self.modes.exponents)
         flat = forces.reshape(count, forces.shape[1] * forces.shape[2], -1)
         if not self.uniform:
@@ -220,7 +215,7 @@ class Response:
         return np.ascontiguousarray(found.reshape(size, count, -1).transpose(1, 0, 2))
 
     def _states(self, forces: Array, at: Complex) -> Array:
-        """States at the points (N, a, s, ...) by forces (N, b, k, ...) and modes at left ends (N, J, r)."""
+        """States at the points (N, a, s, ...) from forces (N, b, k, ...), modes at left ends (N, J, r)."""
         count, points = forces.shape[:2]
         flat = forces.reshape(count, points * forces.shape[2], -1)
         own = self.local.reshape(count, -1, flat.shape[1]) @ flat
@@ -228,7 +223,7 @@ class Response:
         return np.asarray((own + self._driven_states(at)).reshape(shape))
 
     def _driven_states(self, at: Complex) -> Array:
-        """States at the points by the modes at the left ends, (N, J, r): shape (N, a s, r)."""
+        """States at the points due to modes at the left ends, (N, J, r): shape (N, a s, r)."""
         count, size, r = at.shape
         rows = self.stage_outputs.reshape(count, -1, size)
         if not self.uniform:
@@ -257,7 +252,7 @@ class Response:
         """Return the derivatives of states at the points, (N, a, s, q), and modes at the beginning, (J, q).
 
         The first directions change the intervals' widths, further ones the modes. States are complex here;
-        `slopes` makes the real ones of them, and allows for modes that do not change and for complex forces.
+        `slopes` takes their real parts, and allows for modes that do not change and for complex forces.
         """
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
@@ -319,7 +314,7 @@ class Response:
         return whole
 
     def closed(self, left: Complex, closing: Complex) -> Complex:
-        """Return the modes at the mesh points, (N+1, J, ...); `left`: what each interval adds at its end."""
+        """Return the modes at the mesh points, (N+1, J, ...); `left`: the addition of each interval."""
         size = [1] * (left.ndim - 2)
         driven, grown = self._chain(left)
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
@@ -328,25 +323,25 @@ class Response:
         return found
 
     def _chain(self, left: Complex) -> tuple[Complex, Complex]:
-        """Modes at the right ends from z(0) = 0 by additions `left`, and their growth since tau_0, (N, J)."""
+        """Modes at the right ends from z(0) = 0 with additions `left`; growth factors from tau_0, (N, J)."""
         return _joined(left.copy(), self.grown.copy())
 
     @cached_property
     def growth(self) -> Complex:
-        """How the modes have grown at the mesh points, (N+1, J)."""
+        """Growth factors of the modes from tau_0 to the mesh points, (N+1, J)."""
         return np.exp(self.modes.exponents * np.append(self.start, self.period)[:, None])
 
     def grown_since(self, node: int) -> Complex:
-        """Return how the modes have grown at the mesh points from one of them on, (N+1 - node, J)."""
+        """Return growth factors of the modes from a mesh point to it and the later ones, (N+1 - node, J)."""
         times = np.append(self.start, self.period)[node:]
         return np.exp(self.modes.exponents * (times - times[0])[:, None])
 
     def ahead(self, intervals: NDArray[np.int_]) -> Complex:
-        """Return the states at the points of some intervals by the modes at the beginning, (R, a, s, J)."""
+        """Return the states at points of some intervals per unit of the initial modes, (R, a, s, J)."""
         return np.asarray(self.stage_outputs[intervals] * self.growth[intervals, None, None])
 
     def left(self, intervals: NDArray[np.int_]) -> Complex:
-        """Return what forces of some intervals leave in the modes at the end of the period, (J, C, b, k)."""
+        """Return the modes at the end of the period per unit of forces in some intervals, (J, C, b, k)."""
         after = self.period - self.end[intervals]
         left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse[intervals]
         return np.moveaxis(left, 1, 0)
@@ -372,12 +367,12 @@ def real_product(rows: Complex, columns: Complex) -> Array:
 
 
 def _driving(forces: Array, inputs: Complex) -> Complex:
-    """Forces (N, b, k) as they drive the modes, (N, J, b)."""
+    """Modal forces, (N, J, b), due to forces (N, b, k)."""
     return np.asarray((forces @ inputs.T).transpose(0, 2, 1))
 
 
 def _applied(response: Response, moment: Complex, driven: Complex) -> Complex:
-    """Moments (N, J, a, b) of what drives the modes, (N, J, b): shape (N, J, a)."""
+    """Moments (N, J, a, b) times modal forces (N, J, b): shape (N, J, a)."""
     if response.uniform:
         return np.asarray((moment[0] @ driven.transpose(1, 2, 0)).transpose(2, 0, 1))
     return np.asarray((moment @ driven[..., None])[..., 0])

@@ -31,8 +31,8 @@ def slopes(
     changes : list of ModesLike or None
         Changes of the modes in further ones.
     multiplier : complex
-        What forces and motion are multiplied by over the period; with a complex one the forces may be
-        complex, and the modes at the beginning are left out.
+        The factor of forces and motion over the period. Where it is complex the forces may be complex; the
+        derivatives of the modes at the beginning then lack those of the conjugate modes.
     history : ndarray of complex, shape (N+1, J), optional
         The modes' motion under real forces, if it is known.
     """
