@@ -11,8 +11,8 @@ PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadf
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
-# The rooms of periodic/ whose computations kernels do.
-KERNEL_ROOMS := bifurcations collocation condensed conditions correction events linear refinement stability tracing
+# The rooms of periodic/ with code for kernels; problems and studies run with those in C where they can.
+KERNEL_ROOMS := collocation condensed correction linear
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
