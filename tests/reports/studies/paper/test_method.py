@@ -133,6 +133,7 @@ def test_band_does_not_close_with_the_step() -> None:
     assert band.swing[6] * 1e6 == pytest.approx(3.865414, rel=1e-5)
 
 
+@pytest.mark.long
 def test_failures_begin_with_loss_of_contact() -> None:
     """Assert that with 0.02 ms all failures follow the exact motion's loss of contact, the steps stable."""
     band = stepped_at(Form.THIRD_ORDER, 2e-5)

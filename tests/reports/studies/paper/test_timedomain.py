@@ -117,6 +117,7 @@ def test_spectrum_of_two_sines() -> None:
     assert found.amplitude.max() == pytest.approx(2.0, rel=0.02)
 
 
+@pytest.mark.long
 def test_thin_oil_is_not_settled_after_a_second() -> None:
     """Assert that oil B still swings 1.8 times its settled motion after 1 s, and decays slowly."""
     late = trusted(B, DURATION[B]).during(0.95, 1.0)
