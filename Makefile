@@ -11,6 +11,10 @@ PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadf
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
+# The rooms of periodic/ with code for kernels; problems and studies run with those in C anyway,
+# and test_kernels.py with both.
+KERNEL_ROOMS := collocation condensed correction linear
+
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
 SEED ?= 2028
@@ -31,7 +35,7 @@ test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST)
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
-	ORBITRACE_KERNELS=c $(PYTEST) tests/periodic
+	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) --ignore tests/periodic/collocation/test_kernels.py
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long

@@ -21,7 +21,7 @@ class ByName(dict[str, float]):
     Parameters
     ----------
     what : str
-        What has the names.
+        What the error message calls the names, such as "parameter".
     numbers : mapping of str to float
         The numbers.
     """
@@ -38,7 +38,7 @@ class ByName(dict[str, float]):
 
 
 def number(name: str, value: Any) -> float:
-    """Return a real number, infinities and NaN included. Raises ValueError for what is none."""
+    """Return a real number, infinities and NaN included. Raises ValueError for anything else."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         raise ValueError(f"{name} is {value!r}; it must be a number")
     return float(value)
@@ -81,7 +81,7 @@ def one_of(name: str, value: Any, known: Collection[str]) -> str:
 
 
 def named(name: str, value: Any, what: str) -> Mapping[str, Any]:
-    """Return a mapping from names that are texts. Raises ValueError for what is none."""
+    """Return a mapping whose keys are texts, none of them empty. Raises ValueError for anything else."""
     if not isinstance(value, Mapping) or not all(isinstance(key, str) and key for key in value):
         raise ValueError(f"{name} is {value!r}; it must give {what} by their names")
     return value

@@ -16,6 +16,7 @@ if "ORBITRACE_KERNELS" not in os.environ:
 
 import periodic as per  # noqa: E402
 from periodic.tracing import trace as tracing  # noqa: E402
+from symbolic.kernels import native  # noqa: E402
 
 # A shell has Ctrl-C ignored in what it runs in the background; tests that send it need it heard.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -39,6 +40,15 @@ def _noted(join: Callable[..., "per.Branch"]) -> Callable[..., "per.Branch"]:
 
 
 tracing._joined = _noted(tracing._joined)
+
+
+@pytest.fixture(scope="module")
+def users_kernels() -> Iterator[None]:
+    """Systems of a module are compiled with the kernels that a user gets, unless some are asked for."""
+    with pytest.MonkeyPatch.context() as patch:
+        if "ORBITRACE_KERNELS_UNASKED" in os.environ and native.compiler() is not None:
+            patch.setenv("ORBITRACE_KERNELS", "c")
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -29,7 +29,7 @@ def crossing(
 ) -> tuple[float, Solution] | None:
     """Return distance and solution where a test function changes sign between two distances from the base.
 
-    None where it cannot be followed to there.
+    None where the branch cannot be followed to it.
     """
     known = {end: within.at(end).once(test.value) for end in ends}
     place, length = _root(known, *ends), ends[1] - ends[0]

@@ -12,7 +12,7 @@ from periodic.correction.solution import Solution
 from periodic.stability.winding import pair_crossings
 
 TOUCHED = 0.01
-"""What a multiplier that touches 1 leaves of prod (1 - mu), as a part of that at the step's ends."""
+"""Largest prod (1 - mu) where a multiplier touches 1, as a part of that at the step's ends."""
 
 
 def branching(solution: Solution) -> float:

@@ -19,16 +19,16 @@ NEGATIVE = 1e-3
 def product_test(found: Complex, at: int) -> float:
     """prod (1 - at mu) / (1 + |mu|) of given multipliers, at = 1 or -1.
 
-    Each factor is over its size, so that none overflows. Of real multipliers only those past `at` change the
-    sign: how many damped ones are among the leading of many does not matter.
+    Factors are scaled so that none overflows. Only a real multiplier beyond `at` makes one negative, so the
+    sign does not depend on how many damped ones are known where only the leading multipliers are.
     """
     return float(math.prod(_factors(found, at)).real)
 
 
 def nearest(found: Complex, at: int) -> float:
-    """The two factors of `product_test` that are nearest 0, with its sign: a pair about to pass.
+    """The product of the two smallest moduli of factors of `product_test`, with its sign.
 
-    The product of all dips wherever one of many pairs passes.
+    These are of the pair about to pass `at`; the product of all dips wherever one of many pairs turns by.
     """
     factors = _factors(found, at)
     return math.copysign(math.prod(sorted(map(abs, factors))[:2]), math.prod(factors).real)
@@ -39,7 +39,7 @@ def _factors(found: Complex, at: int) -> list[complex]:
 
 
 def dips(base: Solution, new: Solution, at: int) -> list[tuple[float, float]]:
-    """Where pairs turn past `at` between two orbits, and what `nearest` is there if they stay pairs."""
+    """Where complex pairs turn past `at` between two orbits, and `nearest` there if they stay complex."""
     found = pair_crossings(base.spectrum, new.spectrum, at)
     return [(place, ((1 - modulus) / (1 + modulus)) ** 2) for place, modulus in found]
 
@@ -51,20 +51,20 @@ def doubling(solution: Solution) -> float:
 
 
 def known(solution: Solution) -> bool:
-    """Whether the multipliers are more than rounding, and known as well as the discretisation can."""
+    """Whether the multipliers are known despite rounding, and well enough to locate special points."""
     return solution.spectrum.known and trusted(solution)
 
 
 def trusted(solution: Solution) -> bool:
-    """Whether the error of the multipliers is one with which the discretisation's tell special points."""
+    """Whether the error of the multipliers is below the method's limit for locating special points."""
     limit = solution.discretisation.trusted
     return limit == np.inf or solution.error.multiplier < limit
 
 
 def doubles_twice(base: Solution, new: Solution) -> bool:
-    """Whether the orbits may double between two orbits and be single again at the second.
+    """Whether two period doublings may lie within a step, so that the test has one sign at both its ends.
 
-    A pair of multipliers turns past -1, or is real and negative at one end, on its way out or back.
+    A complex pair turns past -1, or two multipliers at one end are real and negative: either may pass -1.
     """
     ends = [end.spectrum.multipliers for end in (base, new)]
     negative = [int(((mu.imag == 0) & (mu.real < -NEGATIVE)).sum()) for mu in ends]

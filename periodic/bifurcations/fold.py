@@ -11,14 +11,14 @@ from periodic.correction.solution import Solution
 from periodic.linear.unknowns import size_of
 
 LEAST_SLOPE = 1e-10
-"""Slopes smaller than this, in ranges of the parameter, are rounding."""
+"""Slopes smaller than this times the length of the parameter's range are rounding."""
 
 
 VERTICAL = 1e-5
-"""Slopes smaller than this, in ranges of the parameter, are those of a fold or of a vertical branch."""
+"""Slopes smaller than this times the length of the parameter's range are at a fold or a vertical branch."""
 
 FOLD_ARCLENGTH = 0.005
-"""On a vertical branch a fold is one if the parameter changes by more than its error over this arclength."""
+"""Least arclength over which the bend at a fold is measured against the error of the parameter."""
 
 
 def slope(solution: Solution) -> float:
@@ -44,7 +44,7 @@ def has_two_folds(base: Solution, new: Solution) -> bool:
 def moves(base: Solution, new: Solution) -> float:
     """Return by how much the parameter changes between two solutions, less its error (SI).
 
-    The error is that across the branch where it is vertical, as in a canard explosion.
+    On a vertical branch, as in a canard explosion, the error is the estimated one; elsewhere rounding alone.
     """
     return max(abs(new.value - base.value) - _blur(base, new), 0.0)
 
@@ -52,7 +52,7 @@ def moves(base: Solution, new: Solution) -> float:
 def has_fold(base: Solution, new: Solution, ds: float) -> bool:
     """Whether a change of sign of the slope within a step is a fold, or error of the parameter.
 
-    It is a fold if the arc rises above its chord by more than that error.
+    It is a fold if the arc rises above its chord by more than that error, over at least FOLD_ARCLENGTH.
     """
     bend = abs(new.tangent.parameter - base.tangent.parameter) / ds
     return bend * max(ds, FOLD_ARCLENGTH) ** 2 / 8 > _blur(base, new)
@@ -66,4 +66,4 @@ def _blur(base: Solution, new: Solution) -> float:
 
 
 FOLD = TestFunction(label=Label.FOLD, value=slope, twice=has_two_folds)
-"""The error of its parameter is of second order in that of its place; of other points of first order."""
+"""An error in the place along the branch changes the parameter to second order; at other points to first."""

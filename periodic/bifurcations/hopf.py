@@ -1,7 +1,8 @@
 """Small oscillations about an equilibrium: Hopf points and linear normal modes, where branches begin.
 
-With J v = i omega v, J of d(dx)/dt = J dx, they are x0 + a Re(exp(i tau) v), tau = omega t: at a Hopf point
-the orbits that are born there, at a centre of a system that conserves energy its linear normal modes.
+The linearised motion d(dx)/dt = J dx about x0 has the oscillations x0 + a Re(exp(i tau) v), tau = omega t,
+with J v = i omega v. At a Hopf point they are the first orbits of the branch that is born there; at a centre
+of a conservative system they are its linear normal modes.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ ON_AXIS = 1e-4
 """Largest real part of a pair that counts as imaginary, as a part of its modulus."""
 
 FIRST_LENGTHS = (1.0, 0.25, 1 / 16)
-"""Where the first orbit is looked for, in units of FIRST_DISTANCE."""
+"""Distances at which the first orbit is sought, in units of FIRST_DISTANCE."""
 
 
 def eigenvalues(system: System, orbit: Orbit, frequency: str = "omega") -> NDArray[np.complex128]:
@@ -52,7 +53,7 @@ def eigenvalues(system: System, orbit: Orbit, frequency: str = "omega") -> NDArr
     Raises
     ------
     numpy.linalg.LinAlgError
-        Where the rates of small motion are not determined.
+        Where the equations do not determine the rates of small motion: their matrix is singular.
     """
     orbit = as_read_by(system, orbit)
     omega = orbit.parameter[index_of(system, frequency)]
@@ -143,7 +144,7 @@ def normal_mode(
     SwitchError
         Where no eigenvalue is complex, or no orbit is found.
     ValueError
-        For a mode that there is not, and an orbit that is no equilibrium.
+        For a mode that does not exist, and an orbit that is no equilibrium.
     """
     orbit = as_read_by(system, orbit)
     pairs = _pairs(system, orbit, frequency)
@@ -193,7 +194,7 @@ def _oscillation(
 
 
 def _linear(system: System, at_rest: Orbit, origin: Orbit) -> Increment:
-    """The direction Re(exp(i tau) v) with v of the eigenvalue i of dx' = J dx, and its unknowns."""
+    """The direction Re(exp(i tau) v) of states and unknowns, v the eigenvector of dx' = J dx to i."""
     rows = rows_at(system, at_rest, ())
     values, vectors = np.linalg.eig(rows.jacobian)
     v = vectors[:, np.abs(values - 1j).argmin()]

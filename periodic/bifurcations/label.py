@@ -1,4 +1,4 @@
-"""Names of the points of a branch, as the field has them."""
+"""Names of the points of a branch, as is usual in the field."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ class Label(str):
         Parameters
         ----------
         text : str
-            Letters and digits, two of them for a point of one parameter in the field's custom.
+            Letters and digits; by custom two of them for points of branches in one parameter.
         critical : bool
             Whether a multiplier is on the unit circle, or an eigenvalue on the imaginary axis, there.
 
         Raises
         ------
         ValueError
-            For other text, and for a label that is registered otherwise.
+            For other text, and for a label that is registered with another `critical`.
         """
         if not isinstance(text, str) or (text and not (text.isascii() and text.isalnum())):
             raise ValueError(f"label is {text!r}; it must be made of letters and digits")

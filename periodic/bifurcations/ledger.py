@@ -25,7 +25,7 @@ CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, L
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
 
 PLAIN = (Label.NONE, Label.USER, Label.END, Label.FAILED)
-"""Labels that say nothing of stability; of others nothing is known of what passes there."""
+"""Labels that imply nothing of stability: no multiplier passes there. See `Entry.crossing` for the others."""
 
 BESIDE_END = 1e-3
 """Multipliers so near the circle at the end of a branch are on it: it may begin or end at a special point."""
@@ -33,7 +33,7 @@ BESIDE_END = 1e-3
 
 @dataclass(frozen=True)
 class Entry:
-    """A point as the ledger has it.
+    """A point in the ledger.
 
     Parameters
     ----------
@@ -42,20 +42,20 @@ class Entry:
     value : float
         The continuation parameter (SI).
     slope : float
-        d parameter / d arclength, in ranges of the parameter.
+        d parameter / d arclength over the length of the parameter's range.
     growth : ndarray
         log |mu| of the multipliers that are not 1 whatever the parameters; of an equilibrium the real parts
         over the largest eigenvalue.
     noise : float
-        What these are known to; infinite where they are not known, or one is held on the circle.
+        Error of `growth`; infinite where it is not known, or where a multiplier is held on the circle.
     blur : float
-        What the parameter is known to (SI).
+        Error of the parameter (SI).
     equilibrium : bool
-        Whether it is one.
+        Whether the point is an equilibrium.
     conservative : bool
         Whether multipliers come in pairs mu, 1/mu.
     grazing : bool
-        Whether it sits on a grazing, where multipliers jump: its own are those on one side.
+        Whether it is at a grazing, where multipliers jump: `growth` is then that on one side.
     """
 
     label: Label
@@ -70,9 +70,9 @@ class Entry:
 
     @property
     def crossing(self) -> int | None:
-        """How many pass there; None where that is not known, as where orbits shrink to an equilibrium.
+        """How many multipliers pass there; None if not known, as where orbits shrink to an equilibrium.
 
-        At folds of conservative orbits none pass but the two that are 1.
+        At folds of conservative orbits no nontrivial multiplier passes.
         """
         if self.label is Label.HOPF and not self.equilibrium:
             return None
@@ -81,12 +81,12 @@ class Entry:
 
     @property
     def unstable(self) -> set[int]:
-        """How many multipliers may lie outside."""
+        """Possible numbers of multipliers outside the unit circle."""
         return self._outside(self.growth, max(self.noise, BESIDE_END if self.label is Label.END else 0.0))
 
     @property
     def beside(self) -> set[int]:
-        """How many besides those that pass there."""
+        """Possible numbers of multipliers outside, without those that pass there."""
         crossing = (self.crossing or 0) * (2 if self.conservative else 1)
         order = np.abs(self.growth).argsort()
         return self._outside(self.growth[order[crossing:]], self.noise)
@@ -96,7 +96,7 @@ class Entry:
         return set(range(int((growth > noise).sum()), int((growth >= -noise).sum()) + 1))
 
     def after(self, before: set[int], folds: bool = False) -> set[int]:
-        """How many may lie outside after the point, of those that may before it; none is a contradiction.
+        """Possible numbers outside after the point, from those before it; empty where they contradict it.
 
         folds: whether the parameter reverses between the point before it and the one after it.
         """
@@ -125,7 +125,7 @@ def growth(multipliers: Complex, equilibrium: bool) -> np.ndarray:
 
 
 def noise(error: ErrorEstimate, multipliers: Complex) -> float:
-    """Return what log |mu| near 0 is known to."""
+    """Return the error of log |mu| near 0."""
     return ERRORS_FROM_ONE * error.multiplier * float(np.abs(multipliers).max(initial=1.0)) + ROUNDED_ONE
 
 
@@ -147,7 +147,7 @@ def entry(solution: Solution, label: Label) -> Entry:
 
 @dataclass(frozen=True)
 class Gap:
-    """What no labelled point accounts for, between two values of the parameter (SI)."""
+    """A change that no labelled point accounts for, between two values of the parameter (SI)."""
 
     begin: float
     end: float
@@ -158,10 +158,10 @@ class Gap:
 
 
 def gaps(entries: Sequence[Entry], folds: bool = True) -> list[Gap]:
-    """Return what is not accounted for between the points of a branch, in order along it.
+    """Return the changes that no labelled point accounts for, in order along the branch.
 
-    folds: whether folds in the parameter have labels there, as folds of a branch have. One that is named at a
-    grazing may lie just before it.
+    folds: whether folds in the parameter are labelled, as on a branch. A fold that is labelled at a grazing
+    may lie just before it.
     """
     entries, found = _with_grazings(entries), []
     folded = {entry.value for entry in entries if entry.grazing and entry.label is Label.FOLD}
@@ -175,7 +175,7 @@ def gaps(entries: Sequence[Entry], folds: bool = True) -> list[Gap]:
 
 
 def _with_grazings(entries: Sequence[Entry]) -> list[Entry]:
-    """The entries, those at a grazing marked so: a GR, and what is named right after it at the same orbit."""
+    """The entries, marked as grazing where they are: a GR, and labels right after it at the same orbit."""
     found: list[Entry] = []
     for entry in entries:
         last = found[-1] if found else None
@@ -185,7 +185,7 @@ def _with_grazings(entries: Sequence[Entry]) -> list[Entry]:
 
 
 def counts(entries: Sequence[Entry]) -> list[set[int]]:
-    """Return how many multipliers may be unstable just after each point, begun anew where that has a gap."""
+    """Return possible numbers of unstable multipliers just after each point, begun anew after a gap."""
     entries = _with_grazings(entries)
     found = [entry.after(set(range(len(entry.growth) + 1))) for entry in entries[:1]]
     for entry, folding in zip(entries[1:], _folding(entries)[1:], strict=True):
@@ -201,7 +201,7 @@ def _folding(entries: Sequence[Entry]) -> list[bool]:
 
 
 def _reversed(last: Entry, entry: Entry) -> bool:
-    """Whether the parameter does not go from one point to the next as it does at both."""
+    """Whether the parameter's change between two points contradicts its slopes there."""
     moved = entry.value - last.value
     way = [moved] if abs(moved) > max(last.blur, entry.blur) else []
     way += [point.slope for point in (last, entry) if point.label in PLAIN and abs(point.slope) > VERTICAL]

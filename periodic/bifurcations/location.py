@@ -1,7 +1,7 @@
 """Special points inside one continuation step, located on arclength constraints between its ends.
 
-User points (UZ) and bounds (EP) are where the parameter takes a given value, looked for on each side of the
-turns, where the parameter is monotone.
+User points (UZ) and bounds (EP) are where the parameter takes a given value; they are located between folds,
+where the parameter is monotone.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import refined
 
 SHORTER = 0.9
-"""A step that would end at a special point is taken so much shorter: then it lies within the next."""
+"""Factor by which a step that would end at a special point is shortened: the point lies in the next step."""
 
 JUMP = 1e-3
-"""What is left of a user's function where it vanishes, as a part of the larger value at its ends."""
+"""Largest value of a user's function at its zero, as a part of the larger one at the ends: else it jumps."""
 
 ALIGNED = 0.8
 """Least cosine between the tangents of a special equilibrium and of the step's base: else it is on another
@@ -37,11 +37,11 @@ branch."""
 
 @dataclass(frozen=True)
 class Sought:
-    """What is looked for in a step: values of the parameter that get a point (UZ), the user's tests.
+    """Points to be located in a step: values of the parameter that get a point (UZ), the user's tests.
 
-    since: the parameter up to which values have been looked for, that of the last point, from which the base
-    may differ by its error where it was solved again on a new mesh. course: of the test functions in the step
-    before. final: whether the step ends where the pattern changes, and cannot be followed nearer to it.
+    since: the parameter of the last point, up to which values have been located. The base may differ from it
+    by its error where it was solved again on a new mesh. course: the test functions' course before the step.
+    final: whether the step ends where the pattern changes, and cannot be followed nearer to it.
     """
 
     values: Sequence[float]
@@ -80,7 +80,7 @@ def _in_order(found: list[Found]) -> list[Found]:
 def _behind_saddle(within: WithinStep, new: Solution, ds: float, found: list[Found]) -> list[Found]:
     """Locate NS that the ledger lacks: a neutral saddle within the step hides them.
 
-    The product of all 1 - mu_i mu_j changes sign at both, as where real mu_i = 1/mu_j no multiplier passes.
+    The product of all 1 - mu_i mu_j changes sign at both; at the saddle, real mu_i = 1/mu_j, none passes.
     """
     if unstable(within.base) == unstable(new) or TORUS not in codim2.sought(new, False):
         return []
@@ -109,7 +109,7 @@ def _between_pair_and_saddle(within: WithinStep, new: Solution, ds: float) -> fl
 
 
 def _at_values(within: WithinStep, pieces: list[Found], sought: Sought) -> list[Found]:
-    """The points at values of the parameter that were asked for, and at a bound."""
+    """The points at requested values of the parameter, and at a bound."""
     problem, found = within.solver.problem, []
     starts = [sought.since, *(fold.solution.value for fold in pieces[1:-1])]
     for first, begin, end in zip(starts, pieces[:-1], pieces[1:], strict=True):
@@ -137,7 +137,7 @@ def _check_ways(pieces: list[Found]) -> None:
 def _folds(within: WithinStep, new: Solution, ds: float, sought: Sought) -> list[Found]:
     """Locate the folds within a step, those that are more than an error of the parameter.
 
-    One that cannot be told from the change of pattern at its end is there, or is named with what lies beyond.
+    One that cannot be told from a change of pattern at the end is put there, or named with points beyond.
     """
     base = within.base
     if FOLD.value(base) * FOLD.value(new) < 0 and not has_fold(base, new, ds):
@@ -194,7 +194,7 @@ def _located(within: WithinStep, span: tuple[float, float], ds: float, test: Tes
     if not test.genuine(solution) or (test.name and _jumps(test.value, solution, ends)):
         return []
     if not crossed and shrinks(solution, *ends):
-        return [Found(test.label, distance, solution)]  # it has no size for its error to be a part of
+        return [Found(test.label, distance, solution)]  # an orbit of no size has no relative error
     better = _accepted(solver, refined(solver, solution))
     if better is not solution:
         if not solver.alike(solution, better):

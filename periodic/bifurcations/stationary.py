@@ -59,7 +59,7 @@ def _crosses_twice(base: Solution, new: Solution) -> bool:
 
 
 def _growth(solution: Solution) -> float:
-    """Real part of the complex pair nearest the imaginary axis, with the sign of the test; else that."""
+    """Real part of the complex pair nearest the axis, with the sign of the test; without one the test."""
     found, value = solution.spectrum.multipliers, hopf(solution)
     parts = np.abs(found[found.imag > 0].real)
     return float(np.sign(value) * parts.min()) if len(parts) else value
@@ -72,7 +72,7 @@ def product(solution: Solution) -> float:
 
 
 def _matrix(solution: Solution) -> tuple[Array, Array]:
-    """R_u with what determines u besides, and the tangent of length 1, u = (x, z, p), p in ranges."""
+    """R_u above the rows of the side conditions, and the unit tangent, u = (x, z, p), p in ranges."""
     problem, orbit, tangent = solution.problem, solution.orbit, solution.tangent
     rows = rows_at(problem.system, orbit, problem.free).balanced(problem.scale)
     outer = tangent.parameters / problem.scale
@@ -90,7 +90,7 @@ def branching(solution: Solution) -> float:
 
 
 def _on_its_way(solution: Solution) -> bool:
-    """Whether the branch goes on past another there: where it turns as well, the turn is the branch point."""
+    """Whether the branch does not turn there: where it does, its fold is labelled as the branch point."""
     return abs(solution.tangent.parameter) > VERTICAL * solution.problem.scale
 
 

@@ -104,8 +104,8 @@ def branched(
     distance : float, optional
         As in `doubled`; a negative one gives the orbit on the other side.
     leaving : Orbit, optional
-        A nearby equilibrium of the branch to leave. Without it, of two branches of equilibria that one is
-        taken along which the parameter changes less.
+        A nearby equilibrium of the branch to leave. Without it the guess is on that of two branches of
+        equilibria along which the parameter changes less.
 
     Returns
     -------

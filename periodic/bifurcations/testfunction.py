@@ -1,7 +1,7 @@
 """The boundary to special points: a function of a solution that changes sign where there is one.
 
-A new kind of point is one file: a label, a `TestFunction`, and where there are such a condition that holds it
-(`periodic.correction.condition.Condition`) and a function that switches to the branch that begins there;
+A new kind of point is one file: a label and a `TestFunction`, and possibly a condition that holds the point
+(`periodic.correction.condition.Condition`) and a function that switches to the branch that begins there.
 `per.Watch(special=...)` looks for it.
 """
 
@@ -18,7 +18,7 @@ PRECISION = 1e-10
 """Error to which a place along the branch is located, in steps."""
 
 PARABOLA_LEFT = 0.5
-"""A function does not change sign in a step if its parabola keeps this part of the least end value."""
+"""A function is taken to keep its sign in a step if its parabola keeps this part of the smaller end value."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +38,8 @@ class TestFunction:
     twice : callable
         Whether the function may change sign twice between two solutions at which its signs are equal.
     dips : callable
-        Places, as parts of the step, between which it may do so, and the values expected there if it does
-        not; by default where a parabola would touch 0.
+        Places, as parts of the step, about which it may do so, and the values expected there if it does not;
+        by default where a parabola would touch 0.
     local : callable, optional
         A function of the same sign to be used near a zero, as it is smooth there.
     sharp : callable, optional

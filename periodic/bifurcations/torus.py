@@ -17,33 +17,33 @@ from periodic.system.precision import LARGEST
 
 
 def noise(solution: Solution) -> float:
-    """What multipliers cannot be told apart by."""
+    """Distance from 1 below which a multiplier, or a product of two, cannot be told from 1."""
     return ERRORS_FROM_ONE * solution.error.multiplier + ROUNDED_ONE
 
 
 def torus(solution: Solution) -> float:
-    """prod over i < j of (1 - mu_i mu_j) / (1 + |mu_i mu_j|); 0 where one is 1 within its error or lost.
+    """prod over i < j of (1 - mu_i mu_j) / (1 + |mu_i mu_j|); 0 where a product is 1 within its error.
 
-    Damped multipliers alone change no sign, whichever of many are known.
+    It is also 0 where they are lost to rounding. How many damped ones are known does not change its sign.
     """
     spectrum = solution.spectrum
     return torus_of(spectrum.nontrivial, noise(solution)) if spectrum.known else 0.0
 
 
 def _sharp(solution: Solution) -> float:
-    """The same of products that are known without error."""
+    """The torus test with products taken as exact."""
     spectrum = solution.spectrum
     return torus_of(spectrum.nontrivial, 0.0) if spectrum.known else 0.0
 
 
 @cache
 def _both(count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """First and second of all pairs."""
+    """Indices of the first and of the second in all pairs."""
     return np.triu_indices(count, 1)
 
 
 def _products(found: Complex) -> Complex:
-    """The products of all pairs, those beyond LARGEST given as that."""
+    """The products of all pairs, their moduli at most LARGEST."""
     first, second = _both(len(found))
     sizes = np.abs(found)
     if sizes.max(initial=0.0) <= np.sqrt(LARGEST):
@@ -79,14 +79,14 @@ def _genuine(solution: Solution) -> bool:
 
 
 def _pair_nearest_the_circle(solution: Solution) -> float:
-    """log |mu| of the complex pair nearest the unit circle, with the sign of the test; else that itself."""
+    """log |mu| of the complex pair nearest the circle, with the sign of the test; without one the test."""
     found, value = solution.spectrum.nontrivial, torus(solution)
     sizes = np.abs(found[found.imag > 0])
     return float(np.sign(value) * np.abs(np.log(sizes)).min()) if len(sizes) else value
 
 
 def _dips(base: Solution, new: Solution) -> list[tuple[float, float]]:
-    """Where two pairs meet, and how near to the circle they are if they do not leave it."""
+    """Where two pairs meet, and |log |mu|| of the nearer to the circle, expected if they do not leave it."""
     return [(m.place, abs(m.growth)) for m in meetings(base.spectrum, new.spectrum)]
 
 

@@ -28,7 +28,7 @@ beyond which another special point is not the fold itself."""
 
 @dataclass(frozen=True)
 class Found:
-    """A special point at `distance` from the step's base; `name` is the user's of an event or limit."""
+    """A special point at `distance` from the step's base; `name` is the user's name of an event or limit."""
 
     label: Label
     distance: float

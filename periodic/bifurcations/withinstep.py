@@ -17,8 +17,8 @@ from periodic.linear.root import root
 from periodic.orbit.orbit import Orbit
 
 BESIDE_ROOT = (1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7)
-"""Distances, as parts of the interval, at which an orbit stands for a root where Newton fails: branches cross
-there."""
+"""Distances, as parts of the interval, from a root where Newton fails, as where branches cross: an orbit
+there is taken for the root."""
 
 ORBIT_ERRORS = 1e1
 """Factor on these distances for orbits, which have errors of their own, over those for equilibria."""
@@ -27,8 +27,8 @@ ORBIT_ERRORS = 1e1
 class RejectedError(Exception):
     """A step that cannot be taken, or inside which Newton failed on an arclength constraint.
 
-    The message says why. shorter: the part of it to be tried next; not a half, which from a step that leads
-    to an orbit of no size leads there again and again.
+    The message says why. shorter: the part of the step to be tried next; halves of a step that leads to an
+    orbit of no size would lead there again and again.
     """
 
     def __init__(self, why: str, shorter: float = 0.6) -> None:
@@ -60,7 +60,7 @@ class WithinStep:
     def at(self, distance: float, *, nearest: bool = False) -> Solution:
         """Return the orbit at a distance. Raises RejectedError where there is none.
 
-        nearest: whether it is looked for between the nearest orbits that are known, else from the base.
+        nearest: whether the first guess is the cubic between the nearest known orbits, not from the base.
         """
         if distance not in self.known:
             self.known[distance] = self._solved(distance, nearest)
@@ -106,7 +106,7 @@ class WithinStep:
             return self.at(distance).once(function)
 
         at_ends = [value(end) for end in ends]
-        if at_ends[0] * at_ends[1] > 0:  # it lies at an end, by less than the orbits' error
+        if at_ends[0] * at_ends[1] > 0:  # the root lies at an end, within the orbits' error
             nearest = ends[int(abs(at_ends[1]) < abs(at_ends[0]))]
             return nearest, self.at(nearest)
         try:
@@ -132,10 +132,10 @@ MINIMUM_TRIALS = 15
 """Most orbits solved for within a step to find a second change of sign."""
 
 CONFIRMED = 0.1
-"""How well, relatively, the parabola must predict it."""
+"""Relative error with which a parabola must predict the function."""
 
 LEAST_SHARE = 0.1
-"""A place to look at lies at least so far on the way from the least value to the next place known."""
+"""Least distance of a new trial from the place of the least value, as a part of that to its neighbour."""
 
 
 def second_change(
@@ -143,8 +143,8 @@ def second_change(
 ) -> float | None:
     """Return a distance within a step at which a function, positive where it is known, is negative, if any.
 
-    It is first looked for at `place`, where it is expected to be so large unless it changes sign about there;
-    then parabolas lead to the minimum until one has predicted it.
+    The first trial is at `place`, where the value is `expected` unless the function changes sign nearby; then
+    parabolas lead to the minimum until one has predicted the value there.
     """
     known = dict(known)
     for _ in range(MINIMUM_TRIALS):
@@ -162,9 +162,9 @@ def second_change(
 
 
 def _lowest(known: dict[float, float]) -> tuple[float, float]:
-    """Return where to look for a function's minimum and what a parabola through its least values predicts.
+    """Return the next trial for a function's minimum, and the value that a parabola predicts there.
 
-    That is the parabola's vertex, or halfway to its neighbour where an end is the least.
+    It is the vertex of the parabola about the least value, or halfway to the neighbour of an end.
     """
     at = sorted(known)
     least = at.index(min(at, key=lambda distance: known[distance]))

@@ -42,10 +42,10 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
-"""Distances (rad, in tolerances) before its kink at which an event node begins on a new mesh, in turn."""
+"""How far outside its excursion (rad, in tolerances) an event node is put on a new mesh, tried in turn."""
 
 SHALLOWER = (10.0, 100.0)
-"""How much shallower event nodes are tried where a new mesh fails."""
+"""Factors by which the least event level is raised, in turn, where a new mesh fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,11 +63,11 @@ class Collocation(MeshMethod):
     solver : callable
         The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
-        Whether the linear part of the equations is integrated exactly, unknowns left at nonlinear places
-        alone; by default where that pays. Results are still of all states, but of the multipliers, if they
-        are many, only the leading ones.
+        Whether the linear part of the equations is integrated exactly, so that only the states at nonlinear
+        places remain unknowns; by default where that is cheaper. Results still hold all states, but of the
+        multipliers, where there are many, only the leading ones.
     tolerance : float
-        What meshes are made for; set by the trace.
+        Bound on the error estimates that meshes are made for; set by the trace.
 
     References
     ----------
@@ -94,7 +94,7 @@ class Collocation(MeshMethod):
     def _equations(
         self, system: System, orbit: Orbit, free: tuple[int, ...], off: Array | None = None
     ) -> Operator:
-        """The same, event nodes off their levels by so much."""
+        """The same, with `off` (k,) added to the residuals of the event nodes."""
         line, own = evaluated(system, orbit, free), event_rows(system, orbit, free)
         if off is not None:
             own = [replace(row, value=row.value + amount) for row, amount in zip(own, off, strict=True)]
@@ -108,7 +108,7 @@ class Collocation(MeshMethod):
         conditions: Sequence[SideCondition],
         settings: NewtonSettings,
     ) -> Correction:
-        """Return what Newton's iteration finds, in one call of C where that is to be had."""
+        """Return what Newton's iteration finds, in one call of C where the system has a compiled one."""
         given = (system, guess, free, conditions, settings)
         found = iteration.corrected(*given) if self._plain else None
         return super().corrected(*given) if found is None else found
@@ -116,8 +116,8 @@ class Collocation(MeshMethod):
     def _beside(self, equations: Equations, orbit: Orbit) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
-        Event nodes are put off their levels by as much as rounding may: that does not change the orbit
-        noticeably, but the multipliers where a contact is shallow.
+        Event nodes are moved off their levels by as much as rounding may move them. The orbit hardly changes
+        by that, but the multipliers do where a contact is shallow, and the error estimate is to show it.
         """
         system = equations.system
         off = aside(orbit, event_rows(system, orbit, equations.free))
@@ -126,13 +126,13 @@ class Collocation(MeshMethod):
 
     @property
     def _plain(self) -> bool:
-        """Whether its equations are those of the compiled iteration."""
+        """Whether the linear solver is the default one, which the compiled iteration replaces."""
         return self.solver is elimination
 
     def transfer(self, system: System, orbit: Orbit, mesh: Mesh, phases: Array) -> Iterator[Orbit]:
-        """Yield the orbit with its event nodes a little before their kinks, where they are well defined.
+        """Yield the orbit on another mesh, its event nodes a little outside the excursions that they bound.
 
-        Past its kink a switch hardly changes, and the row of the event node is nearly singular.
+        Inside, past the kink, a switch may hardly change, and the row of its event node is nearly singular.
         """
         deep = np.array([a.direction if a.level > 0 else 0.0 for a in mesh.events])
         for before in NODE_BEFORE_KINK if deep.any() else (0.0,):
@@ -159,17 +159,17 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def settles(self, system: System) -> bool:
-        """Return whether anything may be held, or a relay switch: in time they find how."""
+        """Return whether motions may stick or relays switch, whose modes integration in time finds."""
         return bool(of_held(system) or relays(system))
 
     def _rounding(self, system: System, orbit: Orbit, spectrum: Spectrum) -> float:
-        """What of the multipliers' error is rounding."""
+        """The part of the multipliers' error that is rounding."""
         if len(orbit.mesh.exact_ends) == 0:
             return 0.0
         return of_states(orbit, spectrum) + of_events(orbit, event_rows(system, orbit, ()), spectrum)
 
     def spectrum(self, correction: Correction, trivial: int) -> Spectrum:
-        """Return the multipliers, where motions grow by many decades from the intervals one by one."""
+        """Return the multipliers, computed from the single steps where motions grow by many decades."""
         stepping = correction.stepping if isinstance(correction, SteppedCorrection) else correction.operator
         return spectrum_of(correction.fundamental, stepping, trivial)
 
@@ -203,7 +203,7 @@ class CollocationRefinement(Refinement):
 
     @cached_property
     def _longer(self) -> tuple[tuple[EventNode, ...], Array] | None:
-        """Event nodes with more of the bounces before a rest, where too much of them is left out."""
+        """Event nodes with more of the bounces before a rest, where those left out are too large an error."""
         return lengthened(self.system, self.orbit, self.method.tolerance)
 
     @property
@@ -250,7 +250,7 @@ class CollocationRefinement(Refinement):
     def refined(self) -> Mesh:
         """Return a mesh with intervals where the orbit needs them, and its present event nodes.
 
-        It has enough for orbits beside it as well, with kinks elsewhere.
+        Their number suffices for neighbouring orbits of the branch too, which have their kinks elsewhere.
         """
         return self._made(self.orbit.mesh.events, self.orbit.phases)
 
@@ -268,7 +268,7 @@ class CollocationRefinement(Refinement):
         return self._spread(self._ntst, events, phases)
 
     def _own(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
-        """The same for this orbit alone."""
+        """The same for this orbit alone: spread anew about its kinks, fewer intervals may do."""
         begun = evenly(self.orbit) if self.system.switches else self.orbit.mesh.ntst
         return self._spread(self._wanted_ntst(begun), events, phases)
 

@@ -4,7 +4,8 @@ With y the event nodes' phases and the free parameters, what is left of interval
 
     dx_{j+1} = step[j] (1, dx_j, dy).
 
-Of the phases only those at the ends of its own segment move an interval: what is local has no other columns.
+An interval moves with the phases of the event nodes at the two ends of its own segment alone, so that local
+matrices have columns for no other phases.
 """
 
 from __future__ import annotations
@@ -33,10 +34,10 @@ from periodic.system import LinearisationLike, System
 class EliminatedStages:
     """Maps from (1, dx_j, dy), width w = 1+n+k+p: step (N, n, w), of k phases and p parameters.
 
-    What is inside follows from the phases of `Mesh.ties` alone, e in place of k: stages
+    Inside an interval only the e phases of `Mesh.ties` have columns, not all k: stages
     (N, ncol, n, 1+n+e+p), and algebraic (N, ncol, m, 1+2n+e+p), which maps (1, d rate, d state, dy) to -dz.
-    residual is the largest one. jumps are where the state or its rates jump, arriving (jumps, n, w) the steps
-    up to there. Fulfils `periodic.linear.bordering.Eliminated`.
+    residual: the largest one. jumps: where the state or its rates jump; arriving (jumps, n, w): the steps of
+    these intervals without their jumps. Fulfils `periodic.linear.bordering.Eliminated`.
     """
 
     orbit: Orbit
@@ -50,7 +51,7 @@ class EliminatedStages:
 
     @cached_property
     def perturbed(self) -> Array | None:
-        """Steps (N, n, n+p) of perturbations at fixed tau; None where `step` has them.
+        """Steps (N, n, n+p) of perturbations at fixed tau, with saltation; None without jumps: see `step`.
 
         Raises numpy.linalg.LinAlgError where a jump has no rates.
         """

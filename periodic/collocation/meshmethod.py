@@ -1,6 +1,7 @@
 """Collocation on meshes tied to the events of the motion, whatever the unknowns are: settings and events.
 
-Its leaves are `Collocation`, of all states, and `CondensedCollocation`, of the places of a linear part.
+Its subclasses are `Collocation`, with all states as unknowns, and `CondensedCollocation`, in which a
+linear part has the states at its places alone.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ WRONG = {
     Breach.HELD: Outcome.SLIDES,
     Breach.REVERSED: Outcome.EVENTS_CROSSED,
 }
-"""Outcome of an orbit that violates its word, by the first kind of violation in this order."""
+"""Outcome of an orbit that violates its word (see `periodic.events.modes`), the first that applies."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,10 +66,10 @@ class MeshMethod(Discretisation):
     tolerance: float = 1e-7
 
     ends_below: ClassVar[float] = ENDS_BELOW
-    """Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
+    """Length (rad) of an excursion below which a grazing predicted within it may be the end of it."""
 
     all_states: ClassVar[bool] = True
-    """Whether mesh points have all states, so that the map from one to the next is known as it is."""
+    """Whether mesh points hold all states, so that each interval alone gives the map across it."""
 
     def __post_init__(self) -> None:
         if not (self.condense is None or isinstance(self.condense, bool)):
@@ -90,7 +91,7 @@ class MeshMethod(Discretisation):
         """The scheme for a tolerance, where none is chosen."""
 
     def at(self, tolerance: float) -> Self:
-        """Return it with scheme, depth of event nodes and meshes for a tolerance."""
+        """Return the method for a tolerance: scheme and least event level, where left open, and meshes."""
         return replace(
             self,
             scheme=self.scheme or self._scheme_at(tolerance),
@@ -105,14 +106,18 @@ class MeshMethod(Discretisation):
             return at_rest(system, uniform(scheme, self.ntst), parameter)
         if near.equilibrium:
             near = transfer(near, uniform(scheme, self.ntst), near.phases)
-        near = self._tied(system, self._worded(system, replace(near, parameter=parameter, equilibrium=False)))
+        near = replace(near, parameter=parameter, equilibrium=False)
+        near = self._with_relays(system, self._with_sticking(system, near))
         old = near.mesh
         mesh = Mesh(scheme, old.breaks, completed(system, old.events), old.period, old.modes)
         return relax(system, transfer(near, mesh, near.phases))
 
     @staticmethod
-    def _worded(system: System, orbit: Orbit) -> Orbit:
-        """A motion that sticks and slips, followed, with event nodes where it does: Newton needs them."""
+    def _with_sticking(system: System, orbit: Orbit) -> Orbit:
+        """The orbit, or where its mesh says nothing of sticking the motion as integrated in time from it.
+
+        That has event nodes where it sticks and slips, which Newton needs.
+        """
         held, mesh = of_held(system), orbit.mesh
         if not held or any(group(system, mesh, k) or k in dict(mesh.modes) for k in held):
             return orbit
@@ -121,8 +126,8 @@ class MeshMethod(Discretisation):
         except FAILURES:
             return orbit
 
-    def _tied(self, system: System, orbit: Orbit) -> Orbit:
-        """A motion in which a relay switches, with event nodes where it does, as the orbit has it."""
+    def _with_relays(self, system: System, orbit: Orbit) -> Orbit:
+        """The orbit; where a relay without event nodes switches, on a mesh with event nodes."""
         own = [k for k in relays(system) if not group(system, orbit.mesh, k)]
         if not any(switched(system, orbit, k) for k in own):
             return orbit
@@ -144,21 +149,24 @@ class MeshMethod(Discretisation):
         return first_change(system, before, after, self.shortest, self.ends_below)
 
     def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
-        """The error of an orbit that slips where it should be held, or the reverse: infinite; else 0."""
-        own = error.orbit if error.curable > self.tolerance else 0.0  # that deep the mesh may be to blame
-        if self._unknown(system, orbit):
+        """Infinite for an orbit that slips where it should stick, or the reverse; else 0."""
+        own = error.orbit if error.curable > self.tolerance else 0.0  # up to this the mesh may be to blame
+        if self._creeps(system, orbit):
             return np.inf
         return np.inf if any(v.depth > own for v in mode_violations(system, orbit)) else 0.0
 
     @staticmethod
-    def _unknown(system: System, orbit: Orbit) -> bool:
-        """Whether an elastic slider has no mode all along: then it creeps, as in none of its modes."""
+    def _creeps(system: System, orbit: Orbit) -> bool:
+        """Whether an elastic slider has neither event nodes nor a mode for the whole period.
+
+        It then creeps, which none of its modes describes.
+        """
         modes = dict(orbit.mesh.modes)
         own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]
         return any(not group(system, orbit.mesh, switch) for switch in own)
 
     def reworded(self, system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
-        """Return a guess with the events of the orbit's own motion, where that can be followed."""
+        """Return a guess with event nodes from the motion integrated in time; None where that fails."""
         try:
             motion = motions.followed(system, orbit, motions.FOLLOWED, before)
         except FAILURES:
@@ -166,16 +174,16 @@ class MeshMethod(Discretisation):
         return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
-        """Whether an orbit violates its word in one way, of a stop by more than the tolerance."""
+        """Whether there is a violation of one kind; a passage through a stop must exceed the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
 
     def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations | None:
-        """Return the motions beside an orbit; None where they are those of all states."""
+        """Return the linearised motions about an orbit; None where `periodic.conditions.adjoint` has them."""
         return None
 
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
-        """Return the event nodes where the equations change; None where the orbit passes others."""
+        """Return the event nodes where the modes change; None where the orbit violates its word."""
         return word(system, orbit)
 
 
@@ -191,7 +199,7 @@ def scheme_for(tolerance: float) -> Scheme:
 
 
 def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
-    """Raise ValueError for numbers of intervals that are none, or not in order."""
+    """Raise ValueError unless these are positive whole numbers, and in order."""
     for name, value in {"ntst": ntst, "ntst_min": ntst_min, "ntst_max": ntst_max}.items():
         whole(name, value)
     if not ntst_min <= ntst <= ntst_max:
@@ -199,6 +207,6 @@ def check_intervals(ntst: int, ntst_min: int, ntst_max: int) -> None:
 
 
 def check_scheme(scheme: object) -> None:
-    """Raise ValueError for what is no scheme, nor left open."""
+    """Raise ValueError for anything but a Scheme, or None, which leaves it open."""
     if scheme is not None and not isinstance(scheme, Scheme):
         raise ValueError(f"scheme is {scheme!r}; it must be Scheme(family, ncol)")

@@ -109,10 +109,10 @@ def evaluated(system: System, orbit: Orbit, free: tuple[int, ...]) -> Evaluated:
 
 
 def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
-    """Phases and stages at which the equations are evaluated: the collocation points, SAME_PHASE a kink.
+    """Phases and stages at which the equations are evaluated: those of the collocation points.
 
-    A collocation point on a kink (Radau, at the end of a segment) would otherwise take its derivatives from
-    either side, as rounding has it. To first order the residual is moved back to the kink.
+    A collocation point on a kink (Radau, at the end of a segment) is taken SAME_PHASE earlier: else rounding
+    would decide from which side its derivatives are. `Evaluated.part` corrects the residual to first order.
     """
     tau, stages, ends = orbit.stage_phases, orbit.stages, orbit.mesh.exact_ends
     if len(ends) and orbit.mesh.scheme.points[-1] == 1.0:
@@ -125,7 +125,8 @@ def _before_kinks(orbit: Orbit, rate: Array) -> tuple[Array, Array]:
 def rows_of(orbit: Orbit, line: LinearisationLike, tied: bool = False) -> Rows:
     """Return the rows of evaluated equations, with columns for the event nodes' phases.
 
-    tied: only for those at the ends of each interval's own segment, `Mesh.ties`, which no others move.
+    tied: columns only for the two event nodes that bound each interval's segment, `Mesh.ties`; the interval
+    does not depend on the others.
     Raises FloatingPointError where they are not finite.
     """
     gradients = orbit.mesh.tie_gradients if tied else orbit.mesh.gradients

@@ -1,8 +1,8 @@
 """How many Floquet multipliers lie outside a circle, from the winding of a determinant.
 
 det K_mu (see `periodic.condensed.repeating`) vanishes at the multipliers and has its poles at those of the
-linear part by itself, exp(lambda T); it tends to a constant far out. On its way once round the circle it
-therefore turns -(zeros - poles outside) times (the argument principle).
+linear part by itself, exp(lambda T); far from 0 it tends to a constant. Once round the circle its argument
+therefore turns (poles - zeros outside) times (the argument principle).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FEWEST = 24
 """Intervals into which the half circle is cut first; the angles of poles near it are added."""
 
 TURN = 0.8
-"""Largest turn (rad) of the determinant from one place to the next."""
+"""Largest turn (rad) of the determinant's argument from one angle to the next."""
 
 DEEPEST = 40
 """Most halvings of an interval until the determinant turns by less."""
@@ -31,7 +31,7 @@ NEAR_CIRCLE = 0.3
 
 
 class Beside(Protocol):
-    """Motions beside an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
+    """Linearised motions about an orbit, as `periodic.condensed.variations.CondensedVariations` has them."""
 
     @property
     def given(self) -> SplitLinearisation:
@@ -50,7 +50,7 @@ class Circle:
     variations : Beside
         The motions beside the orbit.
     radius : float
-        Of the circle.
+        Radius of the circle.
     """
 
     variations: Beside
@@ -75,7 +75,7 @@ class Circle:
         return int((np.abs(self.poles) > self.radius).sum()) - round(turn / np.pi)
 
     def _value(self, angle: float) -> complex:
-        """The determinant's direction at an angle."""
+        """The determinant over its modulus, at an angle."""
         mu = self.radius * np.exp(1j * angle)
         sign = np.linalg.slogdet(self.variations.repeating(mu).coupled.matrix)[0]
         if not np.isfinite(sign) or sign == 0:
@@ -83,7 +83,7 @@ class Circle:
         return complex(sign)
 
     def _turn(self, begin: tuple[float, complex], end: tuple[float, complex], left: int) -> float:
-        """How far the determinant turns between two angles."""
+        """How far the determinant's argument turns between two angles."""
         turn = float(np.angle(end[1] / begin[1]))
         if abs(turn) < TURN:
             return turn

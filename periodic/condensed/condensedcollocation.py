@@ -39,10 +39,10 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import System, jumps_of, linear_of, slides_of
 
 BRIEF_CONTACT = 0.05
-"""Length (rad) of a contact below which rounding of the modes' phases moves it so that multipliers tell."""
+"""Length (rad) of a contact below which rounding of the modes' phases shows in the multipliers."""
 
 PARAMETER_SHARE = 0.1
-"""Error of the parameter in parts of the rounding in the states: fast modes have little part in a motion."""
+"""Rounding of the parameter over that of the states: fast modes, which round most, contribute little."""
 
 
 @dataclass(frozen=True)
@@ -74,16 +74,16 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         return CondensedOperator(given, event_rows(system, orbit, free))
 
     def variations(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations:
-        """Return the motions beside an orbit. Raises UnknownVariationsError where forces jump."""
+        """Return the linearised motions about an orbit. Raises UnknownVariationsError where forces jump."""
         return CondensedVariations.about(system, orbit, free)
 
     @property
     def alternatives(self) -> tuple[Discretisation, ...]:
-        """The same with other numbers of points."""
+        """The method with other numbers of collocation points."""
         return tuple(replace(self, scheme=Scheme(Family.RADAU, ncol)) for ncol in (3, 5))
 
     def guess(self, system: System, parameter: Array, near: Orbit | None) -> Orbit:
-        """Return the orbit at rest, or one carried to this scheme, its forces those of its motion."""
+        """Return the orbit at rest, or `near` on this scheme, with the forces that its motion gives."""
         if near is None or near.equilibrium:
             return super().guess(system, parameter, near)
         old = near.mesh
@@ -104,7 +104,7 @@ class CondensedCollocation(SplitMethod, MeshMethod):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by what is missing on the halved mesh, or by a Newton step there.
+        """Estimate the errors by the forces' residual on the halved mesh, or by a Newton step there.
 
         Velocities of the places, to which all modes contribute, count at mesh points alone: there they are
         exact for the forces, however fast they change in between.
@@ -133,12 +133,12 @@ class CondensedCollocation(SplitMethod, MeshMethod):
         return ContactError(**named, variation=variation)
 
     def settles(self, system: System) -> bool:
-        """Return whether motion may stick: settling is cheap in modes, and sticks."""
+        """Return whether motion may stick: time stepping is cheap in modes, and finds where it sticks."""
         return bool(slides_of(system))
 
     @staticmethod
     def _exempted(system: System, operator: Operator | None) -> NDArray[np.bool_] | None:
-        """States that count at mesh points alone, (N, n); if forces jump, only where they do not matter."""
+        """States that count at mesh points alone, (N, n); where forces jump, not in active intervals."""
         if not isinstance(operator, CondensedOperator):
             return None
         found = np.zeros(operator.orbit.nodes[1:].shape, dtype=bool)
@@ -163,5 +163,5 @@ class CondensedCollocation(SplitMethod, MeshMethod):
 
 
 def mesh_method(system: System) -> MeshMethod:
-    """Return the method that piecewise polynomials of a system are of: of all states, or of its places."""
+    """Return the collocation method for a system: condensed to its places if it has a linear part."""
     return CondensedCollocation() if linear_of(system) is not None else Collocation()

@@ -1,7 +1,7 @@
-"""The equations of what is nonlinear, the linear part put in: forces that depend on the motion, own states.
+"""The equations of forces that depend on the motion and of own states, the linear part eliminated.
 
 At each collocation point the system's rows give the forces, and the rates of its own states, in terms of all
-states there; the states of the linear part are those that the forces of the whole period make,
+states there; the states of the linear part follow from the forces of the whole period,
 
     x_L = L f + dL,    f = F(x_L, s, tau, p),    s' = S(x_L, s, tau, p).
 """
@@ -25,17 +25,17 @@ class Coupled:
     """Equations matrix u = right (1, dy) of the forces that depend on the motion and the own states.
 
     u holds the active forces at the points of the intervals where they are (C a ka), then the own states at
-    all points (P o). A force outside of its contact is none: on such intervals it is no unknown.
+    all points (P o). Where no force depends on the motion, as outside a contact, forces are no unknowns.
 
     Parameters
     ----------
     given : SplitLinearisation
         The system about its orbit.
     flexibility : Flexibility
-        What forces do to the states of the linear part.
+        The map from forces to the states of the linear part.
     wraps : complex
-        Own states at the beginning of the period in parts of those at its end: 1 in periodic motion, 0 where
-        they begin with nothing.
+        Own states at the beginning of the period over those at its end: 1 in periodic motion, 0 where they
+        begin at 0.
     """
 
     def __init__(self, given: SplitLinearisation, flexibility: Flexibility, *, wraps: complex) -> None:
@@ -68,7 +68,7 @@ class Coupled:
         return np.flatnonzero(by_place.any(axis=(0, 1)))
 
     def _by_active(self) -> Array:
-        """States that the active forces are coupled to, where equations are: (R, s, C a ka)."""
+        """Flexibility from active forces to coupled states at points with equations: (R, s, C a ka)."""
         if self.count == 0:
             return np.zeros((self.points, len(self.coupled_states), 0))
         found = self.flexibility.part(self.coupled_states, self.active, self.held, everywhere=self._own)
@@ -88,7 +88,7 @@ class Coupled:
 
     @cached_property
     def affine(self) -> Array:
-        """States of the linear part by (1, dy), forces that do not depend on them included: (P, s, 1+q)."""
+        """States of the linear part as a map of (1, dy), passive forces included: (P, s, 1+q)."""
         if not self.passive.any():
             return self.given.affine
         driven = np.where(self.passive[:, :, None], self.given.local.forces[:, :, self.columns], 0.0)
@@ -107,7 +107,7 @@ class Coupled:
         return found.reshape(self.intervals, self.ncol, self.k, u.shape[1])
 
     def asked(self, states: Array) -> Array:
-        """Return the active forces (C a ka, r) that the places ask for where their states are (C a, s, r)."""
+        """Return the active forces (C a ka, r) due to states (C a, s, r) at the places."""
         by_place = self._rows_of_forces[:, :, [1 + self.n + place for place in self.places]]
         return np.asarray((by_place @ states).reshape(self.count, states.shape[2]))
 
@@ -139,7 +139,7 @@ class Coupled:
         return np.asarray(inner.reshape(inner.shape[0] * inner.shape[1], self.size))
 
     def _outer(self, rows: Array, at: NDArray[np.int_]) -> Array:
-        """The same in (1, dy), (R r, 1+q)."""
+        """Rows as in `_inner`, as rows in (1, dy), (R r, 1+q)."""
         by_place = rows[:, :, [1 + self.n + k for k in self.places]]
         outer = rows[:, :, self.columns] + by_place @ self.affine[at]
         if len(self.others):
@@ -147,7 +147,7 @@ class Coupled:
         return np.asarray(outer.reshape(outer.shape[0] * outer.shape[1], outer.shape[2]))
 
     def _gap(self, rates: Array, at: NDArray[np.int_]) -> Array:
-        """What rates (R, r, o) get where mesh points are not yet the ends of their intervals, (R, r)."""
+        """Constants of rows in rates (R, r, o), as mesh points are not yet ends of intervals, (R, r)."""
         orbit = self.given.orbit
         gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:-1, -1]]) - orbit.nodes[:-1]
         weights = orbit.mesh.scheme.stage_rates[:, 0] / orbit.grid.width[:, None]
@@ -160,7 +160,7 @@ class Coupled:
         return self.assembled()
 
     def assembled(self) -> Array:
-        """Return them, to be kept by who asks."""
+        """Return the equations without keeping them."""
         matrix, response = np.empty((self.size, self.size), dtype=self.kind), self._by_active()
         here = response[self.at] if len(self.at) < len(response) else response
         np.negative(self._inner(self._rows_of_forces, self.at, here), out=matrix[: self.count])
@@ -171,7 +171,7 @@ class Coupled:
 
     @cached_property
     def right(self) -> Array:
-        """Their right-hand sides by (1, dy), (size, 1+q)."""
+        """The right-hand sides as a map of (1, dy), (size, 1+q)."""
         right = self._outer(self._rows_of_forces, self.at)
         if len(self.others):
             right = np.concatenate([right, -self._outer(self.given.local.own, np.arange(self.points))])
@@ -201,7 +201,7 @@ class Coupled:
 def folded(orbit: Orbit, row: Row, wraps: float = 1.0) -> tuple[Array, Array]:
     """Return a row in the states at the points, (P, n), and in (1, dy); mesh points are ends of intervals.
 
-    The first is `wraps` times the last.
+    The first mesh point is `wraps` times the last.
     """
     stages = np.zeros_like(orbit.stages) if row.stages is None else row.stages.copy()
     stages[:, -1] += row.nodes[1:]

@@ -1,12 +1,12 @@
-"""The error estimate of a condensed orbit: what is missing on the halved mesh, answered on the orbit's own.
+"""The error estimate of a condensed orbit: its residual on the halved mesh, the correction on its own mesh.
 
-Between its points the exact motion x of the forces f asks for other forces, e = F(x) - f.
-They are evaluated on the mesh with every interval halved. Of the forces' error d, (1 - F' G) d = e, the part
-e itself is rough; the rest g = d - e answers it smoothly,
+Between collocation points the exact motion x under the forces f leaves a residual e = F(x) - f, evaluated on
+the mesh with every interval halved. Of the forces' error d, (1 - F' G) d = e, the part e itself oscillates
+within intervals; the rest g = d - e is smooth,
 
     (1 - F' G) g = F' G e,
 
-and is solved for on the orbit's own mesh: no matrix is ever made on the finer one (two grids: Atkinson,
+and is solved for on the orbit's own mesh: no matrix is set up on the halved one (two grids: Atkinson,
 The Numerical Solution of Integral Equations of the Second Kind, 1997, 6.2). Multipliers likewise.
 """
 
@@ -36,14 +36,14 @@ from periodic.stability.multipliers import Spectrum
 class ContactError(ErrorEstimate):
     """Errors of an orbit with event nodes.
 
-    variation: what of the multipliers' error is that of the motions beside the orbit; the rest is its own.
+    variation: part of the multipliers' error from the linearised motion; the orbit's own error adds the rest.
     """
 
     variation: float = 0.0
 
 
 def applies(operator: CondensedOperator) -> bool:
-    """Return whether the estimate is for such an orbit: without own states and event nodes."""
+    """Return whether the estimate applies to an orbit: one without own states and event nodes."""
     return not len(operator.given.others) and not len(operator.orbit.phases)
 
 
@@ -74,8 +74,8 @@ def estimate(
 class OneSided:
     """Equations linearised one after the other at orbits that differ by their errors, see `deferred`.
 
-    An orbit about to touch may do so by its error: then the multipliers are those of the orbit before it,
-    which has the same contacts as the mesh.
+    An orbit close to a contact may touch by its error alone: then the first linearisation stands, whose
+    contacts are those of the mesh.
     """
 
     def __init__(self) -> None:
@@ -95,10 +95,10 @@ class OneSided:
 
 
 class _Missing:
-    """What an orbit misses on the halved mesh.
+    """The residual of an orbit on the halved mesh.
 
-    gap (N, a, s): the exact motion of its forces less the orbit between its points; states (N, a, s): what
-    the forces that are missing do to the places.
+    gap (N, a, s): exact motion under its forces less the interpolated orbit; states (N, a, s): states at the
+    places due to the residual of the forces.
     """
 
     def __init__(self, problem: Problem, operator: CondensedOperator) -> None:

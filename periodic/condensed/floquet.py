@@ -1,10 +1,10 @@
 """The leading Floquet multipliers of a split system, whatever the number of its states.
 
-Over a period free motion (z_0, s_0) of modes and own states makes forces at the places, and these add to it:
+Free motion from modes and own states (z_0, s_0) causes forces at the places, which act on the motion in turn:
 
     M = exp(lambda T) + L_T (1 - F' L)^-1 F' R,
 
-a diagonal and a product as thin as the unknowns of the places are few.
+a diagonal matrix plus a product whose rank is at most the number of unknowns at the places.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LEADING = 8
 """Multipliers that are kept of many."""
 
 AMONG = 1.02
-"""Moduli as much larger than the least of the leading ones are surely among them."""
+"""Multipliers larger than the least leading one by this factor are surely among the leading ones."""
 
 LIGHT = 0.8
 """Modulus below which a pair of multipliers makes no narrow peak."""
@@ -38,10 +38,10 @@ LASTING = 0.6
 """Modulus below which the error of a multiplier does not count: its motion is gone in a few periods."""
 
 ALONE = 1e-6
-"""Distance of a number from a multiplier of the modes left alone at which they are the same."""
+"""Distance of a number from a multiplier of the uncoupled modes below which it is taken as equal to it."""
 
 ALL_KEPT_UP_TO = 64
-"""Up to so many states all of them are computed and kept."""
+"""Up to this number of coordinates all multipliers are computed and kept."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class ModalFloquet:
 
     @cached_property
     def chain(self) -> IntervalRecursion | None:
-        """The same interval by interval, where that pays or forces jump."""
+        """The equations interval by interval, where that is cheaper or forces jump."""
         given = self.given.saltations
         if not given and not pays(self._system, min(len(self.kept), ALL_KEPT_UP_TO)):
             return None
@@ -77,14 +77,14 @@ class ModalFloquet:
 
     @cached_property
     def free(self) -> tuple[Array, Array]:
-        """Unknowns (P ka + P o, coordinates) and coordinates at the end, of each coordinate at the beginning.
+        """Unknowns (P ka + P o, coordinates) and coordinates at the end, per unit of those at the beginning.
 
-        Of systems that are followed interval by interval.
+        Only where motion is followed interval by interval.
         """
         return self.driven(None, np.eye(len(self.kept)))
 
     def driven(self, right: Array | None, basis: Array, passed: Added | None = None) -> tuple[Array, Array]:
-        """Return the same of motions from a basis (coordinates, r), driven by right-hand sides (., r).
+        """Return unknowns, and coordinates at the end, of motions from a basis with right-hand sides (., r).
 
         `passed` as in `IntervalRecursion.run`.
         """
@@ -102,7 +102,7 @@ class ModalFloquet:
 
     @cached_property
     def _excited(self) -> Array:
-        """How free motion drives forces and own states at the points, (P ka + P o, coordinates)."""
+        """Right-hand sides of forces and own states due to free motion, (P ka + P o, coordinates)."""
         given, system = self.given, self._system
         n, modes = system.n, 2 * len(given.response.modes.exponents)
         right = np.zeros((system.size, modes + len(system.others)))
@@ -116,14 +116,14 @@ class ModalFloquet:
         return right[:, self.kept]
 
     def _ahead(self, intervals: NDArray[np.int_]) -> Array:
-        """States at the points of some intervals by the modes at the beginning, (R, s, 2 J)."""
+        """States at the points of some intervals per unit of the initial modes, (R, s, 2 J)."""
         shown = self.given.response.ahead(intervals)
         shown = shown.reshape(-1, *shown.shape[2:])
         return np.concatenate([shown.real, -shown.imag], axis=2)
 
     @cached_property
     def _left(self) -> Array:
-        """What forces and own states leave at the end of the period, (coordinates, P ka + P o)."""
+        """Coordinates at the end of the period per unit of forces and own states, (., P ka + P o)."""
         system = self._system
         count = len(self.given.response.modes.exponents)
         final = self.given.response.left(system.held)[..., system.active].reshape(count, system.count)
@@ -135,7 +135,7 @@ class ModalFloquet:
 
     @cached_property
     def _grown(self) -> tuple[Array, Array, NDArray[np.int_]]:
-        """Modes left alone over the period: factors of a coordinate and of its partner, and which that is."""
+        """Growth of uncoupled modes over a period: factors of coordinates and of partners, the partners."""
         growth, own = self.given.response.growth[-1], np.zeros(len(self.given.others))
         count = len(growth)
         factor = np.concatenate([growth.real, growth.real, own])[self.kept]
@@ -147,18 +147,18 @@ class ModalFloquet:
 
     @property
     def light(self) -> int:
-        """How many coordinates are damped lightly where the modes are left alone."""
+        """Number of coordinates of the uncoupled modes that are lightly damped."""
         return int((np.abs(self.given.response.growth[-1]) > LIGHT).sum() * 2)
 
     def lightest(self, count: int) -> NDArray[np.int_]:
-        """Return the coordinates that are damped least where the modes are left alone."""
+        """Return the coordinates of the uncoupled modes that are damped least."""
         factor, across, _ = self._grown
         return np.argsort(-np.hypot(factor, across)[:, 0], kind="stable")[:count]
 
     def apart(self, values: Complex, vectors: Complex) -> Complex:
-        """Return (value - E)^-1 vector of each column, E = exp(lambda T) the modes left alone.
+        """Return (value - E)^-1 vector of each column, E = exp(lambda T) of the uncoupled modes.
 
-        Where a value is one of E's, what there is of the vector stays as it is.
+        Where a value is an eigenvalue of E, the vector's components there are unchanged.
         """
         factor, across, partner = self._grown
         beside = values - factor
@@ -180,16 +180,10 @@ class ModalFloquet:
         return whole[:count] + 1j * whole[count : 2 * count]
 
     def left(self, states: Array, modes: Complex) -> Array:
-        """Return what is left at the end of the period, (coordinates, r), by what is missing in a motion.
+        """Return the coordinates at the end of the period, (coordinates, r), due to a disturbed motion.
 
-        Of systems without own states.
-
-        Parameters
-        ----------
-        states : ndarray, shape (N, a, s, r)
-            What is missing of the states at the points.
-        modes : ndarray of complex, shape (J, r)
-            What is missing of the modes at the end.
+        Of systems without own states. The disturbances are `states` (N, a, s, r) at the points, and `modes`
+        (J, r) at the end.
         """
         system = self._system
         flat = states.reshape(system.points, len(system.places), -1)
@@ -208,7 +202,7 @@ class ModalFloquet:
         return factor * basis + across * basis[partner] + self._left @ self.answers(basis)
 
     def _begun(self, rates: Array) -> Array:
-        """What the own states' start adds to their rows in the first interval, (P o, o)."""
+        """Coefficients of the initial own states in their rows, those of the first interval, (P o, o)."""
         orbit = self.given.orbit
         weights = orbit.mesh.scheme.stage_rates[:, 0] / orbit.grid.width[0]
         found = np.zeros_like(rates)
@@ -216,7 +210,7 @@ class ModalFloquet:
         return found.reshape(-1, rates.shape[2])
 
     def forces(self, answers: Array) -> Array:
-        """Return all forces at the points, (N, b, k, r), of the active ones."""
+        """Return all forces at the points, (N, b, k, r), from the active ones."""
         return self._system.forces(answers)
 
     @property
@@ -288,7 +282,7 @@ class Leading:
 
     @cached_property
     def states(self) -> Array:
-        """The same as states of the system, (N+1, n, r)."""
+        """The motion that begins with the basis, as states of the system, (N+1, n, r)."""
         given, kept = self.floquet.given, self.floquet.kept
         outputs = given.response.modes.outputs
         shown = np.concatenate([outputs.real, -outputs.imag], axis=1)
@@ -300,7 +294,7 @@ class Leading:
         return found
 
     def start(self, change: Increment) -> Array:
-        """Return what a change of the orbit changes at the beginning of the period, in the basis (r,)."""
+        """Return the change at the beginning of the period that a change of the orbit makes, (r,)."""
         given = self.floquet.given
         forces = change.algebraic[:, :, list(given.part.forces)]
         modes = given.response.history(forces)[0]
@@ -311,7 +305,7 @@ class Leading:
 
 @dataclass(frozen=True, eq=False)
 class LeadingSpectrum(Spectrum):
-    """The leading multipliers of a split system; see `Spectrum`. leading: the subspace that they are of."""
+    """The leading multipliers of a split system; see `Spectrum`. leading: their invariant subspace."""
 
     leading: Leading | None = None
 
@@ -322,7 +316,7 @@ class LeadingSpectrum(Spectrum):
 
     @property
     def frame(self) -> Array | None:
-        """That of the subspace."""
+        """The basis of the subspace."""
         return None if self.leading is None else self.leading.basis
 
     def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
@@ -331,9 +325,9 @@ class LeadingSpectrum(Spectrum):
         return np.asarray(np.abs(self.leading.states @ self.vectors[:, chosen]).max(axis=(0, 1), initial=0.0))
 
     def apart(self, monodromy: Array, operator: object = None) -> float:
-        """Distance from another spectrum of those that are not damped strongly.
+        """Distance of the multipliers that are not strongly damped from those of another monodromy matrix.
 
-        Of all multipliers in the sums of their powers, of the leading ones each from the nearest.
+        Where all are known it is that of the sums of their powers, else of each from the nearest.
         """
         both = (self.multipliers, np.linalg.eigvals(monodromy))
         if self.leading is None or len(self.leading.floquet.kept) <= max(
@@ -344,14 +338,14 @@ class LeadingSpectrum(Spectrum):
             sums = [[(values**power).sum() for power in (1, 2)] for values in largest]
             first, second = (abs(complex(a - b)) for a, b in zip(*sums, strict=True))
             return float(max(first / self.radius, second / (2 * self.radius**2)))
-        # Which of those as large as the least of them are among the leading is a matter of rounding.
+        # Of multipliers about as large as the least leading one, rounding decides which are leading.
         least = np.abs(self.multipliers).min() * AMONG
         sure = self.multipliers[np.abs(self.multipliers) > max(LASTING, least)]
         apart = np.abs(sure[:, None] - both[1]).min(axis=1, initial=np.inf)
         return float(apart.max(initial=0.0) / self.radius)
 
     def start(self, change: Increment) -> Array:
-        """Return what a change of the orbit changes at the beginning of the period, in the subspace."""
+        """Return the change at the beginning of the period that a change of the orbit makes, (r,)."""
         if self.leading is None:
             return np.zeros(len(self.multipliers))
         return self.leading.start(change)

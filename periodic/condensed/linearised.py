@@ -26,7 +26,7 @@ class Local:
     """The rows at the points, each a map of (1, d rate, d state, dy) with y the event phases and parameters.
 
     forces (P, k, w): the increments of the forces; own (P, o, w): rows of the own states; unknowns (P, m, w):
-    increments of all unknowns; residual the largest one; rows (o,): which rows are those of own states.
+    increments of all unknowns; residual: the largest one; rows (o,): which rows are those of own states.
     """
 
     forces: Array
@@ -37,9 +37,9 @@ class Local:
 
 
 def exempt(system: System) -> tuple[int, ...]:
-    """Return the states of the linear part that are exempt from interpolation between mesh points.
+    """Return the states of the linear part whose interpolation errors between mesh points do not count.
 
-    These are velocities, to which all modes contribute, without those at whose zero the equations jump.
+    They are the velocities, to which all modes contribute, without those on which a jump's switch depends.
     """
     part, jumps = linear_of(system), list(jumps_of(system))
     if part is None or not jumps:
@@ -50,7 +50,11 @@ def exempt(system: System) -> tuple[int, ...]:
 
 
 def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...]) -> Local:
-    """Linearise and eliminate the unknowns point by point. Raises as `condense` does."""
+    """Linearise and eliminate the unknowns point by point.
+
+    Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where they do not
+    determine the unknowns or rows are missing, and ValueError where forces depend on accelerations.
+    """
     n = orbit.nodes.shape[1]
     rows = rows_of(orbit, evaluated(system, orbit, free))
     reduced, unknowns = eliminate(rows, n)
@@ -71,9 +75,10 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
 def answer(
     system: System, orbit: Orbit, parameter: Array, free: tuple[int, ...], tolerance: float = 0.0
 ) -> tuple[Response, list[ModesLike | None]]:
-    """Return the modes that matter at a tolerance on an orbit's mesh, and their derivatives.
+    """Return the response of the retained modes on an orbit's mesh, and the derivatives of these modes.
 
-    Raises ValueError for a system without a linear part.
+    Modes too weak to matter at the tolerance follow the forces quasi-statically, see `retained_modes`. Raises
+    ValueError for a system without a linear part.
     """
     part, mesh = linear_of(system), orbit.mesh
     if part is None:
@@ -93,7 +98,7 @@ class SplitLinearisation:
     Parameters
     ----------
     orbit : Orbit
-        Where it is linearised.
+        The orbit about which it is linearised.
     part : LinearPart
         The linear part.
     response : Response
@@ -117,9 +122,9 @@ class SplitLinearisation:
     def about(
         cls, system: System, orbit: Orbit, free: tuple[int, ...], tolerance: float = 0.0
     ) -> SplitLinearisation:
-        """Return it with the modes that matter at a tolerance, with all of them by default.
+        """Linearise about an orbit, with the modes that matter at a tolerance, by default with all of them.
 
-        Raises ValueError for a system without a linear part, and as `condense` does.
+        Raises ValueError for a system without a linear part, and what `local_rows` raises.
         """
         response, changes = answer(system, orbit, orbit.parameter, free, tolerance)
         part = linear_of(system)
@@ -140,12 +145,12 @@ class SplitLinearisation:
 
     @cached_property
     def flexibility(self) -> Flexibility:
-        """What forces do to the states in periodic motion."""
+        """The map from forces to the linear part's states in periodic motion."""
         return Flexibility.repeating(self.response)
 
     @cached_property
     def from_rest(self) -> Flexibility:
-        """What they do to those that begin with nothing."""
+        """The same map for modes that begin at rest, z(0) = 0."""
         return Flexibility(self.response)
 
     @cached_property
@@ -155,7 +160,7 @@ class SplitLinearisation:
 
     @cached_property
     def _motion(self) -> tuple[Complex, Array]:
-        """The modes' periodic motion under the forces, (N+1, J), and the states that it shows, (N, a, s)."""
+        """The modes' periodic motion under the forces, (N+1, J), and the states in it, (N, a, s)."""
         return self.response.motion(self.forces)
 
     @cached_property
@@ -165,12 +170,12 @@ class SplitLinearisation:
 
     @property
     def begun(self) -> Complex:
-        """How the modes at the beginning change with dy, the forces held: (J, q)."""
+        """Derivative of z(0), the modes at the beginning of the period, in y, the forces fixed: (J, q)."""
         return self._slopes[1]
 
     @cached_property
     def affine(self) -> Array:
-        """Increments of the linear part's states by (1, dy), the forces held: (P, s, 1+q)."""
+        """Increments of the linear part's states as a map of (1, dy), the forces held: (P, s, 1+q)."""
         stages = self.orbit.stages[:, :, list(self.part.states)]
         count, points, s = stages.shape
         return np.concatenate([(self._motion[1] - stages)[..., None], self._slopes[0]], axis=3).reshape(

@@ -15,7 +15,7 @@ KEPT = 6
 """Orbits that are kept with their equations while a special point is located."""
 
 SOLVING = 6
-"""Matrices at once of equations that are being set up and solved; of an orbit's two systems are kept."""
+"""Matrices that exist at once while equations are set up and solved. Two more are kept with each orbit."""
 
 
 @dataclass(frozen=True)
@@ -27,14 +27,14 @@ class Memory:
     points : int
         Collocation points of an interval.
     places, forces, own, modes : int
-        States of the linear part, forces, own states and modes.
+        Numbers of states of the linear part, of forces, of own states and of modes.
     active : float
-        Part of the intervals that have forces which depend on the motion.
+        Fraction of the intervals in which forces depend on the motion.
     kinked : bool
-        Whether errors are those of equations on the halved mesh, as beside kinks and with own states; else
-        these are never made, and the orbit's own all at once.
+        Whether the error estimate solves equations on the halved mesh, as it does with event nodes or own
+        states. Otherwise those are never set up, and the orbit's own are set up as one matrix.
     even : bool
-        Whether intervals are equal.
+        Whether all intervals have one width.
     """
 
     points: int
@@ -51,7 +51,7 @@ class Memory:
         return self._matrices(intervals) + intervals * self._each
 
     def most(self, intervals: int, limit: float) -> int:
-        """Return how many intervals, of at most so many, take no more than `limit` bytes."""
+        """Return the largest number of intervals, up to `intervals`, that takes at most `limit` bytes."""
         return bisect_right(range(1, intervals + 1), limit, key=self.peak)
 
     @property
@@ -59,7 +59,7 @@ class Memory:
         return 2 * self.modes + self.own
 
     def _matrices(self, intervals: int) -> float:
-        """Bytes of equations all at once."""
+        """Bytes of the equations as matrices; 0 where they are solved interval by interval."""
         each = self.points * (self.forces + self.own)
         held = intervals if self.own else self.active * intervals
         size = self.points * (self.active * self.forces + self.own) * intervals
@@ -71,7 +71,7 @@ class Memory:
 
     @property
     def _each(self) -> float:
-        """Bytes of the motion in an interval, of which tables are made on the halved mesh as well."""
+        """Bytes of an interval's tables and of its motion; the halved mesh has tables as well."""
         a, c = self.points, self._coordinates
         followed = c if c <= ALL_KEPT_UP_TO else 2 * LEADING
         tables = COMPLEX * self.modes * a * (self.forces + self.places)

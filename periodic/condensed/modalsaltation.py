@@ -1,10 +1,11 @@
-"""Modal saltation: how motions beside an orbit pass events at which the forces on the linear part jump.
+"""Modal saltation: how perturbations of an orbit pass events at which the forces on the linear part jump.
 
 In modes, with x = Re outputs z and dz/dtau = lambda z + B f, saltation is of rank one: at fixed tau
 
-    dz+ = dz- + B (f+ - f-) (s_x dx-)/(ds/dtau),    ds+ likewise of own states by the jump of their rates,
+    dz+ = dz- + B (f+ - f-) (s_x dx-)/(ds/dtau),
 
-since an event that is late by -(s_x dx-)/(ds/dtau) leaves the old forces at work for as long. Compare
+s the switch of the event, since an event that is late by -(s_x dx-)/(ds/dtau) leaves the old forces at work
+for as long. Perturbations of own states change likewise, by the jump of their rates. Compare
 `periodic.events.saltation`.
 """
 
@@ -29,8 +30,8 @@ from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 class ModalSaltation:
     """An event at the end of an interval.
 
-    row (n,): how early a perturbation of the states makes it; modes (J,) and own (o,): what is added to
-    perturbations for each unit of that.
+    row (n,): by how much (rad) the event comes earlier, per perturbation of the states; modes (J,), own (o,):
+    what is added to perturbations of modes and own states per rad of that.
     """
 
     interval: int
@@ -40,9 +41,9 @@ class ModalSaltation:
 
 
 def saltations(system: System, part: LinearPart, orbit: Orbit, response: Response) -> list[ModalSaltation]:
-    """Return the events of an orbit at which forces jump, or rates of own states, in order.
+    """Return the events of an orbit at which forces or rates of own states jump, in order.
 
-    Raises numpy.linalg.LinAlgError where a switch is at rest at its event, or forces there are not found.
+    Raises numpy.linalg.LinAlgError where ds/dtau is 0 at an event, or forces there are not found.
     """
     jumps, found = {*jumps_of(system), *carrying(system)}, list[ModalSaltation]()
     chosen = [i for i, event in enumerate(orbit.mesh.events) if event.switch in jumps]
@@ -60,7 +61,7 @@ def saltations(system: System, part: LinearPart, orbit: Orbit, response: Respons
 def _saltation(
     system: System, part: LinearPart, orbit: Orbit, response: Response, modes: Complex, index: int
 ) -> ModalSaltation | None:
-    """One event with the modes there; None where it does not depend on the states."""
+    """The saltation at one event, `modes` the z there; None where its switch depends on no state."""
     switch, start, side = orbit.mesh.events[index].switch, orbit.mesh.starts[index], sides(system, orbit)
     interval, x, phase = before(orbit, index)
     modes_before = modes_in(system, orbit, interval)
@@ -71,7 +72,7 @@ def _saltation(
         return None
     own = np.setdiff1d(np.arange(x.shape[1]), part.states)
     given = [
-        _given(system, orbit, x, phase, own, side[k], guess)
+        _solved_on(system, orbit, x, phase, own, side[k], guess)
         for k, guess in ((interval, orbit.algebraic[interval, -1]), (start, orbit.algebraic[start, 0]))
     ]
     (rates, forces), (later, after) = ((r, a[list(part.forces)]) for r, a in given)
@@ -85,7 +86,7 @@ def _saltation(
     return ModalSaltation(interval, slope / speed, response.modes.inputs @ (after - forces), later - rates)
 
 
-def _given(
+def _solved_on(
     system: System, orbit: Orbit, x: Array, phase: Array, own: Array, side: Array, guess: Array
 ) -> tuple[Array, Array]:
     """Rates of own states (o,) and unknowns (m,) at a state (1, n) on given sides of the jumps.

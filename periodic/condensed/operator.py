@@ -1,4 +1,4 @@
-"""The operator of a split system's orbit: as many unknowns as its places have."""
+"""The linearised equations of a split system's orbit, in the unknowns of its places alone."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class CondensedOperator:
     own : sequence of Row
         The rows of the event nodes.
     brief : bool
-        Whether of the fundamental matrices the last is enough.
+        Whether only the last fundamental matrix is needed.
     """
 
     given: SplitLinearisation
@@ -50,7 +50,7 @@ class CondensedOperator:
 
     @property
     def rounding(self) -> float:
-        """About what rounding leaves in the states, relative: phases of fast modes are known no better."""
+        """Estimate of the states' relative rounding error: that of the phase of the fastest mode."""
         response = self.given.response
         turned = float(np.abs(response.modes.exponents).max(initial=0.0)) * response.period
         return float(np.finfo(float).eps * turned * np.sqrt(self.orbit.mesh.ntst))
@@ -86,7 +86,7 @@ class CondensedOperator:
         return found[:size], found[size:]
 
     def _by_interval(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
-        """The same by what the period begins with, the only unknowns beside dy."""
+        """Forces and own states, and dy, with initial values of the motion and dy as the only unknowns."""
         system, floquet = self.system, self._floquet
         count = len(floquet.kept)
         unknowns, ends = floquet.free
@@ -115,9 +115,9 @@ class CondensedOperator:
         return every
 
     def answered(self, rows: Sequence[Row], states: Array) -> Increment:
-        """Return the increment by which an orbit answers what is missing of the places' states, (N, a, s).
+        """Return the increment of an orbit due to a disturbance (N, a, s) of the states at the places.
 
-        Of systems without own states; `states` are part of the increment.
+        Of systems without own states; the disturbance is part of the increment.
         """
         system, orbit, k = self.system, self.orbit, len(self.orbit.phases)
         flat = states.reshape(system.points, -1)
@@ -163,5 +163,5 @@ class CondensedOperator:
 
     @property
     def fundamental(self) -> Array:
-        """The same in the subspace's own basis, (N+1, r, r)."""
+        """Fundamental matrices in the basis of the leading subspace, (N+1, r, r); or the last alone."""
         return self.leading.monodromy[None] if self.brief else self.leading.fundamental

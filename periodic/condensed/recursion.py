@@ -1,4 +1,4 @@
-"""Motion of what is nonlinear interval by interval: no equations of a whole period at once.
+"""Active forces and own states solved interval by interval, without equations of the whole period.
 
 Forces and own states u of an interval follow from the modes z and own states s that it begins with,
 
@@ -25,20 +25,21 @@ INTERVAL = 6e4
 
 
 def pays(system: Coupled, columns: int) -> bool:
-    """Return whether equations with right-hand sides are better solved interval by interval than at once."""
+    """Return whether equations with `columns` right-hand sides are cheaper to solve interval by interval."""
     response = system.given.response
     coordinates = 2 * len(response.modes.exponents) + len(system.others)
     intervals = system.intervals if len(system.others) else len(system.held)
     each = system.ncol * (len(system.active) + len(system.others))
-    # between equal intervals only how many lie in between counts
+    # on a uniform mesh coefficients depend on the distance of two intervals alone
     way = 4.0 * coordinates / system.intervals + 2.0 * columns if response.uniform else 4.0 * coordinates
     return cheaper(system.size, coordinates, intervals, each, way)
 
 
 def cheaper(size: float, coordinates: int, intervals: float, each: int, way: float) -> bool:
-    """Return whether so many equations are, of intervals with `each` of them, that begin with coordinates.
+    """Return whether `size` equations, `each` of them an interval, are cheaper interval by interval.
 
-    way: operations that it takes to make one of their coefficients, and to use it.
+    coordinates: of the motion, two a mode and own states; way: operations that one coefficient of the
+    equations of the whole period takes.
     """
     at_once = size**2 * (0.7 * size + way)
     return at_once > intervals * (INTERVAL + 4.0 * each * coordinates**2)
@@ -49,12 +50,12 @@ Added = dict[int, tuple[Complex, Array]]
 
 
 class IntervalRecursion:
-    """The equations of a system where it has forces that depend on the motion, or own states.
+    """The equations of the intervals with forces that depend on the motion, own states or events.
 
     Parameters
     ----------
     system : Coupled
-        The equations; what they have of motion that repeats is not read.
+        The equations; how they are closed over the period is not read.
     saltations : sequence of ModalSaltation
         Events at which forces jump.
     """
@@ -79,7 +80,7 @@ class IntervalRecursion:
         self.by_modes, self.by_own = -self.inverse @ begun, -self.inverse @ left
 
     def _rows(self, rows: Array, sign: float) -> tuple[Array, Array, Array]:
-        """Rows (C, a, r, w) by the interval's unknowns, by the modes and own states that it begins with.
+        """Rows (C, a, r, w) in the interval's unknowns, and in the modes and own states at its beginning.
 
         Shapes (C, a r, m), (C, a r, 2 J), (C, a r, o).
         """
@@ -104,7 +105,7 @@ class IntervalRecursion:
 
     @cached_property
     def _leaves(self) -> Array:
-        """What forces of an interval leave in the modes at its end, (C, 2 J, a k)."""
+        """Modes at the end of an interval per unit of the forces in it, (C, 2 J, a k)."""
         left = self.response.impulse[self.intervals][..., self.system.active]
         left = left.reshape(*left.shape[:2], self.forces)
         return np.concatenate([left.real, left.imag], axis=1)
@@ -118,17 +119,9 @@ class IntervalRecursion:
     ) -> tuple[Array, Complex, Array]:
         """Return unknowns (size, r), modes (J, r) and own states (o, r) at the end of the period.
 
-        Parameters
-        ----------
-        right : ndarray, shape (size, r), optional
-            Right-hand sides of the system's equations; none by default.
-        modes : ndarray of complex, shape (J, r)
-            Modes at the beginning.
-        own : ndarray, shape (o, r)
-            Own states there.
-        passed : dict, optional
-            Gets what events add to modes and own states of motions at fixed tau, by interval; without it
-            event nodes are where they are, and add nothing.
+        `right` (size, r) are right-hand sides of the system's equations, None for 0; `modes` and `own` are
+        those at the beginning. `passed` is filled with the jumps of modes and own states at events, at fixed
+        tau, by interval; without it event nodes are held, and nothing jumps.
         """
         response, exponents = self.response, self.response.modes.exponents
         found = np.zeros((len(self.intervals), self.inverse.shape[1], modes.shape[1]))
@@ -151,7 +144,7 @@ class IntervalRecursion:
         return self._together(found), z, own
 
     def _passed(self, saltation: ModalSaltation, z: Complex, own: Array) -> tuple[Complex, Array]:
-        """What an event adds to modes (J, r) and own states (o, r) that arrive there."""
+        """Jumps at an event of modes (J, r) and own states (o, r) that arrive there."""
         system = self.system
         early = saltation.row[system.places] @ (self.response.modes.outputs @ z).real
         early = early + saltation.row[system.others] @ own

@@ -1,4 +1,4 @@
-"""Meshes of condensed orbits: equal intervals, or as fine as contacts, and motion between them, ask for."""
+"""Meshes of condensed orbits: uniform, or as fine as contacts and the motion between them require."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FINER, COARSER = 2.5, 2.0
 """How many times shorter and longer intervals may become at a time."""
 
 FEWEST = 16
-"""Intervals a period at the least beside contacts: forces that drive the structure are polynomials there."""
+"""Least number of intervals a period outside contacts: excitation is a polynomial in each of them."""
 
 
 LARGEST = 1e9
@@ -32,15 +32,15 @@ LARGEST = 1e9
 
 
 class CondensedRefinement(CollocationRefinement):
-    """Equal intervals where no kink asks for others: there all is known of one interval.
+    """Uniform meshes for systems without switches: tables of one interval then serve for all.
 
-    Else the motion is exact for its forces, so that intervals with none that depend on it need but show it
-    and what drives it, evenly, and the others are as short as the multipliers ask for too.
+    With switches, as motion is exact for its forces, intervals without active forces need only resolve the
+    motion and its excitation, evenly; the others are also as short as the multipliers require.
     """
 
     @property
     def exhausted(self) -> bool:
-        """Whether the orbit has the largest number of intervals, or nearly so many as it may have."""
+        """Whether the orbit has the largest number of intervals, or more than half of what memory allows."""
         return super().exhausted or (self._limited and 2 * self.orbit.mesh.ntst > self._most)
 
     @property
@@ -59,10 +59,10 @@ class CondensedRefinement(CollocationRefinement):
 
     @cached_property
     def _most(self) -> int:
-        """Intervals at the most."""
+        """Largest number of intervals, by the settings and by memory."""
         part, most, orbit = linear_of(self.system), self.method.ntst_max, self.orbit
         assert part is not None
-        # the next mesh is FINER at the most
+        # the next mesh has at most FINER times as many intervals
         if self._memory(part.size, 1.0).peak(min(most, int(FINER * orbit.mesh.ntst))) <= LARGEST:
             return most
         response, _ = answer(self.system, orbit, orbit.parameter, (), self.method.tolerance)
@@ -72,7 +72,7 @@ class CondensedRefinement(CollocationRefinement):
         return max(self.method.ntst_min, self._memory(modes, share).most(most, LARGEST))
 
     def _memory(self, modes: int, active: float) -> Memory:
-        """What it takes with so many modes, and forces in such a part of the intervals."""
+        """The memory for some modes, with forces that depend on motion in a fraction of the intervals."""
         part, orbit = linear_of(self.system), self.orbit
         assert part is not None
         places, forces = len(part.states), len(part.forces)
@@ -107,7 +107,7 @@ class CondensedRefinement(CollocationRefinement):
         return spread(self.orbit, scale * wanted, events, phases, self.method.shortest)
 
     def _own(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
-        """The same: it is not spread by the motion's derivatives."""
+        """The mesh of `_made`, which needs no spreading anew."""
         return self._made(events, phases)
 
     @property
@@ -133,18 +133,18 @@ class CondensedRefinement(CollocationRefinement):
         return np.where(active, np.maximum(wanted, shorter), wanted)
 
     def _density(self, states: list[int]) -> Array:
-        """The density that some of the states want, (N,)."""
+        """The mesh density by the derivatives of some of the states, (N,)."""
         orbit = self.orbit
         return density(replace(orbit, nodes=orbit.nodes[:, states], stages=orbit.stages[:, :, states]))
 
     def _times(self, error: float, order: int) -> float:
-        """How many times as many intervals bring an error of an order to its aim."""
+        """Factor on the number of intervals that brings an error of an order to its aim."""
         ratio = error / (AIM * self.method.tolerance)
         return float(np.clip(ratio, COARSER**-order, FINER**order)) ** (1 / order)
 
     @cached_property
     def _forces(self) -> Array:
-        """How forces depend on rates and states at the points, (P, k, 2 n), without signs."""
+        """Moduli of the forces' derivatives in rates and states at the points, (P, k, 2 n)."""
         orbit, part = self.orbit, linear_of(self.system)
         assert part is not None
         rows = local_rows(self.system, part, orbit, ()).forces

@@ -1,11 +1,11 @@
-"""Motions of a split system beside an orbit that are multiplied by a number over the period.
+"""Linearised motions of a split system about an orbit that are multiplied by a number over the period.
 
-With G_mu what forces with f(T) = mu f(0) do to the places, whose modes close with 1/(mu - exp(lambda T)),
+With G_mu the map from forces with f(T) = mu f(0) to the places, its modes closed by 1/(mu - exp(lambda T)),
 
     K_mu (f, s) = f - F'(G_mu f, s),  s' - S'(G_mu f, s),
 
-is singular just where mu is a Floquet multiplier. Its gradient in the orbit is exact: the second derivatives
-are those of the system's own rows, and G is known with its derivatives.
+is singular just where mu is a Floquet multiplier. Its gradient in the orbit is exact, from derivatives of G
+and second derivatives of the system's rows, but for differences of G in parameters that the motion changes.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from periodic.system import LinearisationLike, System, differentiable
 from periodic.system.precision import difference_step
 
 PARAMETER_STEP = difference_step(order=2)
-"""Relative step in parameters of differences of the linear part's derivatives."""
+"""Relative step in parameters for central differences of the linear part."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class CondensedRepeating:
     system : System
         The equations.
     given : SplitLinearisation
-        The same about the orbit, with all modes.
+        The system about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change; only where the multiplier is 1.
     mu : complex
@@ -150,7 +150,7 @@ class CondensedRepeating:
         pull: Array,
         free: tuple[int, ...],
     ) -> Row:
-        """The second derivatives of the system's own rows, and what its forces do where v_y is not 0."""
+        """Second derivatives of the system's own rows and, where v_y is not 0, `_stiffer` for its forces."""
         orbit, m = self.given.orbit, self.given.orbit.algebraic.shape[2]
         stages, algebraic = tangent.stages.reshape(rates.shape), tangent.algebraic.reshape(-1, m)
         parts = []
@@ -165,7 +165,7 @@ class CondensedRepeating:
         return gathered(self.system, orbit, points, slopes, free)
 
     def _softer(self, tangent: Tangent, pull: Array, free: tuple[int, ...]) -> Array:
-        """How the linear part's answer to the tangent's forces changes with phases and parameters, (k+q,)."""
+        """Derivatives of `pull` . the response to the tangent's forces, in phases and parameters, (k+q,)."""
         given, orbit = self.given, self.given.orbit
         stretch = orbit.grid.width_gradient
         forces = np.ascontiguousarray(tangent.algebraic[:, :, list(given.part.forces)])
@@ -184,7 +184,7 @@ class CondensedRepeating:
         return np.asarray(total)
 
     def _stiffer(self, tangent: Tangent, pull: Array) -> Array:
-        """How much more the pull at the places takes of forces along v_y, (P, k)."""
+        """Derivative along v_y of the flexibility's adjoint times `pull`: weights of forces, (P, k)."""
         orbit = self.given.orbit
         size, ends = self._step(tangent), []
         for step in (size, -size):

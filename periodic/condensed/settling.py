@@ -1,4 +1,4 @@
-"""The word of a motion of a split system in time: guesses of orbits that stick and slip, with event nodes."""
+"""Time stepping of split systems: guesses of orbits that stick and slip, with event nodes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from periodic.refinement.equidistribution import redistribute
 from periodic.system import HELD, STUCK, System, linear_of
 
 STEPS = 512
-"""Steps in a period that settles."""
+"""Time steps in a period while the motion settles."""
 
 FINE = 4096
 """Steps in the period that is kept."""
@@ -31,7 +31,7 @@ SHORTEST = 1e-6
 """Least width (rad) of steps and intervals, in which changes of mode are located."""
 
 CLOSE = 10 * SHORTEST
-"""As `STILL`, where changes of mode lie so near to each other that their order asks for it."""
+"""As `STILL`, but small enough to have changes of mode near to each other in the right order."""
 
 INTERVALS = 192
 """Intervals of the guess."""
@@ -40,8 +40,8 @@ INTERVALS = 192
 def settled(system: System, start: Orbit) -> Iterator[Orbit]:
     """Yield the motion to which a system with sliding jumps settles from rest, at an orbit's parameters.
 
-    Then the same settled further, and in finer steps: changes of mode that lie near to each other are in
-    order only then. None where it does not settle within PERIODS, or cannot be followed.
+    Later ones have settled further, the last in finer steps: only then are changes of mode near to each other
+    in order. The sequence ends where motion does not settle within PERIODS, or cannot be followed.
     """
     try:
         motion = Motion.at_rest(system, start.parameter, start.nodes[0], start.algebraic[0, 0])
@@ -61,7 +61,7 @@ def settled(system: System, start: Orbit) -> Iterator[Orbit]:
 
 
 def _settles(motion: Motion, still: float) -> bool:
-    """Follow a motion until a period changes it by no more than a part of its peak to peak."""
+    """Advance a motion, up to PERIODS, until it repeats to `still` of its peak to peak; whether it does."""
     for _ in range(PERIODS):
         side = motion.side
         motion.period()
@@ -72,9 +72,9 @@ def _settles(motion: Motion, still: float) -> bool:
 
 
 def followed(system: System, orbit: Orbit, before: int = 0) -> Orbit | None:
-    """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
+    """Return a period of the motion from a state of an orbit, as an orbit; None where that fails.
 
-    It may violate its word: that of the motion does not.
+    It comes after `before` others. The given orbit may violate its word; the motion does not violate its own.
     """
     part = linear_of(system)
     if part is None or orbit.mesh.period != FORCED:
@@ -127,16 +127,16 @@ def orbit_of(motion: Motion) -> Orbit:
 
 
 def _always(motion: Motion, records: Sequence[Changed]) -> list[int]:
-    """The guards of friction that is held all along."""
+    """The guards of friction that sticks all along."""
     changed = {each.surface for each in records}
     joints = (joint for joint in motion.joints if joint.slides and joint.index not in changed)
     return [joint.switch for joint in joints if motion.side[joint.column] == STUCK]
 
 
 def _lasting(motion: Motion) -> list[Changed]:
-    """The changes of mode without what is an error of the steps.
+    """The changes of mode without those that are errors of the time steps.
 
-    Slips of one step between two stretches of sticking, and stops of one step where rates lead on.
+    Errors are slips of one step amid sticking, and stops of one step where the motion should pass through.
     """
     found = list(motion.events)
     for joint in motion.joints:
@@ -155,7 +155,7 @@ def _lasting(motion: Motion) -> list[Changed]:
 
 
 def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bool:
-    """Whether a stop of one step is none, as rates on both sides of the jump have one sign there."""
+    """Whether a stop of one step is a passage in fact: rates on both sides of the jump have one sign."""
     if release.step > stop.step + 1 or not joint.slides:
         return False
     k = stop.step + 1
@@ -164,7 +164,7 @@ def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bo
 
 
 def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
-    """The same, where one joint's stop or passage tears off another at once both at one phase."""
+    """The changes, with a release at the phase of another joint's stop or passage that causes it at once."""
     records = _side_by_side(motion, records)
     sliding = {joint.index: joint for joint in motion.joints if joint.slides}
     own = [each for each in records if each.surface in sliding]
@@ -179,7 +179,7 @@ def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
 
 
 def _side_by_side(motion: Motion, records: list[Changed]) -> list[Changed]:
-    """The same, where joints with one guard stop at one phase."""
+    """The changes, with stops of joints that have one guard at one phase."""
     switches = {joint.index: joint.switch for joint in motion.joints}
     found = list[Changed]()
     for each in records:
@@ -200,7 +200,7 @@ def _held(motion: Motion, each: Changed) -> list[int]:
 
 
 def _tears(motion: Motion, cause: Changed, release: Changed, joint: Joint) -> bool:
-    """Whether a joint that is held before another's change would not be held by the modes after it."""
+    """Whether a joint that sticks before another's change could not stick in the modes after it."""
     k, held = cause.step, list[bool]()
     for modes in (motion.sides[k], motion.sides[release.step + 1]):
         side = np.where(np.arange(len(modes)) == joint.column, STUCK, modes)

@@ -1,4 +1,4 @@
-"""What methods for systems with a linear part have in common: what they take, where first orbits begin."""
+"""Common base of methods for systems with a linear part: systems they accept, guesses of first orbits."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class SplitMethod:
 
     @classmethod
     def like(cls, method: DataclassInstance, system: System) -> Self:
-        """Return it with the settings of a method for all states that are not usual.
+        """Return the method with those settings of a method for all states that are not defaults.
 
-        Raises ValueError for a scheme that does not suit it, and a system with events that it does not know.
+        Raises ValueError for a scheme other than Radau IIA, and for events that condensation does not cover.
         """
         _check_events(system)
         given, usual = shallow(method), shallow(type(method)())
@@ -42,16 +42,16 @@ class SplitMethod:
         return settled(system, start) if slides_of(system) else iter(())
 
     def drifting(self, system: System, parameter: Array) -> list[str]:
-        """Return none: that modes of a structure are held is asked where it is compiled."""
+        """Return none: whether a structure is held is checked where it is compiled."""
         return []
 
     def resting(self, system: System, start: Orbit) -> Orbit | None:
-        """Return the rest under the mean load, the linear part by the static flexibility of its modes."""
+        """Return the equilibrium under the mean load, with the static flexibility of the linear part."""
         return resting(system, start, linear_of(system))
 
 
 def _check_events(system: System) -> None:
-    """Refuse states that are reset, and jumps of a motion whose sticking is not known. Raises ValueError."""
+    """Refuse resets, relays, and jumps at which sticking is not known. Raises ValueError."""
     if resets_of(system):
         raise ValueError(
             "the states at the places are reset; a structure must be compiled with condense=False for that"

@@ -1,9 +1,9 @@
 """The invariant subspace of the largest multipliers of many, by Davidson's method.
 
-The monodromy matrix is a diagonal E, the modes left alone, and what the places add to it, which is little but
-for the lowest modes. A subspace that begins with the modes that are damped least therefore holds the largest
-multipliers nearly at once; it is widened by (mu - E)^-1 r, r the residual of an eigenvector, until they are
-in it.
+The monodromy matrix is a diagonal E, the growth of the uncoupled modes, plus a term from the forces at the
+places, which is small but for the lowest modes. A subspace that begins with the least damped modes therefore
+nearly holds the eigenvectors of the largest multipliers; it is widened by (mu - E)^-1 r, r the residual of an
+eigenvector, until it holds them.
 
 References
 ----------
@@ -21,19 +21,19 @@ from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import Complex
 
 SPARE = 3
-"""Multipliers below those that are wanted which must be known too."""
+"""Next smaller multipliers that must converge besides those that are wanted."""
 
 MORE = 4
-"""Lightest modes to begin with beyond those that are wanted."""
+"""Least damped modes in the first subspace beyond as many coordinates as multipliers are computed."""
 
 BLOCK = 4
-"""Vectors drawn at random whose images are in the subspace: what is driven by the places is in them."""
+"""Random vectors whose images join the subspace: they hold motion driven by forces at the places."""
 
 LARGEST_SUBSPACE = 72
 """Largest size of the subspace."""
 
 EIGENVECTOR_RESIDUAL = 1e-12
-"""Largest residual of an eigenvector from it, relative to the largest multiplier, at least to 1."""
+"""Largest residual of an eigenvector, relative to the largest multiplier or to 1 if that is larger."""
 
 
 class Motions(Protocol):
@@ -53,10 +53,10 @@ class Motions(Protocol):
 def invariant(motions: Motions, count: int, light: float) -> Array:
     """Return an orthonormal basis of the subspace of the `count` largest multipliers, (coordinates, r).
 
-    Of more where more are larger than `light`: all of these then. Where the last would tear a pair apart it
-    takes real ones below, else what is left.
+    Where more are larger than `light` it holds all of these. A pair that would be one too many is left out,
+    and the next real multiplier taken, if any.
     """
-    # where the linear part alone has more, so has the whole, mostly
+    # mostly the system has as many lightly damped multipliers as its linear part alone
     values, vectors = _largest(motions, max(count, motions.light))
     if np.abs(values).min() > light:
         values, vectors = _all(motions, len(motions.kept))
@@ -72,7 +72,7 @@ def invariant(motions: Motions, count: int, light: float) -> Array:
 
 
 def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
-    """Some more than `count` of the largest multipliers, and their eigenvectors."""
+    """The `count` + SPARE largest multipliers, and their eigenvectors."""
     size, wanted = len(motions.kept), count + SPARE
     begun = wanted + 2 * MORE
     if begun + BLOCK > size:
@@ -96,11 +96,11 @@ def _largest(motions: Motions, count: int) -> tuple[Complex, Complex]:
         beyond = motions.apart(values[wrong], left[:, wrong])
         paired = values[wrong].imag > 0
         more = np.concatenate([beyond.real, beyond[:, paired].imag], axis=1)
-    return _all(motions, wanted)  # those next to each other in size are told apart by all of them
+    return _all(motions, wanted)  # not converged, as where multipliers have nearly one modulus
 
 
 def _orthogonal(space: Array, vectors: Array) -> Array:
-    """An orthonormal basis of vectors across a subspace."""
+    """An orthonormal basis of the parts of vectors that are orthogonal to a subspace."""
     for _ in range(2):
         vectors = np.linalg.qr(vectors - space @ (space.T @ vectors))[0]
     return vectors

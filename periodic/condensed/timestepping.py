@@ -1,8 +1,8 @@
 """A motion of a split system in time: modes exact over each step, forces constant in it.
 
-At the end of a step what is held is at rest, by a part of its jump between -1 and 1, or slips on the side of
-its speed: a linear complementarity problem that Murty's rule of the least index solves, which ends where the
-mobility of the joints is a P-matrix (Murty, Linear Complementarity, 1988, 4). What an elastic slider is
+At the end of a step a joint sticks, held by a fraction of its jump between -1 and 1, or slips on the side of
+its speed: a linear complementarity problem. Murty's least-index rule solves it, and terminates where the
+mobility of the joints is a P-matrix (Murty, Linear Complementarity, 1988, 4). An elastic slider that is
 carried along ends the step at its limit.
 """
 
@@ -33,7 +33,7 @@ from periodic.system import (
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 PARTS = 8
-"""Shorter steps in one in which a mode changes."""
+"""Number of shorter steps that replace one in which a mode changes."""
 
 PIVOTS = 200
 """Most changes of a mode until all are consistent."""
@@ -74,7 +74,7 @@ class Changed:
 
 @dataclass(frozen=True)
 class Step:
-    """What a step of a width does to modes z: z+ = grown z + kicked f, the states then local f more."""
+    """A time step of modes z under forces f: z+ = grown z + kicked f, x+ = Re(output grown z) + local f."""
 
     width: float
     grown: Complex
@@ -83,7 +83,7 @@ class Step:
 
     @classmethod
     def over(cls, width: float, modes: ModesLike) -> Step:
-        """Return it."""
+        """Return the step of a width."""
         turned = modes.exponents * width
         with np.errstate(all="ignore"):
             mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
@@ -93,19 +93,19 @@ class Step:
 
 @dataclass(frozen=True)
 class Holding:
-    """By which parts of their jumps what is stuck is held, on the mean of a step of a width; else NaN."""
+    """Fractions of their jumps that hold sticking joints, means over a step of a width; NaN for others."""
 
     width: float
     parts: Array
 
     def gives_way(self, before: Holding) -> bool:
-        """Whether a part exceeds 1 at the end of the step, led on from the step before."""
+        """Whether a fraction, extrapolated from the step before, exceeds 1 at the end of the step."""
         rate = (self.parts - before.parts) / (self.width + before.width)
         return bool((np.abs(self.parts + rate * self.width) > 1).any())
 
 
 def _width(length: float) -> float:
-    """The width of a step, the same where it differs in its last digits."""
+    """The width of a step, rounded so that steps that differ in the last digits have one."""
     return float(f"{length:.9e}")
 
 
@@ -124,7 +124,7 @@ class Motion:
     modes : ModesLike
         Modes of the linear part.
     z : ndarray of complex, shape (J,)
-        What they begin with.
+        Modal coordinates to begin with.
     side : ndarray, shape (columns,)
         The surfaces' modes to begin with.
     begin : float
@@ -158,15 +158,20 @@ class Motion:
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
-        """Return the motion from rest of the linear part, own states and guesses of the unknowns given."""
+        """Return the motion from rest of the linear part, own states and guesses of the unknowns given.
+
+        Joints begin as held: along a jump of 0 the equations have no side.
+        """
         part = linear_of(system)
         assert part is not None
         modes = part.modes(parameter)
         rest = np.zeros(len(modes.exponents), dtype=complex)
-        return cls(system, parameter, state, unknown, modes, rest, np.zeros(len(jumps_of(system))))
+        side = np.zeros(len(jumps_of(system)))
+        side[[joint.column for joint in joints_of(system)]] = STUCK
+        return cls(system, parameter, state, unknown, modes, rest, side)
 
     def _slider(self, joint: Joint) -> tuple[int, int]:
-        """The row of a slider, another one where it is carried, and the state that is its place."""
+        """The row of a slider, which differs where it is carried, and the state that is its position."""
         points = np.zeros((1, len(self.state))), self.state[None], self.unknown[None]
         given = *points, np.array([self.begin]), self.parameter
         columns = np.arange(len(self.side)) == joint.column
@@ -179,7 +184,7 @@ class Motion:
         return row, int(np.abs(moved[row]).argmax())
 
     def pace(self, steps: int, shortest: float = np.inf) -> None:
-        """Take so many steps in a period from now on, but shorter ones (rad) where modes change."""
+        """Set the number of steps in a period, and the width (rad) to which changes of mode cut them."""
         self.steps, self.shortest = steps, shortest
 
     @property
@@ -188,7 +193,7 @@ class Motion:
         return np.array(self.phases)
 
     def period(self) -> None:
-        """Follow it over a period, whose phases, states, unknowns, modes and events are kept."""
+        """Advance the motion by a period, and keep its phases, states, unknowns, modes and events."""
         self.phases, self.events = [self.begin], []
         self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.side]
         for k in range(self.steps):
@@ -228,7 +233,7 @@ class Motion:
         self.holding = Holding(width, np.where(np.isin(np.arange(len(parts)), self._stuck[0]), parts, np.nan))
 
     def _over(self, width: float) -> Step:
-        """What a step of a width does, kept."""
+        """The step of a width, computed once."""
         if width not in self._known:
             self._known[width] = Step.over(width, self.modes)
         return self._known[width]
@@ -256,12 +261,12 @@ class Motion:
 
     @property
     def _stuck(self) -> tuple[NDArray[np.int_], list[int]]:
-        """The columns of what is held by a part of its jump, and its guards."""
+        """The columns and the guards of the sliding joints that stick."""
         kept = [joint for joint in self.joints if joint.slides and self.side[joint.column] == STUCK]
         return np.array([joint.column for joint in kept], dtype=int), [joint.switch for joint in kept]
 
     def _solved(self, tau: float, step: Step) -> tuple[Array, Array, Array]:
-        """States and unknowns at the end of a step, and the parts of their jumps that hold what is stuck."""
+        """States and unknowns at the end of a step, and fractions of the jumps that hold sticking joints."""
         x, unknown, parts = self.state.copy(), self.unknown.copy(), np.zeros(len(self.side))
         shown, own = (self.modes.outputs @ (step.grown * self.z)).real, len(self.own)
         for _ in range(MOST_ITERATIONS):
@@ -278,10 +283,10 @@ class Motion:
     def _equations(
         self, x: Array, unknown: Array, parts: Array, tau: float, step: Step
     ) -> tuple[Array, Array]:
-        """Rows amid a step by own states, unknowns and parts of jumps at its end, and what is left of them.
+        """Rows and residual amid a step, in own states, unknowns and fractions of jumps at its end.
 
-        Forces are constant in it: those amid it are right to second order. At its end what is stuck has a
-        switch of 0; the equations lie between those of its two sides.
+        Forces are constant in a step: those of its middle are right to second order. At its end the switch of
+        a sticking joint is 0; its equations are interpolated between those of its two sides.
         """
         system, at, (stuck, switches) = self.system, np.array([tau]), self._stuck
         amid = (x + self.state)[None] / 2, unknown[None], at - step.width / 2, self.parameter
@@ -322,7 +327,7 @@ class Motion:
         return line
 
     def _noted(self, k: int) -> None:
-        """Keep the changes of mode of a step; what is at rest at the beginning of all has had none."""
+        """Keep the changes of mode of a step; a joint whose mode before it is 0 has none."""
         old, new = self.sides[k], self.sides[k + 1]
         for joint in self.joints:
             before, after = int(old[joint.column]), int(new[joint.column])
@@ -332,7 +337,7 @@ class Motion:
                 self.events.append(Changed(joint.index, before, after, phase, k))
 
     def _share(self, k: int, joint: Joint, before: int, after: int) -> float:
-        """At which part of a step a joint changes its mode, by what its guards do in the mode before it."""
+        """Fraction of a step after which a joint changes its mode, by its guards in the mode before."""
         first, last = (self.values(self.states[i], self.phases[i], self.sides[k]) for i in (k, k + 1))
         if before == STUCK:
             switch = joint.up if after > 0 else joint.down

@@ -1,4 +1,4 @@
-"""All motions of a split system beside an orbit: its leading multipliers, with their derivatives."""
+"""All linearised motions of a split system about an orbit: the leading multipliers and their derivatives."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class CondensedVariations:
     system : System
         The equations.
     given : SplitLinearisation
-        The same about the orbit, with all modes.
+        The system about the orbit, with all modes.
     free : tuple of int
         Parameters that the motions may change.
     """

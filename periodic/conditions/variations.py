@@ -1,4 +1,4 @@
-"""Motions beside an orbit, and its linearised equations, as they suit a system: whole or split."""
+"""Linearised motions about an orbit, and its linearised equations, as they suit a system: whole or split."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from periodic.system import System
 
 
 def variations(system: System, orbit: Orbit, free: tuple[int, ...]) -> Variations:
-    """Return the motions beside an orbit.
+    """Return the linearised motions about an orbit.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The arclength constraint: a step of given length along the tangent, in a metric that no mesh changes."""
+"""The arclength constraint: a step of given length along the tangent, in a metric independent of the mesh."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ArclengthConstraint:
     """<u - origin, direction> = distance, a hyperplane across `direction` (Keller 1977).
 
     The scalar product is that of `Increment.dot`: the mean over the period of <x, y>/size^2, x and y at fixed
-    tau, plus p q / scale^2 of the free parameters, of which `index` is the first's, plus that of the lengths
+    tau, plus p q / scale^2 of the free parameters (`index` is the first one's), plus the part of the lengths
     of brief excursions.
     """
 
@@ -42,7 +42,7 @@ class ArclengthConstraint:
 
     @cached_property
     def _rates(self) -> Array:
-        """Gradient in the free parameters, shape (q,); that in one alone, and zeros, where only it counts."""
+        """Gradient in the free parameters, shape (q,); 0 but for the first where `scale` is a number."""
         own, scale = self.direction.parameters, self.scale
         if isinstance(scale, np.ndarray):
             return np.append(own, np.zeros(len(scale) - len(own))) / scale**2
@@ -55,7 +55,7 @@ class ArclengthConstraint:
         return float(states) + outer(self.direction, direction, self.scale)
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return value and gradient; mesh points that move meet the origin where they are now."""
+        """Return value and gradient; the origin is evaluated at the orbit's present mesh points."""
         state, slope = self._origin_at(system, orbit)
         weighted, outer = self._gradient(orbit, free, slope)
         further = orbit.parameter[list(free)] - self.origin.parameter[list(free)]
@@ -65,10 +65,10 @@ class ArclengthConstraint:
         return Row(float(value) - self.distance, weighted, outer)
 
     def _origin_at(self, system: System, orbit: Orbit) -> tuple[Array, Array]:
-        """States and slopes of the origin at an orbit's mesh points, on its tangents where there are jumps.
+        """States and slopes of the origin at an orbit's mesh points, by its tangents where there are jumps.
 
-        Along the tangents points on a circle would leave it, with the square of their way: as much as the
-        branch moves while an excursion ends.
+        Without jumps the error of tangents, of second order in the shift, would matter: it is as large as the
+        branch's own motion while an excursion ends.
         """
         origin = self.origin
         way = node_phase_gradient(orbit) @ (orbit.phases - origin.phases)
@@ -88,10 +88,10 @@ class ArclengthConstraint:
 
 
 def _in_own_segments(origin: Orbit, at: Array) -> tuple[Array, Array]:
-    """States and slopes of an orbit at its moved mesh points, beyond a segment on the tangent at its end.
+    """States and slopes of an orbit at its moved mesh points, beyond a segment by the tangent at its end.
 
-    There the motion is another one: what a point in contact comes to is not the flight before it. An event
-    node is in the longer of its two segments.
+    A point must not take states of another segment: one in contact would take those of the flight before it.
+    An event node is in the longer of its two segments.
     """
     mesh, grid, length = origin.mesh, origin.grid, origin.mesh.segment_lengths(origin.phases)
     own = np.searchsorted(mesh.starts, np.arange(mesh.ntst), side="right") - 1

@@ -42,7 +42,7 @@ class Change(Protocol):
 
     @property
     def condition(self) -> SideCondition:
-        """What holds where the step ends, on the mesh that the orbits have so far."""
+        """The condition that holds where the step ends, on the mesh that the orbits have so far."""
 
     @property
     def touches(self) -> bool:
@@ -50,11 +50,11 @@ class Change(Protocol):
 
     @property
     def strict(self) -> bool:
-        """Whether orbits past it on the same mesh are none of the system."""
+        """Whether orbits past the change, on the same mesh, are no orbits of the system."""
 
     @property
     def otherwise(self) -> Change | None:
-        """What it is where no orbit meets its condition, if anything."""
+        """The change to take instead where no orbit meets the condition, if any."""
 
     @property
     def final(self) -> bool:
@@ -62,7 +62,7 @@ class Change(Protocol):
 
     @property
     def last(self) -> bool:
-        """Whether the branch ends there: orbits beyond it are none near."""
+        """Whether the branch ends there: no orbits beyond it are near."""
 
     @property
     def name(self) -> str:

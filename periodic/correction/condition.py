@@ -36,7 +36,7 @@ class SideCondition(Protocol):
 
 @dataclass(frozen=True)
 class Given:
-    """What else determines an orbit: the further free parameters and as many side conditions.
+    """The further free parameters of an orbit and as many side conditions.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Condition(Protocol):
         Raises
         ------
         ValueError
-            In one sentence.
+            For such a system, with the reason in one sentence.
         """
         return
 

@@ -149,7 +149,7 @@ class Discretisation(Protocol):
         Raises
         ------
         ValueError
-            In one sentence.
+            Where it does not apply, with the reason in one sentence.
         """
         return
 
@@ -172,7 +172,7 @@ class Discretisation(Protocol):
         free : tuple of int
             Indices of the free parameters.
         conditions : sequence of SideCondition
-            As many side conditions.
+            Side conditions, one for each free parameter.
         settings : NewtonSettings
             When it is converged.
 
@@ -213,7 +213,7 @@ class Discretisation(Protocol):
         Returns
         -------
         tuple of EventNode or None
-            Those that its mesh is tied to; None where it passes others as well.
+            Those that its mesh is tied to; None where the orbit passes others as well.
         """
         return ()
 
@@ -228,19 +228,19 @@ class Discretisation(Protocol):
         Returns
         -------
         bool
-            True where it is cheap, and finds what Newton does not.
+            True where it is cheap, and finds orbits that Newton does not.
         """
         return False
 
     def settled(self, system: System, start: Orbit) -> Iterator[Orbit] | None:
-        """Return motions to which a system settles, by a way of the method's own.
+        """Return motions to which a system settles, by a time integration of the method's own.
 
         Parameters
         ----------
         system : System
             The equations.
         start : Orbit
-            Its parameters are theirs.
+            An orbit; its parameters are those of the motions.
 
         Returns
         -------
@@ -250,19 +250,19 @@ class Discretisation(Protocol):
         return None
 
     def resting(self, system: System, start: Orbit) -> Orbit | None:
-        """Return the rest under the mean of all loads; see `periodic.correction.meanequilibrium`.
+        """Return the equilibrium under the mean load; see `periodic.correction.meanequilibrium`.
 
         Parameters
         ----------
         system : System
             The equations.
         start : Orbit
-            An orbit; its parameters are those of the rest.
+            An orbit; its parameters are those of the equilibrium.
 
         Returns
         -------
         Orbit or None
-            A constant one; None where the other is at rest already, and where there is none.
+            A constant orbit; None where `start` begins at it already, and where none is found.
         """
         return resting(system, start)
 
@@ -328,7 +328,7 @@ class Discretisation(Protocol):
         orbit : Orbit
             An orbit, or a guess of one, whose events may not be those of its motion.
         before : int
-            Periods through which it is followed before: what is held elsewhere afterwards has come there.
+            Periods through which it is followed first: joints then stick where the motion has brought them.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""States that nothing holds: what drifts freely has no orbit, or a line of them."""
+"""States that nothing holds: a system that drifts freely has no orbit, or a line of them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from periodic.orbit.scheme import Array
 from periodic.system import System
 
 FREE_MOTION = 1e-12
-"""Least singular value of a stiffness, of the largest, below which nothing holds a motion."""
+"""Ratio of a stiffness's least singular value to its largest below which nothing holds a motion."""
 
 TAKES_PART = 0.1
-"""Part of the largest component from which a state is one of those that drift."""
+"""Part of a free motion's largest component above which a state is one of those that drift."""
 
 AWAY = 0.1
-"""How far from rest, scaled, it is looked for as well."""
+"""Scaled distance from rest at which the stiffness is evaluated as well."""
 
 PHASES = np.linspace(0.0, 2 * np.pi, 4, endpoint=False)
 

@@ -27,13 +27,13 @@ from periodic.stability.shares import shares
 from periodic.system.precision import EPSILON
 
 Solved = Callable[[Equations, Orbit], LinearisedEquations]
-"""What linearises equations at an orbit and solves them; raises FAILURES."""
+"""A function that linearises equations at an orbit and solves them; raises FAILURES."""
 
 AT_WORST = 30.0
-"""How many times its estimate an error may be where it is small beside others."""
+"""Factor by which an error may exceed its estimate, as where it is small beside other errors."""
 
 SAFETY = 3.0
-"""How much smaller than a tolerance error estimates are to be, which beside kinks are not just right."""
+"""Factor by which error estimates must be below a tolerance: beside kinks they are only approximate."""
 
 
 @dataclass(frozen=True)
@@ -46,22 +46,22 @@ class ErrorEstimate:
         Largest error of the states over their largest peak to peak.
     multiplier : float
         Error of the sums of the Floquet multipliers and of their squares, relative to the largest one where
-        that exceeds 1. Those of a multiplier that is d < 1 from the next one may be 2/d times as large, as
-        they are where two of them meet.
+        that exceeds 1. The error of a multiplier at a distance d < 1 from the next one may be 2/d times as
+        large, as it is where two of them meet.
     parameter : float
-        Error of the continuation parameter across the branch, so that of an LP its place, relative.
+        Relative error of the continuation parameter across the branch, and so of the place of an LP.
     rounding : float
-        What of the multipliers' error is rounding of the states, about.
+        Part of the multipliers' error that is due to rounding of the states, about.
     by_orbit : float
-        What of it the orbit's own error makes, where the equations change at events.
+        Part of the multipliers' error that is due to the orbit's own, where the equations change at events.
     shares : ndarray, shape (N,), optional
-        What each interval adds to the rest of it, relative to each other.
+        Contributions of the intervals to the rest of the multipliers' error, relative to each other.
     peaks : float
         Largest error of an output's minimum or maximum over its peak to peak, of outputs that are no states:
-        a steep function of these, as the load of a contact is, has more than they have. NaN where it is not
-        known. No mesh is refined for it.
+        a steep function of the states, as the load of a contact is, has a larger error than they have. NaN
+        where it is not known. No mesh is refined for it.
     better : callable, optional
-        Returns the orbit on the halved mesh, of whose outputs that is said.
+        Returns the better orbit, on the halved mesh, with whose outputs `peaks` is computed.
     """
 
     orbit: float
@@ -75,11 +75,11 @@ class ErrorEstimate:
 
     @property
     def motion(self) -> float:
-        """What is held against the tolerance but for the multipliers."""
+        """The error that is compared with the tolerance, without that of the multipliers."""
         return SAFETY * max(self.orbit, self.parameter)
 
     def blur(self, value: float, scale: float) -> float:
-        """Return what a value of the parameter is known to.
+        """Return the error of a value of the parameter.
 
         Parameters
         ----------
@@ -97,47 +97,47 @@ class ErrorEstimate:
 
     @property
     def worst(self) -> float:
-        """What is held against the tolerance."""
+        """The error that is compared with the tolerance, that of the multipliers included."""
         return max(self.motion, SAFETY * self.multiplier)
 
     @property
     def curable(self) -> float:
-        """The same without what no finer mesh betters."""
+        """`worst` without an error of the multipliers that no finer mesh reduces."""
         return self.worst if self.multiplier > SAFETY * self.rounding else self.motion
 
     @property
     def spread(self) -> float:
-        """The same without what single intervals add to the multipliers' error."""
+        """`worst` without the contributions of single intervals to the multipliers' error."""
         return max(self.motion, SAFETY * self.by_orbit)
 
 
 EXACT = ErrorEstimate(0.0, 0.0)
-"""Of what is not discretised."""
+"""Errors of an orbit that is not discretised."""
 
 UNKNOWN = ErrorEstimate(np.inf, np.inf, np.inf)
-"""Where the errors could not be estimated."""
+"""Errors that could not be estimated."""
 
 
 LEAST_VALUE = 0.1
-"""Values of a parameter, in parts of its range, with which its error is compared at the least."""
+"""Least value of a parameter, as a part of its range, to which its error is relative."""
 
 
 BEST = 2e-12
 """Relative error of an orbit that rounding may leave; beside a grazing it is far more in the multipliers."""
 
 LAST_DIGITS = 4 * EPSILON
-"""To how much of itself a parameter is known at the most."""
+"""Relative rounding error of a parameter."""
 
 REACH = 0.1
-"""Arclength along a branch up to which the orbit of the same parameter is looked for."""
+"""Arclength along a branch within which the orbit of the same parameter is sought."""
 
 STRAIGHT = 2.0
-"""Factor by which d parameter / d arclength changes on the way there at the most: else a fold is as near."""
+"""Largest factor by which d parameter / d arclength may change on the way there: else a fold is near."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Halving:
-    """What is particular to a method in `deferred`.
+    """Settings of `deferred` that depend on the method.
 
     Parameters
     ----------
@@ -151,8 +151,8 @@ class Halving:
         Whether the constraint holds the lengths of brief excursions too, as it does in steps: at a fold
         beside a grazing these change far more along the branch than the states do.
     digits : float
-        To how much of itself the parameter is known of which the effect on the multipliers is asked for: it
-        is rounding.
+        Relative rounding error of the parameter, whose effect on the multipliers is added to their error and
+        to its rounding; 0 for none.
     """
 
     only_at_points: NDArray[np.bool_] | None = None
@@ -172,14 +172,13 @@ def deferred(
 ) -> ErrorEstimate:
     """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
 
-    Where the equations change at events, the multipliers depend on when these are, so on the orbit's own
-    error: they are those of the better orbit, at the same parameter but about a fold.
+    Where the equations change at events, the multipliers depend on the events' phases, so on the orbit's own
+    error: they are compared with those of the better orbit, at the same parameter except near a fold.
 
     Parameters
     ----------
     linearise : callable
-        The equations that the orbit is held against on the halved mesh, as `Discretisation.linearise` has
-        them.
+        Returns the linearised equations on the halved mesh, as `Discretisation.linearise` does.
     problem : Problem
         What is solved.
     orbit : Orbit
@@ -189,12 +188,12 @@ def deferred(
     spectrum : Spectrum
         The orbit's multipliers.
     how : Halving, optional
-        What is particular to a method.
+        Settings that depend on the method.
 
     Returns
     -------
     ErrorEstimate
-        Relative errors; infinite ones where the halved mesh cannot be solved on.
+        Relative errors; infinite ones where the equations on the halved mesh cannot be solved.
     """
     how, fine = how or Halving(), bisect(orbit)
     onto = _onto(tangent, fine)
@@ -235,8 +234,8 @@ def deferred(
 
 @dataclass(frozen=True)
 class Halved:
-    """What the halved mesh says of an orbit: errors of its states, of the parameter and of the multipliers,
-    its fundamental matrices, (2N+1, n, n), and the monodromy matrix of the better orbit."""
+    """Results on the halved mesh: errors of an orbit's states, of the parameter and of the multipliers, the
+    orbit's fundamental matrices, (2N+1, n, n), and the monodromy matrix of the better orbit."""
 
     apart: float
     shift: float
@@ -252,7 +251,7 @@ def relative(
     found: Halved,
     better: Callable[[], Orbit] | None = None,
 ) -> ErrorEstimate:
-    """Return the estimate that follows, of which as much is rounding as of the orbit's own error is."""
+    """Return the estimate; rounding has the same part in `by_orbit` as in the orbit's own error."""
     largest = max(abs(problem.value(orbit)), LEAST_VALUE * problem.scale)
     own, parameter = found.apart / max(orbit.span(), LEAST_SPAN), found.shift / largest
     by_orbit = _powers(spectrum, found.monodromy, found.fundamental[-1])
@@ -266,9 +265,9 @@ def relative(
 class _OnBranch:
     """The equations at better orbits of a branch than the one that they were linearised at.
 
-    Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, d parameter /
-    (d parameter / d arclength), is followed where it is short and that rate stays what it is on it: a rate
-    that is small may be so because orbits change much with the parameter, as beside a grazing.
+    Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, the change of
+    parameter over d parameter / d arclength, is followed where it is short and this rate changes little on
+    it: the rate may also be small because orbits change much with the parameter, as beside a grazing.
     """
 
     problem: Problem
@@ -276,10 +275,10 @@ class _OnBranch:
     size: float
 
     def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
-        """Return them at the orbit of the same parameter, at the nearest one beside a fold. Raises FAILURES.
+        """Return them at the better orbit of the same parameter, beside a fold the nearest. Raises FAILURES.
 
-        The parameter is known to rounding alone, which beside a grazing moves a contact: it is added to the
-        way, to the side on which lengths of excursions change more by both.
+        Rounding of the parameter, which beside a grazing moves a contact, is added to the way with the sign
+        for which lengths of excursions change more.
         """
         shift = found.increment.parameter
         least = float(np.copysign(LAST_DIGITS * abs(self.problem.value(found.orbit)), shift))
@@ -298,9 +297,9 @@ class _OnBranch:
         return found if there is None else there
 
     def _along(self, found: LinearisedEquations, way: float) -> Increment | None:
-        """The way along the branch on which the parameter changes by so much; None where that is far.
+        """The increment along the branch by which the parameter changes by `way`; None where that is far.
 
-        It is where an excursion changes by more than its length, too.
+        An increment that changes an excursion by more than its length is also far.
         """
         kernel = found.kernel
         if not self._length(found) * abs(way) <= REACH * abs(kernel.parameter) > 0:
@@ -309,7 +308,7 @@ class _OnBranch:
         return along if stretched(found.orbit, along) <= 1 else None
 
     def _there(self, found: LinearisedEquations, way: Increment) -> LinearisedEquations | None:
-        """The same at the end of a way; None where the branch is not straight on it."""
+        """The equations at the end of a way; None where the branch is not straight on it."""
         try:
             there = self.solve(self._moved(found, way))
         except FAILURES:
@@ -321,14 +320,14 @@ class _OnBranch:
         return moved(self.problem.system, self.problem.free, found.orbit, by)
 
     def _length(self, found: LinearisedEquations) -> float:
-        """Arclength of the kernel; lengths of excursions tell of no fold."""
+        """Arclength of the kernel without lengths of excursions, which do not show a fold."""
         kernel = found.kernel
         still = replace(kernel, phases=np.zeros_like(kernel.phases))
         return float(np.sqrt(still.dot(still, found.orbit, self.problem.units(found.orbit), self.size)))
 
 
 def _powers(spectrum: Spectrum, one: Array, two: Array) -> float:
-    """How far two monodromy matrices are apart in their multipliers, over the largest one."""
+    """Distance of two monodromy matrices in the powers of their multipliers, over the largest multiplier."""
     return powers_apart(one / spectrum.radius, two / spectrum.radius)
 
 
@@ -340,7 +339,7 @@ def _stage_shift(orbit: Orbit, later: Array) -> Array:
 
 
 def _onto(tangent: Increment, fine: Orbit) -> Increment:
-    """What the arclength constraint needs of a tangent on the halved mesh."""
+    """The parts of a tangent that the arclength constraint needs, on the halved mesh."""
     coarse, blank = tangent.profile, parameter_only(fine, tangent.parameter)
     profile = np.empty_like(fine.nodes)
     profile[::2] = coarse

@@ -38,8 +38,8 @@ def same(solver: Solver, a: Solution, b: Solution, later: float = 0) -> bool:
 def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
     """Distance of a and b in the metric of continuation, b taken `later` (rad); on any meshes.
 
-    Between impacts that both have b is taken as much later as it has these, which counts too, a radian as
-    much as a's amplitude: there a small difference of phase compares states before and after.
+    Between impacts that both have, b is shifted so that these coincide: else a small difference of phase
+    would compare states before and after an impact. Shifts count too, a radian as much as a's amplitude.
     """
     tau, shared = a.mesh.nodes(a.phases), list(_impacts(problem, a, b, later))
     shift = _interpolated(tau, a, shared)
@@ -55,7 +55,7 @@ def distance(problem: Problem, a: Orbit, b: Orbit, later: float = 0.0) -> float:
 
 @dataclass(frozen=True)
 class Shared:
-    """An impact of two orbits: its mesh points in one, that in the other, its phase and how much later."""
+    """An impact of two orbits: mesh points in the first, that in the second, phase, shift to the second."""
 
     starts: list[int]
     other: int
@@ -82,7 +82,7 @@ def _impacts(problem: Problem, a: Orbit, b: Orbit, later: float) -> Iterator[Sha
 
 
 def _interpolated(tau: Array, a: Orbit, shared: list[Shared]) -> Array:
-    """How much later b has what a has at phases, from the impacts of both."""
+    """Shift of b at phases of a, interpolated between the impacts of both."""
     if not shared:
         return np.zeros_like(tau)
     phases, shifts = np.array([(impact.phase, impact.shift) for impact in shared]).T
@@ -90,11 +90,11 @@ def _interpolated(tau: Array, a: Orbit, shared: list[Shared]) -> Array:
 
 
 def closes(solver: Solver, start: Solution, new: Solution) -> bool:
-    """Whether the branch comes back to its start on the way it left it.
+    """Whether the branch comes back to its start in the direction in which it left it.
 
-    The same orbit a whole number of excitation periods later counts as the start again, an autonomous one
-    from any phase on: nothing brings it back to that of the start. A branch that comes
-    back the other way has passed through an orbit of fewer periods and goes on.
+    The start shifted by whole excitation periods counts as the start, an autonomous one shifted by any phase,
+    as nothing fixes its phase. A branch that comes back in the other direction has passed through an orbit of
+    fewer periods and goes on.
     """
     problem, begun = solver.problem, start.orbit
     for later in [_ahead(problem, begun, new.orbit)] if problem.autonomous else range(begun.periods):
@@ -110,13 +110,13 @@ def repeats(solver: Solver, solution: Solution) -> bool:
 
 
 def from_itself(solution: Solution) -> float:
-    """Least distance of an orbit of several excitation periods from itself so many of them later."""
+    """Least distance of an orbit of several excitation periods from itself, shifted by fewer of them."""
     orbit, problem = solution.orbit, solution.problem
     return min((distance(problem, orbit, orbit, FORCED * k) for k in range(1, orbit.periods)), default=np.inf)
 
 
 def _ahead(problem: Problem, a: Orbit, b: Orbit) -> float:
-    """By how much b is ahead of a, in units of 2 pi: where their distance is least."""
+    """Shift of b, in units of 2 pi, for which its distance from a is least."""
 
     def apart(later: float) -> float:
         return distance(problem, a, b, FORCED * later)

@@ -15,7 +15,7 @@ from periodic.system import LinearPart, System
 from periodic.system.precision import MOST_ITERATIONS
 
 PHASES = np.linspace(0.0, 2 * np.pi, 32, endpoint=False)
-"""Over which the excitation is averaged."""
+"""Phases over which the excitation is averaged."""
 
 BALANCED_RESIDUAL = 1e-9
 """Scaled residual, over the largest of states and unknowns, below which a system is in equilibrium."""
@@ -25,12 +25,12 @@ LEAST_LOAD_STEP = 1e-4
 
 
 def resting(system: System, start: Orbit, part: LinearPart | None = None) -> Orbit | None:
-    """Return the constant orbit with mean R(0, x, z, tau, p) = 0 over a period at the parameters of another.
+    """Return the constant orbit with mean R(0, x, z, tau, p) = 0 over a period, at the parameters of `start`.
 
-    The load that is missing at the beginning of the other is added by and by, as far as Newton's method can
-    follow: a film, say, has no stiffness where it has no load, and ends at its clearance. None where the
-    other is at rest already, and where the load cannot be added. `part` is the linear part of a system whose
-    rows do not say it.
+    The load that `start` does not balance at its beginning is added in steps for which Newton's method
+    converges: a film, say, has no stiffness where it has no load, and ends at its clearance. None where
+    `start` is in equilibrium already, and where the load cannot be added. `part` is the linear part of a
+    split system, whose rows do not contain it.
     """
     point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
     try:

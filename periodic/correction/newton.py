@@ -18,7 +18,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import System
 
 Linearise = Callable[[System, Orbit, tuple[int, ...]], Operator]
-"""What linearises the equations at an orbit, in its unknowns and some free parameters; raises FAILURES."""
+"""Linearises the equations at an orbit, in its unknowns and some free parameters; raises FAILURES."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,8 +30,8 @@ class NewtonSettings:
     tolerance : float
         Largest relative increment of the last step, which is still taken.
     close : float
-        Increment, in tolerances, up to which a linearisation has the multipliers and the tangent of the orbit
-        that it leads to; they take another one else.
+        Last increment, in tolerances, up to which its linearisation also gives multipliers and tangent of the
+        orbit; beyond it the equations are linearised again at the orbit.
     max_iterations, max_halvings : int
         Bounds on iterations, and on how often a step that makes things worse is cut (to a quarter each time).
     max_change : float
@@ -39,9 +39,9 @@ class NewtonSettings:
     short : float
         Width (rad) of intervals below which their unknowns count less in damping.
     negligible : float
-        Change of the scaled states that a parameter about zero is compared with.
+        Change of the scaled states that sets the scale of a parameter about zero.
     tiny : float
-        Nominal value that a parameter of 0 is given for this.
+        Least nominal value of a parameter in this comparison.
     """
 
     tolerance: float = 1e-8
@@ -64,12 +64,12 @@ class NewtonSettings:
 
     @cached_property
     def closest(self) -> NewtonSettings:
-        """The same for orbits that are linearised where they are, however near the last iterate was."""
+        """The settings with which equations are always linearised again at the converged orbit."""
         return replace(self, close=0.0)
 
 
 USUAL = NewtonSettings()
-"""Of what is no iteration, but one step of it."""
+"""Default settings, also those of single steps."""
 
 
 @dataclass(frozen=True)
@@ -125,8 +125,8 @@ class Way:
 
     residual is the largest one at that orbit, size the largest relative increment for the convergence test,
     length that for damping, and stretch the largest change of the distance between two event nodes, relative
-    to it where that is less than 1 rad. depth is about the same by which the states' own increment is felt
-    there: beside a grazing the square of a contact's length goes with them.
+    to it where that is less than 1 rad. depth estimates the change of such a length, relative, due to the
+    states' increment: beside a grazing the square of a contact's length changes in proportion to them.
     """
 
     orbit: Orbit
@@ -140,19 +140,19 @@ class Way:
 
     @property
     def unknown(self) -> float:
-        """By how much lengths of contacts may be off, relative."""
+        """Relative error that lengths of contacts may have."""
         return max(self.stretch, self.depth)
 
 
 @dataclass(frozen=True)
 class Step(Way):
-    """The same with the linearised equations, which take much memory where systems are large."""
+    """A `Way` with the linearised equations, which take much memory where systems are large."""
 
     operator: Operator
 
     @property
     def way(self) -> Way:
-        """Without them."""
+        """The step without its linearised equations."""
         known = (self.orbit, self.residual, self.increment, self.kernel)
         return Way(*known, self.size, self.length, self.stretch, self.depth)
 
@@ -234,7 +234,7 @@ class Equations:
         last: Way | None = None
         failure = Outcome.TOO_MANY
         for iteration in range(1, settings.max_iterations + 1):
-            trial: Step | None = None  # the equations of the last one go before those of the next are made
+            trial: Step | None = None  # frees the last equations before the next are set up
             try:
                 trial = self.step(orbit)
             except FAILURES as error:
@@ -255,9 +255,9 @@ class Equations:
         return _Iterated(orbit, Outcome.TOO_MANY, settings.max_iterations, last)
 
     def closer(self, orbit: Orbit, last: Way, operator: Operator | None) -> tuple[Orbit, Way, Operator]:
-        """Return the linearisation at an orbit, or the one that led to it where that is there and as good.
+        """Return the linearisation at an orbit, or the one that led to it, `operator`, if it is given.
 
-        It is at an orbit still closer where a contact is so short that its length is not known well enough.
+        Newton's iteration goes on where a contact is so short that its length is not known well enough.
         """
         if operator is not None:
             return orbit, last, operator
@@ -303,7 +303,7 @@ class Equations:
 def stretched(orbit: Orbit, increment: Increment) -> float:
     """Return the largest change of a segment's length, relative to it where it is less than 1 rad.
 
-    Multipliers depend on how long a contact is; for convergence its square counts, what the last step leaves.
+    Multipliers depend on a contact's length. For convergence the change counts squared, as the error left.
     """
     if len(increment.phases) == 0:
         return 0.0
@@ -320,7 +320,7 @@ def briefest(orbit: Orbit) -> float:
 class LinearisedEquations:
     """The equations at an orbit: Newton increment from there, kernel, fundamental matrices (N+1, n, n).
 
-    operator: they themselves, where they are to be had.
+    operator: the equations themselves, where they are kept.
     """
 
     orbit: Orbit

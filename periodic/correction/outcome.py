@@ -28,7 +28,7 @@ class EventsCrossedError(ArithmeticError):
 
 
 FAILURES = (ArithmeticError, np.linalg.LinAlgError)
-"""What linearising an orbit's equations, or solving them, raises where it fails."""
+"""Exceptions that linearising an orbit's equations, or solving them, raises where it fails."""
 
 
 def outcome_of(failure: Exception) -> Outcome:

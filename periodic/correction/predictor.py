@@ -20,8 +20,8 @@ def cubic(
 ) -> Orbit:
     """Return the cubic through two solutions on one mesh and their tangents, at `place` from the first.
 
-    Both are distances along the tangent of the first one, or of another solution on this mesh; `distance` is
-    the second's.
+    `place`, and `distance` of the second, are measured along the tangent of the first or of `along`, a
+    solution on this mesh.
     """
     origin = along or a
     constraint = solver.constraint(origin.orbit, origin.tangent, 0.0)

@@ -1,4 +1,4 @@
-"""What is solved: a system, its free parameters, and what determines all of them but one."""
+"""Problems: a system, its free parameters, and the conditions that determine all of them but one."""
 
 from __future__ import annotations
 
@@ -71,12 +71,12 @@ class Problem:
     wider : Wider, optional
         The system that results are of, where another one is solved in its place.
     sizes : tuple of float, optional
-        Sizes of the further free parameters (SI), of which those count that are 0 in the system.
+        Sizes of the further free parameters (SI), used for those that are 0 in the system.
 
     Raises
     ------
     ValueError
-        For names that are no parameters of the system, bounds that are no range, and what is no condition.
+        For names that are no parameters of the system, bounds that are no range, and a wrong condition.
     """
 
     system: System = field(repr=False)
@@ -130,7 +130,7 @@ class Problem:
 
     @cached_property
     def conditions(self) -> tuple[Condition, ...]:
-        """What determines them, one for each."""
+        """The conditions that determine the further free parameters, one for each."""
         return tuple(self.determined.values())
 
     @cached_property
@@ -154,9 +154,9 @@ class Problem:
         Returns
         -------
         float or ndarray, shape (q,)
-            In SI units; the range alone of a branch in one parameter. Infinite of those that a condition of
-            all orbits determines, and of those that are 0 in the system and where the curve begins: these
-            have no size.
+            In SI units; the range alone of a branch in one parameter. Infinite for parameters that an
+            intrinsic condition determines, and for those that are 0 in the system and where the curve begins,
+            which have no size.
         """
         if all(condition.intrinsic for condition in self.conditions):
             return self.scale
@@ -168,7 +168,7 @@ class Problem:
         return units
 
     def begun_at(self, parameter: Array) -> Problem:
-        """Return the same with the sizes that further free parameters have at the beginning.
+        """Return the problem with the sizes that further free parameters have at the beginning.
 
         Parameters
         ----------

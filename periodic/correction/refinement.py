@@ -11,7 +11,7 @@ from periodic.orbit.scheme import Array
 
 
 class Refinement:
-    """What is to be done to the mesh of an orbit: as it stands, nothing. Discretisations override it.
+    """Changes to the mesh of an orbit: none in this class, which discretisations override.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Refinement:
 
     @property
     def mendable(self) -> bool:
-        """Whether other meshes may lessen the error: not that of an orbit that violates its word."""
+        """Whether other meshes may reduce the error; not where the orbit violates its word."""
         return True
 
     @property

@@ -42,7 +42,7 @@ class Solution:
 
     @property
     def outcome(self) -> Outcome:
-        """How the search for it ended."""
+        """How the search for the solution ended."""
         return self.correction.outcome
 
     @property
@@ -51,12 +51,12 @@ class Solution:
         return self.correction.ok
 
     def failed(self, outcome: Outcome) -> Solution:
-        """Return the same as no solution.
+        """Return the solution as one that failed.
 
         Parameters
         ----------
         outcome : Outcome
-            Why it is none.
+            Why it failed.
 
         Returns
         -------
@@ -103,7 +103,7 @@ class Solution:
 
     @property
     def estimated(self) -> Solution:
-        """The one whose errors it is given."""
+        """The solution whose error estimate this one takes."""
         return self
 
     @cached_property
@@ -121,12 +121,12 @@ class Solution:
 class Between(Solution):
     """A solution where the equations are singular, from those on either side on the same mesh.
 
-    There an estimate would tell rounding, magnified without bound: its errors are those of another beside it.
+    An estimate there would show rounding, magnified without bound; the errors of a solution nearby are taken.
 
     Parameters
     ----------
     beside : Solution
-        That one, at a distance.
+        The solution nearby.
     """
 
     beside: Solution = field(repr=False)

@@ -55,7 +55,7 @@ class Solver:
     def on(
         self, guess: Orbit, constraint: ArclengthConstraint | Held, newton: NewtonSettings | None = None
     ) -> Solution:
-        """Solve on an arclength constraint, or on what takes its place, from a guess on the same mesh.
+        """Solve from a guess on an arclength constraint, or a condition in its place, on the same mesh.
 
         The tangent points to the constraint's positive side; `newton` are settings other than the usual ones.
         """
@@ -69,7 +69,7 @@ class Solver:
         return Solution(problem, method, found, self._tangent(found, constraint))
 
     def _tangent(self, found: Correction, constraint: ArclengthConstraint | Held) -> Increment:
-        """The kernel with unit length, along the constraint's direction; that itself where there is none."""
+        """The unit kernel, along the constraint's direction; the direction where there is no kernel."""
         kernel, direction = found.kernel, constraint.direction
         if kernel is None or not found.ok:
             return direction or parameter_only(constraint.origin, self.problem.scale)

@@ -11,10 +11,10 @@ from periodic.checks import number
 from periodic.correction.newton import NewtonSettings
 
 FINEST, COARSEST = 1e-11, 1e-2
-"""Between these lies a tolerance."""
+"""Bounds of a requested tolerance."""
 
 MULTIPLIER_SHARE = 1e-4
-"""How much closer to an orbit than a tolerance its multipliers are computed."""
+"""Distance from an orbit, in tolerances, within which its multipliers are computed."""
 
 
 class Accuracy(float, Enum):
@@ -48,7 +48,7 @@ class Tolerance:
 
     @classmethod
     def of(cls, tol: float | Tolerance) -> Tolerance:
-        """Return what brings the motion, places of folds and multipliers to a relative `tol`.
+        """Return the tolerances that bring the motion, places of folds and multipliers to a relative `tol`.
 
         Parameters
         ----------

@@ -1,9 +1,9 @@
 """Which kinks of an orbit the mesh should be tied to.
 
-A switch passes a level in pairs: it is below it during an excursion. Among a switch's levels the deepest
-that is still passed in full fall marks the kink; deeper ones are reached only after it. Excursions (and
-returns) shorter than a threshold are left to the ordinary mesh, where they are too weak to matter: an
-event node tied to a passage that is about to vanish would turn the continuation back on itself.
+A switch passes a level in pairs: during an excursion it is below the level. The deepest of a switch's levels
+that it passes steeply marks the kink; deeper levels are reached only after the kink. Excursions (and returns)
+shorter than a threshold get no event nodes, as they are too weak to matter: an event node tied to a passage
+that is about to vanish would turn the continuation back on itself.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import Kind, System, surfaces_of
 
 DEEPEST = 0.1
-"""Shallowest switch level worth an event node, in tolerances or errors of the states."""
+"""Least positive switch level that gets event nodes, in tolerances."""
 
 
 MILD = 0.1
@@ -91,13 +91,13 @@ class KinkSettings:
         Parameters
         ----------
         level : float
-            Below 0 of a switch where only a derivative of the equations has a kink: it is mild, and its node
-            may come and go with an excursion a tenth as long.
+            A negative level marks the kink of a derivative of the equations. Such a kink is mild: its event
+            nodes appear and vanish with excursions a tenth as long.
 
         Returns
         -------
         KinkSettings
-            With `appear` and `vanish` for it.
+            With `appear` and `vanish` for the level.
         """
         return replace(self, appear=MILD * self.appear, vanish=MILD * self.vanish) if level < 0 else self
 
@@ -112,7 +112,7 @@ class KinkSettings:
         Returns
         -------
         KinkSettings
-            With `deepest` chosen, where it was left open.
+            With `deepest` chosen, where it was None.
         """
         return replace(self, deepest=DEEPEST * tolerance) if self.deepest is None else self
 
@@ -120,7 +120,7 @@ class KinkSettings:
 def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
     """Return all passages, on the whole orbit, of the switches at whose level the equations change.
 
-    Of switches that are equal, those of the first.
+    Of several passages at one phase, as of equal switches, only the first switch's is returned.
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
@@ -165,15 +165,15 @@ def crossings(system: System, orbit: Orbit) -> list[Crossing]:
 
 
 def _tied(orbit: Orbit, values: Array) -> None:
-    """Set switches (N ncol, s) to their levels at event nodes: no rounding says on which side they are."""
+    """Set switches (N ncol, s) exactly to their levels at event nodes, so that rounding decides no side."""
     mesh = orbit.mesh
     if mesh.events and mesh.scheme.points[-1] == 1.0:
-        last = mesh.starts * mesh.scheme.ncol - 1  # the first one's is the period's last
+        last = mesh.starts * mesh.scheme.ncol - 1  # of the first event node the last point of the period
         values[last, [event.switch for event in mesh.events]] = [event.level for event in mesh.events]
 
 
 def _elsewhere(system: System) -> set[int]:
-    """The switches whose event nodes are those of impacts, of relays and of what is held."""
+    """The switches of impacts, of relays and of surfaces at which motions may be held."""
     kinds = (Kind.IMPACT, Kind.RELAY)
     special = [s for s in surfaces_of(system) if s.kind in kinds or s.releases is not None]
     found = {k for s in special for k in (s.switch, s.leaves, *(s.releases or ()))}
@@ -208,7 +208,7 @@ def wanted(system: System, orbit: Orbit, settings: KinkSettings) -> list[Crossin
 
 
 def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
-    """Event, phase and |ds/dtau| of an orbit's impacts, with the modes that they bring about."""
+    """Event, phase and |ds/dtau| of an orbit's impacts, with the modes that the impacts cause."""
     found = []
     for i in impacts.tied(system, orbit):
         event = replace(orbit.mesh.events[i], modes=brought_about(system, orbit, i))
@@ -217,10 +217,7 @@ def _impacts(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float
 
 
 def _held(system: System, orbit: Orbit) -> list[tuple[EventNode, float, float]]:
-    """The event nodes of an orbit at which what is held is stopped, released or passed, as they are.
-
-    And those at which what rests on a wall leaves it.
-    """
+    """An orbit's event nodes at surfaces that hold motions, and at departures from walls, unchanged."""
     found = []
     for event, phase in zip(orbit.mesh.events, orbit.phases, strict=True):
         surface = surface_of(system, event.switch)
@@ -234,7 +231,7 @@ def _phase(crossing: Crossing) -> float:
 
 
 def _apart(chosen: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
-    """Leave out crossings that lie closer than the threshold to the one before: two nodes cannot meet."""
+    """Drop crossings that lie closer than the threshold to the one before: event nodes cannot coincide."""
     kept: list[Crossing] = []
     for crossing in chosen:
         ends = [kept[-1].phase, kept[0].phase + orbit.mesh.period] if kept else []
@@ -252,7 +249,7 @@ def _kink(
     orbit: Orbit,
     settings: KinkSettings,
 ) -> Crossing:
-    """The passage within an excursion that marks the kink at its begin (-1) or end (+1)."""
+    """The passage within an excursion that marks the kink at its beginning (-1) or end (+1)."""
     edge = excursion[0] if direction < 0 else excursion[1]
     candidates = []
     for level in kept:
@@ -281,7 +278,7 @@ def _inside(crossing: Crossing, excursion: tuple[Crossing, Crossing], period: fl
 
 
 def _merged(found: list[Crossing], orbit: Orbit, settings: KinkSettings) -> list[Crossing]:
-    """Leave out pairs of neighbouring crossings that lie closer than the threshold."""
+    """Drop pairs of neighbouring crossings that lie closer than the threshold."""
     kept = list(found)
     while len(kept) >= 2:
         phases = np.array([c.phase for c in kept])
@@ -323,7 +320,10 @@ def fits(chosen: list[Crossing], orbit: Orbit) -> bool:
 
 
 def genuine(system: System, orbit: Orbit) -> bool:
-    """Whether every event node is a crossing in its own direction, not past where a pair vanished."""
+    """Whether the switch passes its level at every event node in the node's direction.
+
+    It does not once a pair of passages has vanished.
+    """
     if not orbit.mesh.events:
         return True
     at = orbit.nodes[orbit.mesh.starts]

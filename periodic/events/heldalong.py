@@ -1,4 +1,4 @@
-"""What no event node changes any more: modes of surfaces all along, and the place where something is HELD."""
+"""Modes of surfaces that no event node changes any more, and the places at which joints are HELD."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from periodic.system import HELD, STUCK, SurfaceLike, System, surfaces_of
 def still(
     system: System, modes: tuple[tuple[int, int], ...], events: tuple[EventNode, ...]
 ) -> tuple[tuple[int, int], ...]:
-    """Return the modes all along of surfaces that none of some event nodes changes."""
+    """Return those of the modes all along whose surfaces no event node changes."""
     changed = {
         surface.switch
         for surface in surfaces_of(system)
@@ -26,7 +26,7 @@ def still(
 def placed(surface: SurfaceLike, parameter: Array, states: Array) -> Array:
     """Return the parameters (p,) with the place at which a surface is HELD, where it has one.
 
-    It is amid the places of some states (N, n): between the slips that are gone.
+    It is midway between the extreme places in some states (N, n).
     """
     found = parameter.copy()
     if surface.place is not None:
@@ -39,10 +39,10 @@ def placed(surface: SurfaceLike, parameter: Array, states: Array) -> Array:
 def all_along(
     system: System, orbit: Orbit, events: tuple[EventNode, ...]
 ) -> tuple[tuple[tuple[int, int], ...], Array | None]:
-    """Return the modes of surfaces that lose their event nodes, with those that have none, and parameters.
+    """Return the modes of all surfaces without event nodes, with those that lose theirs, and parameters.
 
-    What slips no more is held where it is: that is its place from there on, if it needs one. The parameters
-    are None where none has changed.
+    A joint that slips no more is HELD where it stuck, and the parameter of its place, if any, is set to that.
+    The parameters are None where none has changed.
     """
     modes, parameter = dict(still(system, orbit.mesh.modes, events)), orbit.parameter
     for surface in surfaces_of(system):

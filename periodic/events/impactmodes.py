@@ -1,8 +1,8 @@
-"""What an impact brings about: it takes guards of other surfaces to their other side.
+"""Changes of mode that an impact causes: it takes guards of other surfaces to their other side.
 
 An impact of a mass reverses its speed, and with it the speed at which friction on the mass slides. The mode
-of that surface changes at the impact's own event node. Against a belt that moves the guard jumps without
-passing 0 as well, and it may be 0 just before or just after an impact that has speed.
+of that surface changes at the impact's own event node. Against a moving belt the guard may also jump without
+a change of sign, or be 0 just before or just after an impact whose speed is not 0.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ class Sides:
 
     @property
     def reached(self) -> int:
-        """The side to which the impact takes it; the mode that it had where it is on none."""
+        """The side of the guard after the impact; its mode before where it is at its level."""
         return int(np.sign(self.after)) if abs(self.after) > AT_LEVEL else self.mode
 
 
 def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Sides:
-    """Return the sides of a guard about an impact."""
+    """Return a guard before and after an impact."""
     interval, x, phase = before(orbit, index)
     after = orbit.nodes[orbit.mesh.starts[index]][None]
     states = np.concatenate([orbit.stages.reshape(-1, x.shape[1]), x, after])
@@ -54,8 +54,8 @@ def beside(system: System, orbit: Orbit, index: int, surface: SurfaceLike) -> Si
 def thrown(system: System, orbit: Orbit, surface: SurfaceLike) -> list[int]:
     """Return the impacts of an orbit, by their event nodes, at which the guard of another surface jumps.
 
-    Not those at which it is 0 when the impact has no speed, as that of friction on the ground: it passes its
-    level where the impact ends.
+    Impacts at which the guard would be 0 if they had no speed are left out, as for friction on the ground:
+    there the guard passes its level once the impact is gone.
     """
     if surface.kind not in (Kind.SLIDING, Kind.SLIDER):
         return []
@@ -63,7 +63,7 @@ def thrown(system: System, orbit: Orbit, surface: SurfaceLike) -> list[int]:
 
 
 def _thrown(system: System, orbit: Orbit, switch: int, index: int) -> bool:
-    """Whether an impact throws a guard; at the state between the two about it the impact has no speed."""
+    """Whether a guard jumps at an impact, and is not 0 between x- and x+ where the impact has no speed."""
     _, x, phase = before(orbit, index)
     start, own = orbit.mesh.starts[index], orbit.mesh.events[index].switch
     after = orbit.nodes[start][None]
@@ -86,9 +86,9 @@ def others(system: System, event: EventNode) -> list[SurfaceLike]:
 
 
 def brought_about(system: System, orbit: Orbit, index: int) -> tuple[tuple[int, int], ...]:
-    """Return the modes that an impact of an orbit brings about, as its event node has them."""
+    """Return the modes that an impact of an orbit causes, in the form of its event node."""
     event = orbit.mesh.events[index]
-    found = [pair for pair in event.modes if pair == (event.switch, STUCK)]  # what comes to rest on the wall
+    found = [pair for pair in event.modes if pair == (event.switch, STUCK)]  # it rests on the wall
     for surface in others(system, event):
         stated, own = mode_after(surface, event), beside(system, orbit, index, surface)
         if stated == STUCK and abs(own.after) <= AT_LEVEL:

@@ -1,7 +1,7 @@
 """Impacts: event nodes at which the state is mapped, x+ = r(x-, tau, p); see `periodic.system.Resetting`.
 
-The mesh point of the event is x+, the polynomial of the interval before it ends at x-. How perturbations pass
-it: `periodic.events.saltation`.
+The mesh point of the event is x+; the polynomial of the interval before it ends at x-. Perturbations pass the
+impact by its saltation matrix, see `periodic.events.saltation`.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def jumping(system: System, orbit: Orbit) -> tuple[int, ...]:
 
 
 def _settling(system: System, event: EventNode) -> bool:
-    """Whether an event node is no more than elastic sliders that come to be held: no rate jumps there."""
+    """Whether elastic sliders come to be held at an event node, and nothing else happens: no rate jumps."""
     sliders = {surface.switch for surface in of_kind(system, Kind.SLIDER)}
     return event.switch in sliders and {k for k, _ in event.modes} <= sliders
 
@@ -70,7 +70,7 @@ def carrying(system: System) -> list[int]:
 
 
 def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> Array:
-    """Return the steps (N, n, w) with impacts at their ends."""
+    """Return the steps (N, n, w) composed with the jumps at the ends of their intervals."""
     for jump in found:
         j, start = jump.interval, orbit.nodes[jump.interval + 1]
         own = step[j].copy()
@@ -82,10 +82,10 @@ def applied(orbit: Orbit, step: Array, found: Sequence[Jump]) -> Array:
 
 
 def perturbed(orbit: Orbit, step: Array, arriving: Array, found: Sequence[Jump]) -> Array:
-    """Return the steps of perturbations at fixed tau, shape (N, n, n+q), by the states, then the parameters.
+    """Return the steps of perturbations at fixed tau, (N, n, n+q): in the states, then in the parameters.
 
-    arriving (jumps, n, w): the steps of the intervals that end at jumps, up to these. Raises
-    numpy.linalg.LinAlgError where one has no rates.
+    arriving (jumps, n, w): the steps of the intervals that end at jumps, up to the state before the jump.
+    Raises numpy.linalg.LinAlgError where the rates at a jump are not determined.
     """
     n, k = step.shape[1], len(orbit.phases)
 
@@ -102,7 +102,7 @@ def perturbed(orbit: Orbit, step: Array, arriving: Array, found: Sequence[Jump])
 def arriving_row(system: System, orbit: Orbit, index: int, switch: int, free: tuple[int, ...]) -> Row:
     """Return a switch s(x-, phi, p) where the interval before an event node ends, and its gradient.
 
-    That of an impact is 0 there.
+    The impact's own switch is 0 there.
     """
     k, end = len(orbit.phases), orbit.mesh.scheme.end
     interval, x, phase = before(orbit, index)
@@ -119,7 +119,7 @@ def arriving_row(system: System, orbit: Orbit, index: int, switch: int, free: tu
 
 
 def slope_before(system: System, orbit: Orbit, index: int) -> float:
-    """ds/dtau with which a switch arrives at its impact."""
+    """ds/dtau with which a switch arrives at its event node."""
     switch = orbit.mesh.events[index].switch
     interval, x, phase = before(orbit, index)
     side = modes_in(system, orbit, interval)

@@ -1,10 +1,10 @@
-"""The word of an orbit: the modes of its surfaces between its event nodes.
+"""The word of an orbit, its mode sequence: the modes of its surfaces between its event nodes.
 
-An event node is a transition: it takes its own surface, and what follows at once, from one mode to another.
-So the mode of a surface in an interval is that of the last event node that changed it, whatever the last
-digits of the state say. A surface that no event node changes keeps to the side on which the orbit is, but for
-what is shallow, so that an orbit is smooth past the grazing up to which it is followed; else the state
-decides. See `periodic.system.SurfaceLike`.
+An event node is a transition: it takes its own surface, and others that change with it, from one mode to
+another. So the last event node that changed a surface determines its mode in an interval, not the sign of a
+guard that rounding may decide. A surface that no event node changes has the side on which the orbit lies but
+for shallow excursions, so that an orbit is smooth past the grazing up to which it is followed; if excursions
+are deep the state decides. See `periodic.system.SurfaceLike`.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ from periodic.system import (
 _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Array]] = (
     weakref.WeakKeyDictionary()
 )
-"""Modes by meshes, with the system whose they are."""
+"""Modes by meshes, with the system that they belong to."""
 
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
-    """Return the surface that a switch is the guard or a release of."""
+    """Return the surface that a switch is the guard of, a release of, or a departure from."""
     return next(s for s in surfaces_of(system) if switch in (s.switch, s.leaves, *(s.releases or ())))
 
 
@@ -51,17 +51,17 @@ def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
 
 
 def bends(system: System) -> list[int]:
-    """Return the switches at whose level 0 the equations have a kink, or a jump that nothing slides along."""
+    """Return the switches at whose level 0 the equations have a kink, or a jump without sliding motions."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP, Kind.RELAY)]
 
 
 def returns(system: System) -> list[int]:
-    """Return those past whose level an excursion may be as short as it likes: all but relays."""
+    """Return the switches of `bends` whose excursions may be arbitrarily short: all but relays."""
     return [surface.switch for surface in of_kind(system, Kind.KINK, Kind.JUMP)]
 
 
 def relays(system: System) -> list[int]:
-    """Return the guards of relays: in either mode another function."""
+    """Return the guards of relays, each a different function in either mode."""
     return [surface.switch for surface in of_kind(system, Kind.RELAY)]
 
 
@@ -71,20 +71,20 @@ def of_held(system: System) -> list[int]:
 
 
 def sliding(system: System, switch: int) -> int | None:
-    """Return the guard of the surface along which motions slide that a switch belongs to, if it does."""
+    """Return the guard of a switch's surface if motions may be held at it, else None."""
     surface = surface_of(system, switch)
     return None if surface.releases is None else surface.switch
 
 
 def releases(system: System, switch: int) -> tuple[int, int]:
-    """Return the switches (up, down) at which what a guard holds is released."""
+    """Return the switches (up, down) at which motions held at a guard are released."""
     found = surface_of(system, switch).releases
     assert found is not None
     return found
 
 
 def release(surface: SurfaceLike, way: int) -> int:
-    """Return the switch at which what a surface holds is released upwards (1), or downwards (-1)."""
+    """Return the switch at which a motion held at a surface is released upwards (1), or downwards (-1)."""
     assert surface.releases is not None
     return surface.releases[0 if way > 0 else 1]
 
@@ -97,7 +97,7 @@ def column(system: System, switch: int) -> int:
 
 
 def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
-    """Return the mode of a surface after an event node, None where that leaves it as it is."""
+    """Return the mode of a surface after an event node; None where the node does not change it."""
     own = dict(event.modes).get(surface.switch)
     if own is not None:
         return own
@@ -119,7 +119,7 @@ def group(system: System, mesh: Mesh, switch: int) -> list[int]:
 
 
 def sticks(system: System, mesh: Mesh, switch: int, node: int) -> int | None:
-    """Return the event node at which sticking ends that begins at one; None where none does."""
+    """Return the event node at which the sticking ends that begins at `node`; None where none begins."""
     if mode_after(surface_of(system, switch), mesh.events[node]) != STUCK:
         return None
     own = group(system, mesh, switch)
@@ -129,7 +129,7 @@ def sticks(system: System, mesh: Mesh, switch: int, node: int) -> int | None:
 def sides(system: System, orbit: Orbit) -> Array:
     """Return the mode of each surface with a column in each interval, shape (N, columns).
 
-    1 and -1 are the signs of its guard, STUCK says that it is held at 0; where it is 0 the state decides.
+    1 and -1 are the signs of its guard; STUCK and HELD: the guard is held at 0; 0: the state decides.
     """
     own = [s for s in surfaces_of(system) if s.column is not None]
     if not own:
@@ -143,7 +143,7 @@ def sides(system: System, orbit: Orbit) -> Array:
 
 
 def _by_nodes(system: System, mesh: Mesh, own: Sequence[SurfaceLike]) -> Array:
-    """The modes that a mesh says, in each interval; NaN where it says none. They are kept with it."""
+    """The modes that a mesh prescribes in each interval, NaN where it prescribes none; cached by mesh."""
     kept = _KEPT.get(mesh)
     if kept is None or kept[0]() is not system:
         found = np.stack([_along(mesh, surface) for surface in own], axis=1)
@@ -165,7 +165,7 @@ def _along(mesh: Mesh, surface: SurfaceLike) -> Array:
 
 
 def _whole(system: System, orbit: Orbit, surface: SurfaceLike) -> int:
-    """The side of a jump all along an orbit without event nodes of it, 0 if it has none."""
+    """The mode of a surface without event nodes along an orbit; 0 where the state decides."""
     if surface.releases is not None:
         return 0
     states, tau = orbit.stages.reshape(-1, orbit.stages.shape[2]), orbit.stage_phases.ravel()
@@ -188,7 +188,7 @@ def _relayed(system: System, states: Array, tau: Array, parameter: Array, surfac
 
 
 def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, ...]:
-    """Return event nodes with their modes where they come from a file that has none.
+    """Return event nodes with their modes, for nodes read from a file without modes.
 
     Sticking begins where the next event node of a surface is one of its releases.
     """
@@ -203,7 +203,7 @@ def completed(system: System, events: Sequence[EventNode]) -> tuple[EventNode, .
 
 
 def inconsistency(system: System, events: Sequence[EventNode]) -> str:
-    """Return where event nodes are no word of what is held and released, or a relay; '' where they are one.
+    """Return where event nodes are no mode sequence of a relay or a surface that holds; '' where they are.
 
     Each transition of a surface begins in the mode in which the one before ended.
     """
@@ -227,7 +227,7 @@ def _follows(surface: SurfaceLike, event: EventNode, before: int, after: int) ->
 
 
 def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
-    """Return the modes in one interval as `guards` take them, shape (1, columns), or none of them."""
+    """Return the modes in one interval, (1, columns), or (1, 0) where guards do not depend on them."""
     if not getattr(system, "guards_depend", False):
         return np.zeros((1, 0))
     return sides(system, orbit)[interval][None]

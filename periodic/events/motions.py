@@ -1,7 +1,7 @@
-"""The word of a simulated motion, and the orbit that it is a guess of.
+"""The word of a simulated motion, and the guess of an orbit that is made from it.
 
-A motion that was followed from event to event in time tells what happened, and in which modes its surfaces
-were: that is the orbit's word. Joints that neither slip nor come to rest in all of the period are HELD.
+The events of a motion integrated in time, and the modes of its surfaces, are the orbit's word. Joints that
+neither slip nor come to rest in the whole period are HELD.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ FOLLOWED = 1e-8
 """Tolerance with which motions are followed in time for their events."""
 
 APART = 1e-5
-"""How far from each other (rad) events are put that are one in time, but do not bring each other about."""
+"""Distance (rad) at which simultaneous events are put that do not cause each other."""
 
 
 def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = ()) -> list[Node]:
-    """Return the event nodes of what happened along a motion, with their phases.
+    """Return the event nodes, with their phases, for the events of a motion.
 
     always: guards of friction that is held all along.
     """
@@ -65,7 +65,7 @@ def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = 
     for group in _at_once(rows):
         each = sorted(group, key=lambda event: _rank(surfaces[event.surface], event))
         held = [surfaces[i].switch for i in _stuck(surfaces, modes) - {event.surface for event in each}]
-        for count, apart in enumerate(_together(system, each, [*held, *always])):  # which is first is open
+        for count, apart in enumerate(_together(system, each, [*held, *always])):  # their order is arbitrary
             node = _node(system, surfaces[apart[0].surface], apart)
             found.append((node, apart[0].phase + count * APART))
         modes |= {event.surface: event.after for event in each}
@@ -73,7 +73,7 @@ def word_of(system: System, events: Sequence[Happened], always: Sequence[int] = 
 
 
 def _at_once(rows: Sequence[Happened]) -> Iterator[list[Happened]]:
-    """Yield what happens at one phase, of events in order."""
+    """Yield groups of simultaneous events, from events in order of phase."""
     group = list[Happened]()
     for event in rows:
         if group and event.phase - group[-1].phase > SAME_PHASE:
@@ -90,9 +90,9 @@ def _stuck(surfaces: Sequence[SurfaceLike], modes: Mapping[int, int]) -> set[int
 
 
 def _together(system: System, each: list[Happened], held: Sequence[int]) -> list[list[Happened]]:
-    """What happens at one phase, in sets that bring each other about, or are one by their nature.
+    """Simultaneous events, in sets of which one causes the others, or that have the same guard.
 
-    held: guards of friction that is held before and after it.
+    held: guards of friction that is held before and after them.
     """
     surfaces, found = surfaces_of(system), dict[int, list[Happened]]()
     if _brings_about(system, surfaces[each[0].surface]):
@@ -110,12 +110,12 @@ def _always(system: System, whole: TrajectoryLike) -> list[int]:
 
 
 def _brings_about(system: System, surface: SurfaceLike) -> bool:
-    """Whether an event at a surface may bring about others: an impact, and joints that know of each other."""
+    """Whether an event at a surface may cause others: an impact, or where guards depend on other modes."""
     return surface.kind == Kind.IMPACT or getattr(system, "guards_depend", False)
 
 
 def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> EventNode:
-    """The event node of what happens at once, the first of which brings the others about."""
+    """The event node of simultaneous events, the first of which causes the others."""
     surfaces, first, modes = surfaces_of(system), each[0], list[tuple[int, int]]()
     for event in each:
         if event.after == STUCK or (surfaces[event.surface].kind != Kind.IMPACT and event is not first):
@@ -125,9 +125,9 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
 
 
 def _rank(surface: SurfaceLike, event: Happened) -> int:
-    """What brings the others about that happen at once: an impact, what comes to rest, what is let go.
+    """Rank of an event among simultaneous ones, causes first: impacts, then stops, then releases.
 
-    Friction goes before sliders beside it.
+    Friction goes before sliders in parallel with it.
     """
     if surface.kind == Kind.IMPACT and event.before != STUCK:
         return 0
@@ -155,7 +155,7 @@ def motion_from(
     tolerance: float,
     modes: Sequence[int] | None,
 ) -> TrajectoryLike:
-    """Return the motion of a system from a state, in given modes before it of relays and what slides."""
+    """Return the motion from a state; modes: those before it, which relays and friction that sticks keep."""
     given = state, algebraic, parameter, phase, tolerance
     keeps = any(surface.kind == Kind.RELAY or surface.alone for surface in surfaces_of(system))
     return system.motion(*given, modes) if modes and keeps else system.motion(*given)
@@ -170,9 +170,10 @@ def orbit_of(
     begin: float = 0.0,
     before: Sequence[int] | None = None,
 ) -> Orbit | None:
-    """Return the orbit that a motion of one period from a state is a guess of; None where nothing happens.
+    """Return the motion of one period from a state as a guess of an orbit.
 
-    begin: the phase of the state; before: the modes of all surfaces before it, which relays and sliding keep.
+    None for a system without relays, surfaces that hold, and walls to rest on. begin: the phase of the state;
+    before: the modes of all surfaces before it, which relays and friction that sticks keep.
 
     Raises what the integration raises.
     """
@@ -200,10 +201,10 @@ def orbit_of(
 
 
 def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) -> Orbit | None:
-    """Return what an orbit is a guess of when its motion is followed through one period; None where nothing.
+    """Return the motion of one period from a state of an orbit as a guess; None where there is none.
 
-    It is followed from amid the longest segment in which it is not behind a wall, as far from all events as
-    can be, and through some periods `before` that one. It may violate its word: that of the motion does not.
+    It begins midway in the longest segment in which the orbit is not behind a wall, as far from all events as
+    possible, and `before` periods earlier. The orbit may violate its word; the guess has the motion's word.
 
     Raises what the integration raises.
     """
@@ -229,7 +230,7 @@ def _modes(system: System, orbit: Orbit, at: Array) -> list[int]:
 
 
 def _begin(system: System, orbit: Orbit) -> Array:
-    """The phase amid the longest segment in which an orbit is not behind a wall; of all if it is in each."""
+    """The phase midway in the longest segment that is not behind a wall there; in the longest if none is."""
     at, walls = np.mod(amid(orbit), FORCED), of_kind(system, Kind.IMPACT)
     ahead = np.ones(len(at), dtype=bool)
     for k in (wall.switch for wall in walls):
@@ -239,7 +240,7 @@ def _begin(system: System, orbit: Orbit) -> Array:
 
 
 def amid(orbit: Orbit) -> Array:
-    """Return the phases amid the segments, the longest first; 0 where there are none."""
+    """Return the phases midway in the segments, the longest first; 0 where there are none."""
     if not orbit.mesh.events:
         return np.zeros(1)
     lengths = orbit.mesh.segment_lengths(orbit.phases)
@@ -266,7 +267,7 @@ def _on(
     begin: float,
     follow: Callable[[Array, Array], TrajectoryLike],
 ) -> Orbit:
-    """The motion from a phase on at the points of a mesh, which may begin anywhere in it."""
+    """The motion from a phase on, at the points of a mesh that may begin elsewhere in the period."""
     grid = mesh.grid(phases)
     nodes = mesh.nodes(phases)
     stages = grid.left[:, None] + grid.width[:, None] * mesh.scheme.points

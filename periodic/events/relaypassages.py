@@ -15,10 +15,10 @@ from periodic.system import MINUS, PLUS, SurfaceLike, System
 
 
 def switched(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode, float]]:
-    """Return where a relay switches, with the phases: those of its event nodes, or what the orbit has it do.
+    """Return where a relay switches, with the phases: at its event nodes, else where the orbit makes it.
 
-    On an orbit without them it goes on where it passes the upper threshold upwards, and off where it passes
-    the lower one downwards after that.
+    Without event nodes it switches on where the upper threshold is passed upwards, and off where the lower
+    one is passed downwards after that.
     """
     if group(system, orbit.mesh, switch):
         return SwitchPolynomials(system, orbit).crossings(switch)

@@ -1,18 +1,19 @@
-"""Chatter that ends in rest on a wall: impacts without number in finite time, and what is left of them.
+"""Complete chatter: infinitely many impacts in finite time, after which the motion rests on a wall.
 
-Each impact of the sequence leaves e times the speed of the one before. The first are event nodes; the last of
-these has all that follow in it: it leads to where x, r(x), r(r(x)), ... tend to, at rest on the wall, at its
-own phase. With w the speed after it and a = -s'' what presses, the bounces left out last
+Each impact reduces the speed by the factor e. The first impacts are event nodes; the last of these stands for
+all that follow: it maps the state to the limit of x, r(x), r(r(x)), ..., at rest on the wall, at its own
+phase. With w the speed after it and a = -s'' the acceleration onto the wall, the bounces left out last
 
     2 w / a (1 + e + e^2 + ...) = 2 w / (a (1 - e)),
 
 and the mean square of their speeds over a period T is 2 w^3 / (3 a T (1 - e^3)); both to the first order in
-w, as a does not change in so short a time. The motion that leaves the wall later knows nothing of them.
+w, as a does not change in so short a time. The motion that leaves the wall later does not depend on them.
 
-Inertia couples other coordinates to this one. With u its speed before the first of the impacts, and impulses
-in parts of the one that changes its speed by 1, all impacts give (1 + e) u/(1 - e). The wall's force at rest
-gives 2 e u/(1 - e) in the same time. The difference is u, the impulse that leaves no speed: with it at once,
-and the force at rest from then on, the others move as they do, to the first order.
+Inertia couples other coordinates to this one. With u its speed before the first of these impacts, and with
+impulses over the one that changes this speed by 1, all impacts together give (1 + e) u/(1 - e). The force of
+the wall at rest gives 2 e u/(1 - e) in the same time. The difference is u, the impulse that stops this
+coordinate. So the impulse u at once, and the force at rest from then on, move the other coordinates as all
+the bounces do, to the first order.
 
 References
 ----------
@@ -38,15 +39,15 @@ from periodic.orbit.scheme import Array
 from periodic.system import STUCK, System
 
 SHORT = 0.1
-"""What bounces that are left out may add to an orbit, in tolerances, where more of them are put in."""
+"""Error of the bounces still left out, in tolerances, once more of them have become event nodes."""
 
 
 @dataclass(frozen=True)
 class Tail:
-    """The bounces that an impact leaves out: how long they last (rad), and the mean square of what they add.
+    """The bounces left out at an impact: how long they last (rad), and the mean square of their states.
 
-    The latter is that of the states over a period, as they are scaled. first: how long the first of them
-    lasts; ratio: e; thrown (n,): by how much the states after the impact differ from those at rest.
+    square: of the scaled states less those at rest, over a period. first: how long the first bounce lasts;
+    ratio: e; thrown (n,): the states after a single impact less those at rest.
     """
 
     length: float
@@ -63,7 +64,7 @@ def settling(system: System, orbit: Orbit) -> list[int]:
 
 
 def tail(system: System, orbit: Orbit, index: int) -> Tail:
-    """Return what an impact after which an orbit rests leaves out; infinite where nothing presses."""
+    """Return the bounces left out at an impact before rest; infinite where nothing presses, or e >= 1."""
     event, (_, x, phase) = orbit.mesh.events[index], before(orbit, index)
     surface = surface_of(system, event.switch)
     assert surface.leaves is not None
@@ -79,9 +80,9 @@ def tail(system: System, orbit: Orbit, index: int) -> Tail:
 
 
 def neglected(system: System, orbit: Orbit) -> float:
-    """Return the error of an orbit that rests at once, root mean square over peak to peak.
+    """Return the error due to the bounces left out, root mean square over peak to peak.
 
-    Infinite where the bounces last longer than the rest: then it never rests.
+    Infinite where the bounces last longer than the rest: then the motion never comes to rest.
     """
     square, lengths = 0.0, orbit.mesh.segment_lengths(orbit.phases)
     for index in settling(system, orbit):
@@ -91,9 +92,9 @@ def neglected(system: System, orbit: Orbit) -> float:
 
 
 def lengthened(system: System, orbit: Orbit, tolerance: float) -> tuple[tuple[EventNode, ...], Array] | None:
-    """Return event nodes and phases with more of the bounces, where those left out are too much; else None.
+    """Return event nodes and phases with more bounces, where the error of those left out is too large.
 
-    Each lasts e times as long as the one before; k more of them lessen the error by e^(3k/2).
+    Else None. Each bounce lasts e times as long as the one before: k more reduce the error by e^(3k/2).
     """
     error, least = neglected(system, orbit), SHORT * tolerance
     if not tolerance < error < np.inf:
@@ -113,7 +114,7 @@ def lengthened(system: System, orbit: Orbit, tolerance: float) -> tuple[tuple[Ev
 
 
 def bounced(system: System, orbit: Orbit, guess: Orbit) -> Orbit:
-    """Return a guess on the mesh of `lengthened` with the bounces in it; speeds fall as straight lines."""
+    """Return a guess on the mesh of `lengthened` with the bounces in it; the speed is linear in each."""
     nodes, stages, mesh = guess.nodes.copy(), guess.stages.copy(), guess.mesh
     for index in settling(system, orbit):
         left, switch = tail(system, orbit, index), orbit.mesh.events[index].switch
@@ -128,7 +129,7 @@ def bounced(system: System, orbit: Orbit, guess: Orbit) -> Orbit:
 
 
 def _falling(orbit: Orbit, node: int) -> Iterator[tuple[int, Array]]:
-    """Yield the intervals from an event node to the next, with what falls from 1 to -1 at their knots."""
+    """Yield the intervals from an event node to the next, with a line from 1 to -1 at their knots."""
     parts, first = orbit.mesh.breaks[node], int(orbit.mesh.starts[node])
     knots = np.append(0.0, orbit.mesh.scheme.points)
     for k, (begin, end) in enumerate(pairwise(parts)):

@@ -54,7 +54,7 @@ class Saltations:
         return self.at(x, phase, self.orbit.parameter)
 
     def at(self, x: Array, phase: Array, parameter: Array) -> Array:
-        """Return them for events elsewhere: x- (K, n), tau (K,), p.
+        """Return the matrices for events at other x- (K, n), tau (K,) and p.
 
         Raises numpy.linalg.LinAlgError where there are no rates, and where a switch is at rest.
         """
@@ -126,9 +126,9 @@ def saltation_gradient(
 def at_fixed_phase(
     system: System, orbit: Orbit, jumps: Sequence[Jump], row: Row, free: tuple[int, ...]
 ) -> Row:
-    """Return a row for changes at fixed tau: event nodes at jumps follow from the state that arrives there.
+    """Return a row for changes at fixed tau: the phases of jumps follow from the state that arrives there.
 
-    Other event nodes are mesh points like any, and it does not matter whether they move.
+    Other event nodes are ordinary mesh points, and it does not matter whether they move.
     """
     if not jumps:
         return row
@@ -156,8 +156,8 @@ def mapped(
 ) -> tuple[Array, Array, Array, Array]:
     """x+ (K, n), its derivatives in state, phase and parameters; x- itself where only the equations jump.
 
-    Of an impact after which it rests on the wall x+ is where x-, r(x-), r(r(x-)), ... tend to: the speed
-    falls to -e times itself each time, so that it is x- + (r(x-) - x-)/(1 + e), whatever e is.
+    For an impact after which the motion rests on the wall x+ is the limit of x-, r(x-), r(r(x-)), ...: each
+    impact multiplies the speed by -e, so that the limit is x- + (r(x-) - x-)/(1 + e).
     """
     count, n = x.shape
     after, by_state = x.copy(), np.tile(np.eye(n), (count, 1, 1))
@@ -179,7 +179,7 @@ def mapped(
 
 
 def bounce(system: System, switch: int, x: Array, phase: float, parameter: Array) -> tuple[Array, float]:
-    """Return r(x-) (n,) and the part e of its speed that an impact leaves, by what the next one would."""
+    """Return r(x-) (n,) and the coefficient of restitution e, from the next impact, r(r(x-))."""
     resetting, at = cast(Resetting, system), np.array([phase])
     after = resetting.reset(switch, x[None], at, parameter)[0]
     first, second = after - x, resetting.reset(switch, after[None], at, parameter)[0] - after

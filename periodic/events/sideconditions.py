@@ -23,7 +23,7 @@ STEP = difference_step(order=2)
 
 @dataclass(frozen=True)
 class Clearance:
-    """Side condition: the extremum of a switch nearest a phase lies at `level`, min of side * s."""
+    """Side condition: the minimum of side * s nearest to a phase is `level`, s a switch."""
 
     switch: int
     side: int
@@ -31,7 +31,7 @@ class Clearance:
     level: float = 0.0
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return the clearance side * s at the extremum, and its gradient, that at a fixed place."""
+        """Return side * s at the extremum less `level`, and the gradient at that place in its interval."""
         at = SwitchPolynomials(system, orbit).nearest(self.switch, self.side, self.phase)
         row = clearance(system, orbit, at, self.side, free)
         return Row(row.value - self.level, row.nodes, row.outer, row.stages)
@@ -79,13 +79,13 @@ class Length:
 
 @dataclass(frozen=True)
 class Lengths:
-    """Side condition: some segments, by the event nodes at which they begin, are so long together (rad)."""
+    """Side condition: the total length (rad) of some segments, by the event nodes at which they begin."""
 
     segments: tuple[int, ...]
     length: float
 
     def linearise(self, system: System, orbit: Orbit, free: tuple[int, ...]) -> Row:
-        """Return their lengths less the given one."""
+        """Return their total length less the given one."""
         each = [Length(segment, 0.0).linearise(system, orbit, free) for segment in self.segments]
         row = sum(each[1:], each[0])
         return Row(row.value - self.length, row.nodes, row.outer)
@@ -95,7 +95,7 @@ class Lengths:
 class Limit:
     """Side condition: side * (a switch) is `level` at an event node, which need not be its own.
 
-    arriving: whether it is that of the state before the impact there.
+    arriving: whether the state is the one before the impact there.
     """
 
     node: int

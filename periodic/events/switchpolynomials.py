@@ -1,9 +1,9 @@
 """Switches along the whole orbit, not at its collocation points alone: changes of sign, and extremes.
 
-On each interval a switch is the polynomial through its values at the knots: to the order of the orbit's own
-error, exactly where it is linear in the states. Bernstein coefficients enclose it, so that intervals on one
-side of the level are done with at once; what is left is cut at the zeros of the derivative into monotone
-pieces, none of which hides a change of sign.
+On each interval a switch is represented by the polynomial through its values at the knots. That is exact for
+a switch that is linear in the states, and else of the order of the orbit's own error. Bernstein coefficients
+bound the polynomial, so that intervals on one side of the level are settled at once. The others are divided
+at the zeros of the derivative into monotone pieces, none of which hides a change of sign.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class SwitchPolynomials:
     def crossings(self, switch: int) -> list[tuple[EventNode, float]]:
         """Return where a switch passes its level, with the phases in order, those of event nodes exact.
 
-        What an impact brings about is no crossing.
+        A change of sign that an impact causes is no crossing.
         """
         along = self.along(switch)
         kept = np.flatnonzero(along.sides)
@@ -121,7 +121,7 @@ class SwitchPolynomials:
         return next_to and at_end and later in starts
 
     def _between(self, switch: int, along: Along, a: int, b: int) -> float:
-        """Phase at which a switch passes its level between two points, at most zeros between them."""
+        """Phase at which a switch passes its level between two points; at those between them it is 0."""
         between = np.arange(a + 1, b if b > a else b + len(along.phase)) % len(along.phase)
         nodes = self._tied(switch)
         for i in between:
@@ -147,9 +147,9 @@ class SwitchPolynomials:
         return {int(j): float(phase) for j, direction, phase in each if direction}
 
     def _directions(self, switch: int) -> list[int]:
-        """The sides to which a switch goes at the event nodes, 0 where it passes its level at none.
+        """The side to which a switch passes at each event node; 0 where it does not pass its level.
 
-        It shares the nodes of other switches that are equal to it.
+        It also passes at the nodes of other switches that are equal to it.
         """
         if switch not in self._directed:
             self._directed[switch] = self._directions_of(switch)
@@ -157,7 +157,7 @@ class SwitchPolynomials:
 
     @cached_property
     def _directed(self) -> dict[int, list[int]]:
-        """The same by switch, as far as they have been asked for."""
+        """Cache of `_directions`, by switch."""
         return {}
 
     def _directions_of(self, switch: int) -> list[int]:
@@ -174,8 +174,8 @@ class SwitchPolynomials:
     def expected(self, switch: int, otherwise: int) -> NDArray[np.int_]:
         """Side of a switch in each interval by the modes of its surface, `otherwise` without event nodes.
 
-        Of a switch with impacts it is the side that they lead back to, of a relay its mode. Where the motion
-        is held at a surface its guard has none, 0, and elsewhere those of the releases have none.
+        For an impact it is the side of the motion, for a relay its mode. The guard of a surface has side 0 in
+        intervals where the motion is held there, its releases have side 0 in all others.
         """
         mesh, surface = self.orbit.mesh, surface_of(self.system, switch)
         if surface.releases is not None:
@@ -215,7 +215,7 @@ class SwitchPolynomials:
         return float(np.abs(np.einsum("pn,pn->p", slope, states)).max())
 
     def flat(self, switch: int, part: float) -> bool:
-        """Whether a switch is the same all along the orbit but for a part of its size."""
+        """Whether a switch varies along the orbit by less than a part of its size."""
         return float(np.ptp(self.knots[:, :, switch])) < part * self.size(switch)
 
     def side(self, switch: int) -> int:
@@ -226,8 +226,8 @@ class SwitchPolynomials:
     def unmarked(self, switch: int, otherwise: int) -> list[Extremum]:
         """Return the farthest point of each excursion past the level that has no event nodes.
 
-        `otherwise` is the side on which a switch without event nodes is taken to be. What begins or ends at
-        an event node is none: there it is the node that is not yet, or not quite, at the passage.
+        `otherwise` is the side on which a switch without event nodes is taken to be. An excursion that begins
+        or ends at an event node is left out: there the node is not yet, or not quite, at the passage.
         """
         along = self.along(switch)
         wrong = along.sides * self.expected(switch, otherwise)[along.interval] < 0
@@ -255,7 +255,7 @@ class SwitchPolynomials:
         return bool(at_nodes[run].any())
 
     def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
-        """Whether it does, or is as brief beside one as polynomials make a slow crossing."""
+        """As `_beginning`, or whether it is so brief beside an event node as slow crossings are uncertain."""
         if self._beginning(along, run, at_nodes):
             return True
         at_level = at_nodes & (along.sides == 0)
@@ -266,7 +266,7 @@ class SwitchPolynomials:
         )
 
     def _ends(self, switch: int) -> list[int]:
-        """The intervals at whose begin a switch has an event node, or one of the jump that it belongs to."""
+        """The intervals that begin at an event node of a switch, or of the surface that it belongs to."""
         surface = surface_of(self.system, switch)
         if surface.leaves is not None:
             left = [
@@ -290,10 +290,10 @@ class SwitchPolynomials:
         return float(found[0, at.switch])
 
     def nearest(self, switch: int, side: int, phase: float) -> Extremum:
-        """Return the minimum of side * s that is nearest to a phase, the lowest where the orbit's polynomials
-        have several of one: they join with a small kink. Raises FloatingPointError where there is none.
+        """Return the minimum of side * s nearest to a phase. Raises FloatingPointError where there is none.
 
-        Those beyond an event node of the switch are others.
+        Polynomials of neighbouring intervals join with a small kink, which may split one minimum into several
+        within about an interval: the lowest of these is returned, none beyond an event node of the switch.
         """
         own = sorted(self._tied(switch))
 
@@ -315,9 +315,9 @@ class SwitchPolynomials:
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
 
     def minima(self, switch: int, side: int) -> list[Extremum]:
-        """Return all minima of side * s, its impacts left out, of sliding and relays where on that side."""
+        """Return all minima of side * s but at impacts; of relays and held surfaces on that side alone."""
         along = self.along(switch, everywhere=True)
-        points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the next one's begin
+        points = np.flatnonzero(along.theta < 1.0)  # an interval's end is the beginning of the next
         value = side * along.value[points]
         before, after = np.roll(value, 1), np.roll(value, -1)
         low = points[(value <= before) & (value <= after)]
@@ -338,8 +338,8 @@ class SwitchPolynomials:
     def at_rest(self, along: Along, switch: int) -> NDArray[np.bool_]:
         """Which points along an impact's switch are at rest on the wall, or where something leaves it.
 
-        It leaves as slowly as t^3: what dips in the first interval less than a part of what that rises to is
-        the polynomial's own error.
+        The distance grows from 0 as slowly as t^3: in the first interval, values below SHALLOW times the one
+        at its end are the polynomial's error.
         """
         resting = self._resting(surface_of(self.system, switch))
         left = resting[along.interval - 1] & ~resting[along.interval]
@@ -363,7 +363,7 @@ def _bernstein(scheme: Scheme) -> Array:
 
 @cache
 def _monomial(scheme: Scheme) -> Array:
-    """Coefficients of the powers of theta, lowest first, of the derivative of the same polynomial."""
+    """Matrix from values at the knots to the derivative's coefficients of powers of theta, lowest first."""
     powers = np.linalg.inv(np.vander(scheme.knots, increasing=True))
     return (powers[1:] * np.arange(1, scheme.ncol + 1)[:, None]).astype(float, copy=False)
 

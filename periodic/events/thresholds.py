@@ -1,10 +1,10 @@
-"""Thresholds of what events decide, each with its equation.
+"""Thresholds for decisions about events, each with its equation.
 
-A switch s is compared with its level 0 in parts of its largest value along the orbit; a radian is the time in
-which it changes by about as much. What is near is so by the rounding of s, or by the error that an orbit of
-the standard tolerance has. The levels lie a decade or more apart: no decision is undone by the rounding of
-the next. With `NOISE` a tenth and ten times as large, and all that follows from it, models drawn at random
-have the same special points, to 2e-9 in the parameter.
+Values of a switch s are relative to its largest value along the orbit, and s is taken to change by about as
+much in a radian. Two values are near each other within the rounding of s, or within the error of an orbit of
+the standard tolerance. The thresholds lie a decade or more apart, so that rounding at one does not undo a
+decision at the next. With `NOISE` a tenth and ten times as large, and all that follows from it, models drawn
+at random have the same special points, to 2e-9 in the parameter.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ NOISE = 1e-11
 """Rounding of s on a solved orbit: eps, times the condition of its equations."""
 
 RELEASED = 10 * NOISE
-"""How far past its limit what holds the motion may be at an event node, by rounding."""
+"""How far past its limit the force that holds a motion may be at an event node, by rounding."""
 
 AT_LEVEL = 100 * NOISE
-"""s at its level. Orbits are held so far short of a change of their word: then they are on their own side."""
+"""Largest |s| that counts as at its level. Orbits are held this far short of a change of their word."""
 
 TOGETHER = 100 * AT_LEVEL
-"""s of what happens at once with another event, by symmetry or as the other brings it about."""
+"""Largest |s| of an event that coincides with another one, by symmetry or as the other causes it."""
 
 SAME_PHASE = AT_LEVEL
 """rad; about AT_LEVEL / s', the error of the phase at which s passes its level."""
@@ -32,28 +32,32 @@ AT_EXTREMUM = NOISE**0.5
 """rad; about (2 NOISE / s'')^(1/2), the error of an extremum's phase by rounding; the slope is as small."""
 
 BESIDE_EXTREMUM = Accuracy.STANDARD**0.5
-"""rad; the same by the orbit's error. Lengths of excursions of one depth differ by as much, relatively."""
+"""rad; the same by the orbit's error. Also the relative difference of equally deep excursions' lengths."""
 
 SLOW_CROSSING = Accuracy.STANDARD ** (1 / 3)
-"""rad; about (6 tol / s''')^(1/3): how long s is at its level to that error where s' = s'' = 0."""
+"""rad; about (6 tol / s''')^(1/3): how long |s| is below the orbit's error where s = s' = s'' = 0."""
 
 LONGEST = 1e-2
 """Largest size at which words are exchanged (rad; of impacts the speed, as a part of the range of s).
 
-The states change by its square: by the error of an orbit at the coarsest tolerances, by far less than a step.
+The exchange changes the states by its square: by the error of an orbit at the coarsest tolerances, and by far
+less than a step does.
 """
 
 LEAST_GRAZING = AT_LEVEL**0.5
-"""Least size of what touches, whose depth s'' size^2 is AT_LEVEL there."""
+"""Least size of an excursion from a touch: its depth s'' size^2 is AT_LEVEL."""
 
 LEAST_CROSSING = MIN_INTERVALS * EPSILON / AT_LEVEL
-"""Least size of what passes: on the intervals within it rates, by rounding, are just known to AT_LEVEL."""
+"""Least size of a segment between passages: in its intervals rounding leaves rates an error of AT_LEVEL."""
 
 VANISHING = 0.5
-"""What a step would leave this part of, by its tangent, may end in it; what is not longer by 1 / this too."""
+"""An excursion that a step along the tangent shortens to this part may end in the step.
+
+Excursions up to 1 / this times as long count as equally short.
+"""
 
 SHALLOW = 0.1
-"""Depth past a level, over the largest, of what may be about to vanish, and may do without event nodes."""
+"""Depth of an excursion, over the largest |s|, up to which it may vanish soon and needs no event nodes."""
 
 
 def decades(most: float, least: float) -> tuple[float, ...]:

@@ -1,13 +1,15 @@
-"""Guards that are one function, up to a factor: always, or where joints are held.
+"""Guards that are the same function, up to a factor: always, or where joints are held.
 
-The speeds at which sliders side by side are strained are one. Where friction between two masses holds, they
-have one speed: so have the joints from either of them to the same place. What has one guard stops at once.
+Sliders in parallel are strained at the same speed. Where friction between two masses holds, both have the
+same speed, and so have the joints from either of them to the same place. Joints with the same guard stop
+simultaneously.
 """
 
 from __future__ import annotations
 
 import weakref
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import cast
 
 import numpy as np
@@ -25,44 +27,51 @@ LOOKS = 3
 SAME = EPSILON**0.5
 """How far gradients of one function may be apart, relatively."""
 
-_KEPT: weakref.WeakKeyDictionary[System, dict[tuple[int, ...], dict[int, int]]] = weakref.WeakKeyDictionary()
-"""What was found, by systems, and by the switch and the held joints."""
+
+@dataclass
+class _Known:
+    """Gradients and values of a system's switches at some states, and the twins found, by guards."""
+
+    rows: Array
+    twins: dict[tuple[int, ...], dict[int, int]] = field(default_factory=dict)
+    holding: dict[tuple[int, ...], dict[int, int]] = field(default_factory=dict)
+
+
+_KEPT: weakref.WeakKeyDictionary[System, _Known] = weakref.WeakKeyDictionary()
 
 
 def twins(system: System, switch: int, held: Sequence[int] = ()) -> dict[int, int]:
-    """Return the guards of surfaces at which motions may be held that are one function, this one first.
+    """Return the guards of surfaces that hold motions that are the same function, this one first.
 
-    Parameters
-    ----------
-    system : System
-        The system.
-    switch : int
-        A guard.
-    held : sequence of int
-        Guards of friction that is held: what differs by multiples of these is one.
-
-    Returns
-    -------
-    dict of int to int
-        The guards, each with the sign of the factor between it and the first.
+    Each has the sign of the factor between it and the first. held: guards of friction that is held; guards
+    that differ by multiples of these are the same.
     """
     every = of_held(system)
     if switch not in every or len(every) < 2:
         return {switch: 1}
-    kept = _KEPT.setdefault(system, {})
+    known = _known(system)
     key = (switch, *sorted(set(held) - {switch}))
-    if key not in kept:
-        kept[key] = _alike(system, switch, every, key[1:])
-    return kept[key]
+    if key not in known.twins:
+        known.twins[key] = _alike(known.rows, switch, every, key[1:])
+    return known.twins[key]
 
 
 def holding(system: System, switch: int, held: Sequence[int]) -> dict[int, int]:
-    """Return which of the held joints hold a guard at 0, with the signs of its parts along theirs.
+    """Return which of the held joints hold a guard at 0, with the signs of its coefficients.
 
-    Its guard is a sum of multiples of theirs. Empty where it is not.
+    The guard is a linear combination of their guards. Empty where it is not.
     """
-    rows = _rows(system)
-    if not held or switch in held or _less(rows, switch, held).any():
+    if not held or switch in held:
+        return {}
+    known, key = _known(system), (switch, *held)
+    if key not in known.holding:
+        known.holding[key] = _parts(known.rows, switch, held)
+    return known.holding[key]
+
+
+def _parts(rows: Array, switch: int, held: Sequence[int]) -> dict[int, int]:
+    """The signs of a guard's coefficients in the guards of held joints; empty if it is no combination."""
+    if _less(rows, switch, held).any():
         return {}
     along = rows[:, list(held)]
     parts = np.einsum("ij,ijk->ik", rows[:, switch], np.linalg.pinv(along)) * np.abs(along).max(axis=2)
@@ -70,9 +79,8 @@ def holding(system: System, switch: int, held: Sequence[int]) -> dict[int, int]:
     return {k: 1 if c > 0 else -1 for k, c in zip(held, part, strict=True) if abs(c) > SAME * abs(part).max()}
 
 
-def _alike(system: System, switch: int, every: Sequence[int], held: Sequence[int]) -> dict[int, int]:
-    """The twins, by gradients and values at some states, less what they have of those of held joints."""
-    rows = _rows(system)
+def _alike(rows: Array, switch: int, every: Sequence[int], held: Sequence[int]) -> dict[int, int]:
+    """The twins, by gradients and values at some states, less their parts along the held joints' guards."""
     own, found = _less(rows, switch, held), {switch: 1}
     for k in every if own.any() else ():
         other = _less(rows, k, held)
@@ -82,16 +90,19 @@ def _alike(system: System, switch: int, every: Sequence[int], held: Sequence[int
     return found
 
 
-def _rows(system: System) -> Array:
-    """Gradients and values of all switches at some states, shape (LOOKS, switches, n+1)."""
-    state, _ = system.rest(system.nominal)
-    moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
-    given = moved, np.arange(float(LOOKS)), system.nominal
-    return np.concatenate([system.switch_gradient(*given)[0], system.switch(*given)[:, :, None]], axis=2)
+def _known(system: System) -> _Known:
+    """Gradients and values of all switches at some states, shape (LOOKS, switches, n+1), from a cache."""
+    if system not in _KEPT:
+        state, _ = system.rest(system.nominal)
+        moved = state + np.random.default_rng(1).normal(size=(LOOKS, len(state)))
+        given = moved, np.arange(float(LOOKS)), system.nominal
+        values = system.switch(*given)[:, :, None]
+        _KEPT[system] = _Known(np.concatenate([system.switch_gradient(*given)[0], values], axis=2))
+    return _KEPT[system]
 
 
 def _less(rows: Array, switch: int, held: Sequence[int]) -> Array:
-    """A guard's gradients and values, (LOOKS, n+1), less their parts along those of held joints."""
+    """A guard's gradients and values, (LOOKS, n+1), less their projection on those of held joints."""
     own = rows[:, switch]
     if not held:
         return own

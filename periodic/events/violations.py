@@ -1,8 +1,9 @@
-"""Where an orbit violates its word: the one test of what its event nodes say of the modes in between.
+"""Where an orbit violates its word: the one test of the modes that its event nodes prescribe.
 
-In each mode of a surface some functions keep their sign (`periodic.system.SurfaceLike`): its guard beside it,
-the releases while it is held. That is asked of the polynomials of the whole orbit, which their Bernstein
-coefficients enclose, not of samples; and of each event node, that it passes its level as it says.
+In each mode of a surface some functions keep their sign (`periodic.system.SurfaceLike`): the guard on either
+side, the releases while the motion is held. That is tested on the polynomials of the whole orbit, which their
+Bernstein coefficients enclose, not on samples. At each event node the switch must pass its level in the
+node's direction.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ class Breach(Enum):
     """How an orbit violates its word.
 
     REVERSED: an event node passes its level the other way. GRAZED: an impact or a relay has no speed. HELD:
-    both sides of a jump lead back to it, or a relay has no band. THROUGH: the orbit goes where an impact
-    would be. EXCURSION: a switch passes its level without an event node. MODE: the motion is held where it
-    should not be, or the reverse.
+    the motions on both sides of a jump lead back to it, or a relay's thresholds are in the wrong order.
+    THROUGH: the orbit goes through a wall. EXCURSION: a switch passes its level without an event node. MODE:
+    the motion is held where it should not be, or the reverse.
     """
 
     REVERSED = auto()
@@ -43,10 +44,10 @@ class Breach(Enum):
 
 @dataclass(frozen=True)
 class Violation:
-    """One of them: the switch, where (an extremum, or an event node), the side of its level that it should be
-    on, and how far it is past it, as a part of its largest value.
+    """A violation: the switch, where (an extremum, or an event node), and the side on which it should be.
 
-    arriving: whether that is the state before the impact at the event node.
+    depth: how far it is past its level, for MODE as a part of its largest value; for a passage at an event
+    node the slope. arriving: whether it is taken in the state before the impact at the event node.
     """
 
     breach: Breach
@@ -58,15 +59,15 @@ class Violation:
 
 
 def violations(system: System, orbit: Orbit, otherwise: Orbit | None = None) -> list[Violation]:
-    """Return where an orbit violates its word; nothing where it is one of the system.
+    """Return where an orbit violates its word; empty where it is an orbit of the system.
 
-    Surfaces without event nodes are on the side of `otherwise`, by default of the orbit's own farthest point.
+    Surfaces without event nodes are on the side of the farthest point of `otherwise`, by default the orbit.
     """
     return at_nodes(system, orbit) + between_nodes(system, orbit, otherwise)
 
 
 def at_nodes(system: System, orbit: Orbit) -> list[Violation]:
-    """Return the event nodes that do not pass their levels as they say."""
+    """Return the event nodes at which a switch does not pass its level in the node's direction."""
     return _at_nodes(SwitchPolynomials(system, orbit))
 
 
@@ -75,7 +76,7 @@ def _at_nodes(dense: SwitchPolynomials) -> list[Violation]:
 
 
 def refusals(system: System, orbit: Orbit) -> list[Violation]:
-    """Return the violations for which an orbit is refused at once: at event nodes, and through impacts."""
+    """Return the violations for which an orbit is refused at once: at event nodes, and through walls."""
     impacts = [surface.switch for surface in surfaces_of(system) if surface.kind == Kind.IMPACT]
     if not impacts:
         return at_nodes(system, orbit)
@@ -107,7 +108,7 @@ def between_nodes(system: System, orbit: Orbit, otherwise: Orbit | None = None) 
 def _excursions(
     dense: SwitchPolynomials, switch: int, otherwise: int, most: float, breach: Breach = Breach.EXCURSION
 ) -> list[Violation]:
-    """The excursions of a switch past its level that no event node tells of."""
+    """The excursions of a switch past its level without event nodes."""
     sides, found = dense.expected(switch, otherwise), list[Violation]()
     for e in dense.unmarked(switch, otherwise):
         side = int(sides[e.interval])
@@ -142,10 +143,10 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
-    """Return what keeps passages of a guard from being held, and stops from slipping on, at its event nodes.
+    """Return the limits at a guard's event nodes: a passage is not held, and a stop does not slip on.
 
-    At impacts that throw the guard, what keeps the modes before and after. Their depths are negative as long
-    as it does.
+    At impacts at which the guard jumps: the limits of the modes before and after. The depths are negative as
+    long as these hold.
     """
     return _limits(SwitchPolynomials(system, orbit), surface)
 
@@ -169,7 +170,7 @@ def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
 
 
 def _about_impacts(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
-    """What keeps the modes before and after impacts that throw the guard of a surface."""
+    """The limits of the modes before and after impacts at which the guard of a surface jumps."""
     found = list[Violation]()
     for j in thrown(system, orbit, surface):
         if slope_before(system, orbit, j) * orbit.mesh.events[j].direction > 0:
@@ -189,7 +190,7 @@ def _beside_impact(
     interval: int,
     arriving: bool = False,
 ) -> list[Violation]:
-    """What keeps the mode of a surface in the interval before or after an impact, at its end there."""
+    """The limits of a surface's mode in the interval before or after an impact, at the impact."""
     assert surface.column is not None
     dense, phase = SwitchPolynomials(system, orbit), orbit.phases[node : node + 1]
     mode = int(dense.modes[interval, surface.column]) or dense.side(surface.switch)
@@ -201,9 +202,9 @@ def _beside_impact(
 
 
 def _kept(surface: SurfaceLike, mode: int, arriving: bool) -> tuple[tuple[int, int], ...]:
-    """The switches that keep their side, with it, just before or after an impact that throws the guard.
+    """The switches, with their sides, that a mode requires just before or after an impact.
 
-    What is held before is held by its limits; an elastic slider turns wherever its speed does.
+    A joint held before the impact is within its limits; an elastic slider reverses wherever its speed does.
     """
     assert surface.releases is not None
     if mode in (STUCK, HELD):
@@ -218,9 +219,9 @@ def largest(dense: SwitchPolynomials, *switches: int) -> float:
 
 
 def _unforced(dense: SwitchPolynomials, index: int, own: SurfaceLike) -> list[Violation]:
-    """What an event node says to happen at once to other surfaces, and does not.
+    """The changes of mode at other surfaces that an event node states, but that do not happen there.
 
-    A joint that another's event tears off is released by the modes after it, and was held by those before.
+    A joint that another's event tears off is within its limits in the modes before, past one in those after.
     """
     system, orbit, found = dense.system, dense.orbit, list[Violation]()
     event, start = orbit.mesh.events[index], int(orbit.mesh.starts[index])
@@ -261,16 +262,16 @@ def _at_node(dense: SwitchPolynomials, index: int) -> list[Violation]:
 
 
 def _beyond(system: System, orbit: Orbit, index: int) -> float:
-    """A relay's guard just after its event node: between its thresholds, if they are in order."""
+    """A relay's guard in its mode after an event node: of the mode's sign if the thresholds are in order."""
     start = int(orbit.mesh.starts[index])
     at = orbit.nodes[start : start + 1], orbit.phases[index : index + 1], orbit.parameter
     return float(guards(system, *at, modes_in(system, orbit, start))[0, orbit.mesh.events[index].switch])
 
 
 def word(system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
-    """Return the event nodes of an orbit at which its modes change, sorted; None where it violates its word.
+    """Return the event nodes of an orbit at which modes change, sorted; None where modes are violated.
 
-    Where they lie is left open: on another mesh it is the same word.
+    Their phases are left out, so that an orbit has the same word on any mesh.
     """
     if any(v.breach in (Breach.EXCURSION, Breach.MODE) for v in between_nodes(system, orbit)):
         return None

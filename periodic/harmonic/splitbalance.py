@@ -5,7 +5,8 @@ With F_k the coefficient of the forces on the linear part and X_k that of its st
     X_k = L(i k w) F_k,
     L(s) = sum_j output_j input_j / (s - lambda_j) / 2 + conjugates + direct + s direct_rate,
 
-so that the coefficients of the places are the unknowns, whatever number of states is behind them.
+so that the unknowns are the Fourier coefficients of the states at the places and of the system's own states,
+however many states the structures have.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ from periodic.system import LinearPart, ModesLike, System, linear_of
 Complex = NDArray[np.complex128]
 
 SCHEME = Scheme(Family.RADAU, 5)
-"""Collocation points at which multipliers are computed, in as many intervals as there are samples by four."""
+"""Scheme by which multipliers are computed, on as many intervals as the series' mesh has, but at least 16."""
 
 
 def flexibility(modes: ModesLike, frequency: Array) -> Complex:
@@ -63,7 +64,7 @@ def flexibility(modes: ModesLike, frequency: Array) -> Complex:
 
 
 def flexibility_slope(modes: ModesLike, change: ModesLike, frequency: Array) -> Complex:
-    """Return its derivative where the modes change, (H, s, k)."""
+    """Return the derivative of L(i w) along a change of the modes, (H, s, k)."""
     s, found = 1j * frequency[:, None], np.zeros((len(frequency), *modes.direct.shape), dtype=complex)
     for turn in (np.asarray, np.conj):
         gap = (s - turn(modes.exponents))[:, None]
@@ -101,7 +102,7 @@ class SplitBalance:
 
     @property
     def fundamental(self) -> Array:
-        """Nothing is known of them before the orbit is found."""
+        """NaN: the fundamental matrices are computed once the orbit is found, by `accepted`."""
         return np.full((1, 1, 1), np.nan)
 
     @property
@@ -178,7 +179,7 @@ class SplitBalance:
 
 @dataclass(frozen=True)
 class SplitCorrection(Correction):
-    """A correction that knows the leading multipliers. leading: the subspace that they are of."""
+    """A correction that knows the leading multipliers. leading: their invariant subspace."""
 
     leading: Leading | None = None
 
@@ -228,7 +229,7 @@ class SeriesLeading(Leading):
     """The leading multipliers of a series, computed about it as a piecewise polynomial."""
 
     def start(self, change: Increment) -> Array:
-        """Return what a change of the series changes at the beginning of the period, in the basis (r,)."""
+        """Return the change at the beginning of the period that a change of the series makes, (r,)."""
         pieces = self.floquet.given.orbit
         samples = change.algebraic.reshape(-1, change.algebraic.shape[2])
         harmonics = len(samples) // 4 - 1

@@ -27,7 +27,7 @@ GROWTH = 1e6
 """Growth of motions within a period above which mesh points are not computed from the first one alone."""
 
 PLACES = 16
-"""Between so many places at the most growth is looked at."""
+"""Largest number of places between which growth is computed."""
 
 LARGEST_FUNDAMENTAL = float(np.sqrt(LARGEST))
 """Largest fundamental matrices that are given: products of two are finite."""
@@ -137,7 +137,7 @@ class Chain:
         return self._growing(self.steps)
 
     def _growing(self, steps: Array) -> float:
-        """The same by steps (N, n, n) from joint to joint."""
+        """The largest growth by steps (N, n, n) from joint to joint; of large systems from the first."""
         if self.maps.shape[1] <= PAIRED_UP_TO:
             return between_any(steps)
         found = float(np.abs(self.maps[:, :, 1 : 1 + self.maps.shape[1]]).max())
@@ -181,7 +181,7 @@ class Chain:
         return tuple(self._recovered(maps, *pair) for pair in zip(right[0], found.T, strict=True))
 
     def _from_both_ends(self) -> tuple[Array, Array]:
-        """The mesh points from both ends, and the equations of these: intervals and periodicity."""
+        """The mesh points from both ends, and the equations of the ends: the reduced chain, periodicity."""
         joints, step, origin, orbit = self._joints, self.eliminated.step, self.eliminated.origin, self.orbit
         reduced, n = reduce(step[joints[1:] - 1]), orbit.nodes.shape[1]
         maps = np.empty((len(step) + 1, *reduced.maps.shape[1:]))
@@ -196,7 +196,7 @@ class Chain:
         return maps, np.concatenate([reduced.ends, closed])
 
     def _recovered(self, maps: Array, constant: float, found: Array) -> Increment:
-        """The increment of the ends and dy."""
+        """The increment that follows from the ends and dy, `found`."""
         k, width = len(self.orbit.phases), self.eliminated.step.shape[2] - 1 - maps.shape[1]
         nodes, outer = constant * maps[:, :, 0] + maps[:, :, 1:] @ found, found[len(found) - width :]
         stages, algebraic = self.eliminated.recover(nodes, outer, constant)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from periodic.orbit.scheme import Array
 
 PAYS_FROM = 8
-"""Number of states from which it pays."""
+"""Number of states from which eliminating kinematic rows saves time."""
 
 
 @dataclass(frozen=True)

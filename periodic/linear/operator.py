@@ -63,5 +63,5 @@ class Operator(Protocol):
 
 
 LinearSolver = Callable[[System, Orbit, LinearisationLike, Sequence[Row], Sequence[Jump]], Operator]
-"""What factors the collocation equations of an orbit, given at its collocation points, the rows of its
-event nodes, and the jumps of its state there."""
+"""Factors the collocation equations of an orbit, given at its collocation points, the rows of its event
+nodes, and the jumps of its state there."""

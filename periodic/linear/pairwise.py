@@ -24,7 +24,7 @@ from periodic.orbit.scheme import Array
 
 @dataclass(frozen=True)
 class Reduced:
-    """What is left: ends (n, 1+2n+q) with ends (1, dx_0, dx_N, dy) = 0, and all mesh points from both ends.
+    """A reduced chain: ends (n, 1+2n+q) with ends (1, dx_0, dx_N, dy) = 0, all mesh points from both ends.
 
     maps: affine maps (1, dx_0, dx_N, dy) -> dx_j, shape (N+1, n, 1+2n+q).
     """

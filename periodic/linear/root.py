@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 RELATIVE = 1e-12
-"""Precision of a root, relative to itself, beside the one asked for."""
+"""Relative precision of a root, added to the absolute one that is given."""
 
 
 def root(function: Callable[[float], float], begin: float, end: float, precision: float) -> float:

@@ -76,7 +76,7 @@ class Unknowns(Protocol):
         """
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
-        """Return on another mesh what the arclength constraint needs of it.
+        """Return the parts that the arclength constraint needs, on another mesh.
 
         Parameters
         ----------
@@ -140,12 +140,12 @@ class Increment:
 
     @property
     def parameter(self) -> float:
-        """That of the continuation parameter."""
+        """Change of the continuation parameter."""
         return float(self.parameters[0])
 
     @property
     def others(self) -> Array:
-        """Those of the further free parameters, shape (q-1,)."""
+        """Changes of the further free parameters, shape (q-1,)."""
         return self.parameters[1:]
 
     def __add__(self, other: Self) -> Self:
@@ -158,17 +158,17 @@ class Increment:
     def dot(self, other: Self, orbit: Orbit, scale: float | Array, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.
 
-        Beside kinks the mean is that of `metric_weights`, and brief excursions add what `length_metric` has.
+        With kinks the mean has the weights `metric_weights`, and brief excursions add `length_metric`'s part.
         """
         states = np.einsum("j,jn,jn->", metric_weights(orbit), self.profile, other.profile)
         lengths = length_metric(orbit, self.phases) @ other.phases
         return float(states) / size**2 + outer(self, other, scale) + float(lengths)
 
     def restricted(self, old: Orbit, new: Orbit, later: float = 0.0) -> Self:
-        """Return profile and parameter on the mesh of `new`, `later` (rad) than its mesh points.
+        """Return profile and parameters on the mesh of `new`, taken `later` (rad) than its mesh points.
 
-        With the event nodes where these are the same: beside a grazing excursions' lengths alone tell how far
-        along a branch an orbit is.
+        Changes of phases are kept where the events are the same: beside a grazing only excursions' lengths
+        show how far along a branch an orbit is.
         """
         at, where = old.mesh.nodes(old.phases), new.mesh.nodes(new.phases) + later
         wrapped = at[0] + np.mod(where - at[0], old.mesh.period)
@@ -199,7 +199,7 @@ class Increment:
 
 
 def outer(a: Unknowns, b: Unknowns, scale: float | Array) -> float:
-    """Return the free parameters' part of a scalar product, that of those which both have and which count."""
+    """Return the free parameters' part of a scalar product: of all that both have, or of the first alone."""
     if not isinstance(scale, np.ndarray):
         return float(a.parameters[0] * b.parameters[0]) / scale**2
     count = min(len(a.parameters), len(b.parameters))
@@ -237,10 +237,10 @@ def metric_weights(orbit: Orbit) -> Array:
 
 
 def length_metric(orbit: Orbit, phases: Array) -> Array:
-    """Return what changes of the event nodes' phases (k,) are multiplied with in the metric, shape (k,).
+    """Return the metric of excursions' lengths times changes of the event nodes' phases (k,), shape (k,).
 
-    It is the sum over excursions of their lengths' changes, relative where they are brief. Within one the
-    motion may be turned by friction.
+    The metric sums the squares of changes of excursions' lengths, relative where they are brief. Within an
+    excursion the motion may be turned by friction.
     """
     found = np.zeros(len(orbit.mesh.events))
     if len(orbit.mesh.exact_ends) == 0:

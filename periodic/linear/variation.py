@@ -1,11 +1,11 @@
-"""Motions beside an orbit that are multiplied by a number over the period: what special points are made of.
+"""Linearised motions about an orbit that are multiplied by a number over the period, as at special points.
 
 An orbit has the Floquet multiplier mu where its linearised equations, closed by v(T) = mu v(0), are singular,
 
     K_mu (u, v_y) = 0,
 
-with u what determines the motion v (its start, or forces and own states of a system that is split), and v_y
-that of parameters.
+where u determines the motion v (its start, or forces and own states of a system that is split), and v_y is
+the change of the parameters.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Complex = NDArray[np.complex128]
 
 
 class UnknownVariationsError(ValueError):
-    """The motions beside an orbit are not known: what asks for them is refused, or not found."""
+    """The linearised motions about an orbit are not known, so that methods that need them cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -64,16 +64,16 @@ class Repeating(Protocol):
     def gradient(self, unknown: Array, left: Array, source: Row | None, free: tuple[int, ...]) -> Row:
         """Return the gradient of left . K_mu (u, v_y) + source . v at fixed (u, v_y), left and source.
 
-        In the orbit's numbers and the parameters `free`; the value is what the algebraic rows, not yet met,
-        will add.
+        In the orbit's unknowns and the parameters `free`; the value is the contribution of algebraic rows
+        that are not met yet.
         """
 
 
 class Variations(Protocol):
-    """All motions beside an orbit."""
+    """All linearised motions about an orbit: solutions of the variational equations."""
 
     def repeating(self, multiplier: float) -> Repeating:
-        """Return the equations of those that are multiplied by a number."""
+        """Return the equations of the motions that are multiplied by a number."""
 
     @property
     def multipliers(self) -> Complex:
@@ -89,7 +89,7 @@ class Variations(Protocol):
         """Return the gradient of Re(factor mu) of a simple multiplier, by its index in `multipliers`."""
 
     def pair(self, near: Array | None, free: tuple[int, ...]) -> tuple[Row, Array]:
-        """Return the product of a pair of multipliers less 1, and what tells this pair near by.
+        """Return the product of a pair of multipliers less 1, and data that identify the pair nearby.
 
-        It is the pair whose product is nearest to 1, or the one that `near` tells.
+        It is the pair whose product is nearest to 1, or the one that `near`, such data, identifies.
         """

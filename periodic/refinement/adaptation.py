@@ -19,7 +19,7 @@ MOST_MESHES = 8
 
 
 MISSED_KINK = 1e-3
-"""How far, in peaks to peak, an orbit may be from what passed a kink unseen."""
+"""How far, in peaks to peak, an orbit may be from the one it replaces that passed a kink unseen."""
 
 
 def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solution:
@@ -73,7 +73,7 @@ def carried(solver: Solver, solution: Solution, mesh: Mesh, phases: Array) -> So
 
 
 def _unmoved(solver: Solver, old: Solution, new: Solution) -> Solution:
-    """Return the new solution if it is the old orbit within its error, or near it where that is none."""
+    """Return the new solution if it is the old orbit within its error, or near one that missed a kink."""
     if not new.ok or same(solver, old, new):
         return new
     apart = distance(solver.problem, old.orbit, new.orbit)
@@ -82,12 +82,12 @@ def _unmoved(solver: Solver, old: Solution, new: Solution) -> Solution:
 
 
 def _sees(solver: Solver, solution: Solution) -> bool:
-    """Whether an orbit passes no kink unseen: else it is none of the system."""
+    """Whether an orbit passes no kink unseen: else it is no orbit of the system."""
     return solver.discretisation.pattern(solver.problem.system, solution.orbit) is not None
 
 
 def _first_of(attempts: Iterable[Solution], otherwise: Solution) -> Solution:
-    """Return the first that is a solution, or the first failure if there is none; `otherwise` of none."""
+    """Return the first solution, or the first failure if all fail; `otherwise` if there are no attempts."""
     failure: Solution | None = None
     for attempt in attempts:
         if attempt.ok:

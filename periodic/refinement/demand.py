@@ -14,10 +14,10 @@ AIM = 0.1
 """The part of the tolerance that a new mesh aims at, for the orbit and for the multipliers."""
 
 AIM_WITH_KINKS = 0.03
-"""The same for orbits with kinks, where the multipliers have their intervals and few are left to be spent."""
+"""The same for orbits with kinks, where `demand` gives the multipliers intervals of their own."""
 
 ROUNDING = 1e4 * EPSILON
-"""What all shares may add up to by rounding, over the largest multiplier: as small ones ask for nothing,"""
+"""Rounding in the sum of all shares, over the largest multiplier: smaller shares demand no intervals,"""
 
 FAINT = 1e-3
 """... if they are also below this part of their goal."""
@@ -27,15 +27,15 @@ MOST_PIECES = 3.0
 
 
 UNEVEN = 0.4
-"""Part of the intervals that evenly spread err as little, at the least."""
+"""Least part of the present number of intervals that `evenly` returns."""
 
 
 def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> Array | None:
     """Return how many intervals per rad the multipliers need about each interval, shape (N,).
 
     None where it is not known from which intervals their error comes. An interval is divided as its share of
-    the error asks for, but joined with others no faster than on a smooth motion, where errors at mesh points
-    go with twice the power. Where a share may be rounding the orbit's own density says what is needed.
+    the error requires, but joined with others no faster than on a smooth motion, where errors at mesh points
+    have order 2 ncol. Where a share may be rounding there is no demand: the orbit's own density decides.
     """
     if error.shares is None or not np.isfinite(error.worst):
         return None
@@ -53,9 +53,9 @@ def demand(orbit: Orbit, error: ErrorEstimate, tolerance: float, most: int) -> A
 def wanted_ntst(
     orbit: Orbit, error: ErrorEstimate, tolerance: float, least: int, most: int, begun: float
 ) -> int:
-    """Return how many intervals bring the error estimate to its aim, but for what `demand` cures.
+    """Return how many intervals bring the error estimate to its aim, but for errors that `demand` reduces.
 
-    begun: how many, spread anew, err as much as the orbit's own do now.
+    begun: the number of intervals that, distributed anew, give the present error.
     """
     order = orbit.mesh.scheme.ncol + 1
     known = error.shares is not None
@@ -68,9 +68,9 @@ def wanted_ntst(
 
 
 def evenly(orbit: Orbit) -> float:
-    """Return how many intervals, where none has more than its share, err no more than the worst does now.
+    """Return how many intervals of equal shares have errors no larger than the worst one's now.
 
-    Beside a kink that has moved since the mesh was made they are far fewer than there are.
+    They are far fewer than at present where a kink has moved since the mesh was made.
     """
     part = density(orbit) * orbit.grid.width
     ntst = orbit.mesh.ntst

@@ -61,12 +61,12 @@ def redistribute(
 ) -> Mesh:
     """Return a mesh of about `ntst` intervals for an orbit, with the given event nodes at `phases`.
 
-    No interval shorter than `shortest` (rad) is halved. There are more where `demand` asks for more, in
-    intervals per rad about each of the orbit's intervals.
+    No interval shorter than `shortest` (rad) is halved. There are more where `demand`, in intervals per rad
+    about each of the orbit's intervals, is larger than the density.
 
-    Each segment is halved again and again where the density asks for it. Its intervals are therefore the
+    Each segment is halved again and again where the density requires it. Its intervals are therefore the
     same from one mesh to the next wherever the density has hardly changed, and the orbit is carried over
-    without any error there: what Newton needs close to a kink.
+    without any error there, as Newton's method needs close to a kink.
     """
     wanted = density(orbit)
     wanted *= ntst / float(wanted @ orbit.grid.width)

@@ -6,7 +6,7 @@ from periodic.correction.solution import Solution
 from periodic.orbit.orbit import Orbit
 
 COLLAPSED = 0.1
-"""An orbit that is so much smaller than its guess is not what was guessed."""
+"""Part of its guess's span below which an orbit is not the one guessed."""
 
 
 def collapsed(guess: Orbit, found: Solution) -> bool:

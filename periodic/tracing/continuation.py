@@ -1,8 +1,8 @@
 """Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
 
 Each step solves on an arclength constraint (`steps`); special points inside it are located on further
-ones on the way. A step is also rejected where the multipliers pass a resonance unresolved, and where not
-every change within it is accounted for.
+arclength constraints. A step is also rejected where the multipliers pass a resonance unresolved, and where
+not every change within it is accounted for.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Step:
 
     @property
     def label(self) -> Label:
-        """Of its end: whether a switch touches its level there."""
+        """The label of its end: GRAZING where a switch touches its level there."""
         return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
 
 
@@ -70,7 +70,7 @@ class Continuation:
     start : Orbit
         The guess of the first orbit, in the discretisation's representation.
     sign : int
-        The way it sets out: 1 or -1 times the parameter.
+        The direction of its first step: 1 or -1 times the parameter.
     control : ArclengthControl
         Step control.
     watch : Watch
@@ -86,7 +86,7 @@ class Continuation:
     state : State, optional
         Where it stands after the last completed step; None before the first orbit is found.
     ended : Checkpoint, optional
-        Where it stood if it had come to its end before.
+        Where the interrupted run that it resumes stood.
     """
 
     solver: Solver = field(repr=False)
@@ -139,7 +139,7 @@ class Continuation:
         return len(self.collected) if self.state is None else self.state.kept
 
     def cut(self, stop: Stop) -> None:
-        """End it: what its last step began is left out.
+        """End the run, without the points of a step that was not completed.
 
         Parameters
         ----------
@@ -211,7 +211,7 @@ class Continuation:
             if not found.ok:
                 self.stop = Stop(Reason.NO_START, found.outcome.value)
                 return
-        # Newton has moved it by rounding; what follows shall be just what would have followed.
+        # Newton has changed the orbit by rounding: the one kept is put back, so that the same points follow.
         correction = replace(again.correction, orbit=last, fundamental=c.fundamental)
         again = replace(again, correction=correction, tangent=c.tangent)
         least = min(self.control.ds_min, NEARLY * c.ds)
@@ -222,7 +222,7 @@ class Continuation:
 
     @property
     def checkpoint(self) -> Checkpoint | None:
-        """What it takes to go on after the last completed step."""
+        """The data from which the run can go on after the last completed step."""
         s = self.state
         if s is None:
             return self.ended
@@ -273,7 +273,7 @@ class Continuation:
     def _taken(self, base: Solution, worded: bool) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected.
 
-        worded: whether that is so at once where an orbit is met that violates its word, which may be read.
+        worded: whether to stop at once at an orbit that violates its word, which may be read from its motion.
         """
         assert self.state is not None
         self.stop, self._unread = None, False
@@ -284,7 +284,7 @@ class Continuation:
         at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
-        longest = np.inf  # the next one is no longer where a longer one has just failed
+        longest = np.inf  # the next step is no longer where a longer one has just failed
         while True:
             try:
                 tried = self._stepper.step(base, ds)
@@ -309,7 +309,7 @@ class Continuation:
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
         """Reject a step of which not every change is accounted for, unless it is short already.
 
-        From the base as it was, not as it is on the mesh of the step's end.
+        Changes count from the base as it was, not from the base on the mesh of the step's end.
         """
         ends = any(point.label is Label.END or point.shrunk for point in found)
         if ends or ds <= NEARLY * self.control.ds:
@@ -320,7 +320,7 @@ class Continuation:
             raise RejectedError(unaccounted[0].why)
 
     def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
-        """What no labelled point accounts for between points in order along the branch."""
+        """The changes between points in order along the branch that no labelled point accounts for."""
         return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
@@ -362,8 +362,8 @@ class Continuation:
     def _crossed(self, at: Reached, wanted: float) -> Iterator[Point]:
         """Yield the orbit beyond a change of pattern, from which the branch goes on.
 
-        wanted: how long the step would have been that met it. Events that change places leave a branch as it
-        is, so that the next one may be as long.
+        wanted: the intended length of the step that met the change. After a change without a touch the next
+        step may be as long.
         """
         assert self.state is not None
         found = crossed(self.solver, at)
@@ -390,7 +390,7 @@ class Continuation:
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")
 
     def _reread(self, base: Solution) -> bool:
-        """Go on beyond a change that no rewrite is for, to an orbit whose word its own motion tells."""
+        """Go on beyond a change without a rewrite, to an orbit whose word is read from its motion, if any."""
         assert self.state is not None
         found = reread(self.solver, base, self.control.ds)
         if found is None:

@@ -1,8 +1,8 @@
-"""Words that are read from the motion itself: where an orbit violates its own, or no row of the table fits.
+"""Words read from a simulated motion: where an orbit violates its own word, or no row of the table fits.
 
-A motion is followed through one period from a state of the orbit, event by event: what happens is its word,
-and Newton starts from that motion. So a first orbit whose word was read too early gets the right one, and a
-branch goes on beyond a change that no rewrite is for, as where several things happen at once.
+A motion is integrated through one period from a state of the orbit. Its events are the word, and Newton's
+method starts from that motion. So a first orbit whose word was read too early gets the right one, and a
+branch goes on beyond a change without a rewrite, as where several events coincide.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ MOST_READINGS = 5
 """How often the word of an orbit is read again."""
 
 DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
-"""How far ahead an orbit beyond a change is looked for, in first steps."""
+"""Distances ahead at which an orbit beyond a change is sought, in first steps."""
 
 BEFORE = (0, 3)
 """Periods through which the motion is followed before its word is read: a joint that is held all along, and
 pulled past its limit, slips to another place, at which it is held again."""
 
 FARTHEST = 2.0
-"""How far from the base it may be, in the length of the step along the tangent."""
+"""Largest distance of that orbit from the base, in lengths of the step along the tangent."""
 
 NEARER = 0.25
-"""Part of the step at which an orbit farther off is looked for again: on one branch it is nearer."""
+"""Part of the step at which the search is repeated if an orbit is farther off."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
-    """Return the orbit near a motion at its parameters; while it violates its word, that is read again."""
+    """Return the orbit near a motion at its parameters; a word that it violates is read again."""
     found = _fixed(solver, guess, sign)
     for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):
@@ -74,12 +74,12 @@ def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
 
 
 Reading = Callable[[Orbit], Iterator[Orbit]]
-"""What yields motions near an orbit with their own words."""
+"""Yields motions near an orbit, with their own words."""
 
 
 @dataclass(frozen=True)
 class _Search:
-    """For orbits a little ahead of a base on its branch, where the parameter goes the way of a sign."""
+    """A search for orbits a little ahead of a base on its branch, where the parameter changes as `sign`."""
 
     solver: Solver
     base: Solution
@@ -119,7 +119,7 @@ class _Search:
         yield from () if changed is None else (changed,)
 
     def settled(self, near: Orbit) -> Iterator[Orbit]:
-        """Yield the motion to which that from a state of an orbit settles, further and further."""
+        """Yield the motion to which a simulation from an orbit settles, and the same settled further."""
         method, system = self.solver.discretisation, self.solver.problem.system
         if method.settles(system):
             yield from settled(method, system, near)
@@ -135,7 +135,7 @@ class _Search:
 
 
 def _distances(system: System, base: Solution) -> tuple[float, ...]:
-    """How far ahead is looked: nearer with impacts and where motions leave the orbit, perhaps for another."""
+    """Distances ahead: short ones from unstable orbits with impacts, as motions may leave for others."""
     leaves = (np.abs(base.spectrum.multipliers) > 1).any() and tied(system, base.orbit)
     return DISTANCES_BEYOND[2:] if leaves else DISTANCES_BEYOND
 

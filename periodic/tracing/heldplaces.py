@@ -1,7 +1,7 @@
-"""Where a joint that never slips is held, in a first orbit: amid the places at which it may be held.
+"""The place at which a joint that never slips is held, in a first orbit: midway between its bounds.
 
-A motion determines that only within bounds. In the middle the pull on the joint is as far from its limit one
-way as the other, and along the branch both limits are reached at once: there slips there and back begin.
+A motion determines the place only within bounds. Midway the force on the joint is as far from its limit one
+way as the other, and along the branch both limits are reached at once: there slips in both directions begin.
 Where the bounds move along a branch one of them is reached first: the joint is pulled to another place.
 """
 
@@ -23,27 +23,27 @@ from periodic.refinement.adaptation import refined
 from periodic.system import SurfaceLike, System, surfaces_of
 
 DIFFERENCE = 1e-3
-"""Of a place, as a part of the largest range of a state: the pull is about linear in the place."""
+"""Step of a place, as a part of the largest range of a state: the force is about linear in the place."""
 
 MOST_MOVES = 3
 """How often the places are moved."""
 
 
 def unplaced(system: System, orbit: Orbit, guess: Mesh) -> list[SurfaceLike]:
-    """Return what is held all along in an orbit, at a place that a guess does not give."""
+    """Return the joints held all along in an orbit, at places that a guess does not give."""
     return [surface for surface in _held(system, orbit) if not held_all_along(guess, surface)]
 
 
 def at_limit(system: System, orbit: Orbit) -> list[SurfaceLike]:
-    """Return what is held all along in an orbit, and just reaches one of its limits."""
+    """Return the joints held all along in an orbit that just reach one of their limits."""
     held = _held(system, orbit)
     return [surface for surface, pull in zip(held, _pulls(system, orbit, held), strict=True) if pull.reached]
 
 
 def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float) -> Solution:
-    """Return an orbit with joints that are held all along amid their bounds.
+    """Return an orbit with joints that are held all along midway between their bounds.
 
-    The one found where there are none, or where no other orbit is.
+    It is the orbit given where there are no such joints, or no better orbit is found.
     """
     system = solver.problem.system
     tolerance = solver.tolerance.orbit
@@ -63,14 +63,14 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
 
 
 def _held(system: System, orbit: Orbit) -> list[SurfaceLike]:
-    """What is held all along, at a place."""
+    """The joints held all along, at a place."""
     each = (s for s in surfaces_of(system) if s.releases is not None and s.place is not None)
     return [surface for surface in each if held_all_along(orbit.mesh, surface)]
 
 
 @dataclass(frozen=True)
 class _Pull:
-    """How far a joint is pulled from its limits, up < 0 < down, at the least, as parts of the way between."""
+    """A joint's releases, up < 0 < down, where they are nearest to 0, over the distance of its limits."""
 
     up: float
     down: float
@@ -87,7 +87,7 @@ class _Pull:
 
 
 def _pulls(system: System, orbit: Orbit, held: list[SurfaceLike]) -> list[_Pull]:
-    """How each is pulled along an orbit."""
+    """The pull on each joint along an orbit."""
     dense, found = SwitchPolynomials(system, orbit), list[_Pull]()
     for surface in held:
         assert surface.releases is not None
@@ -106,7 +106,7 @@ def _off_centre(system: System, orbit: Orbit, held: list[SurfaceLike]) -> Array:
 def _slopes(
     solver: Solver, found: Solution, held: list[SurfaceLike], off: Array, sign: float
 ) -> Array | None:
-    """The derivatives of that in the places, by differences; None where there are none."""
+    """The derivatives of `_off_centre` in the places, by differences; None where an orbit is not found."""
     step = DIFFERENCE * float(np.max(found.orbit.span()))
     columns = list[Array]()
     for k in range(len(held)):
@@ -128,7 +128,7 @@ def _moved(solver: Solver, found: Solution, held: list[SurfaceLike], step: Array
 
 
 def _better(moved: Solution, system: System, held: list[SurfaceLike], off: Array) -> bool:
-    """Whether an orbit is one, with its joints nearer to the middle."""
+    """Whether an orbit was found, and has its joints nearer to the middle."""
     if not moved.ok or not np.isfinite(moved.error.motion):
         return False
     return bool(np.abs(_off_centre(system, moved.orbit, held)).max() < np.abs(off).max())

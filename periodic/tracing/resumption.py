@@ -1,4 +1,4 @@
-"""Branches that were interrupted: what they are made with, and how they are taken up."""
+"""Branches that were interrupted: the settings they are made with, and how they are resumed."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from periodic.tracing.continuation import Continuation
 from periodic.tracing.setup import Setup
 
 MAY_GROW = ("control.max_points", "control.max_newton")
-"""What a branch that is taken up may have more of."""
+"""Settings that may be larger when a branch is resumed."""
 
 WATCHED = ("columns", "events", "limits", "stop", "special")
-"""What is watched that makes a difference to a branch."""
+"""Fields of `Watch` that affect a branch."""
 
 FROM_REST = "from rest"
-"""Under what a branch keeps whether it was begun without a guess."""
+"""Key in `Branch.made` that says whether a branch was begun without a guess."""
 
 
 class ResumeError(ValueError):
-    """A branch that is not one of the trace that it shall resume."""
+    """The branch to resume was made by another trace."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -39,7 +39,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def made_with(setup: Setup) -> dict[str, Any]:
-    """Return what a branch is made with, by value: whoever resumes it must ask for the same."""
+    """Return the settings that a branch is made with, by value: they must be the same when it is resumed."""
     problem, method = setup.problem, setup.method
     names = [p.name for p in problem.system.parameters]
     held = {
@@ -61,7 +61,7 @@ def made_with(setup: Setup) -> dict[str, Any]:
 
 
 def check(branch: Branch, setup: Setup) -> None:
-    """Raise ResumeError for a branch of another system, or made with anything else."""
+    """Raise ResumeError for a branch of another system, or made with other settings."""
     parameter, layout = setup.problem.parameter, layout_of(setup.problem.full)
     if (branch.parameter, branch.layout) != (parameter, layout) or not branch.points:
         raise ResumeError(

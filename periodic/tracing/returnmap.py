@@ -16,10 +16,10 @@ from scipy.optimize import fsolve
 from periodic.orbit.scheme import Array
 
 DIFFERENCE = 1e-4
-"""Differences, in parts of a state's range: they are as exact as the steps that they are for need them."""
+"""Step of differences, in parts of a state's range: Newton's steps need no more accurate ones."""
 
 LEAST = 1e-2
-"""Least range of a state in that, as a part of the largest."""
+"""Least range of a state in that, as a part of the largest range of all states."""
 
 STEPS = 15
 """Most steps, each with differences in every state."""
@@ -51,7 +51,7 @@ class ReturnMap:
         return np.asarray(path[-1] - path[0])
 
     def fixed(self, state: Array) -> Array | None:
-        """Return the state at the beginning of an orbit near one; None where none is found."""
+        """Return the state at the beginning of an orbit near a given state; None where none is found."""
         off = self.residual(state)
         if not np.isfinite(off).all() or not self.range.any():
             return None

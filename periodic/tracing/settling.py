@@ -1,4 +1,4 @@
-"""A motion that is left to settle from rest: a first orbit where Newton finds none."""
+"""Motions integrated until they settle: a guess of an orbit where Newton's method finds none."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from periodic.system import Moving, System, surfaces_of
 from periodic.tracing.returnmap import ReturnMap
 
 CLOSE = 1e-2 * STILL
-"""As `STILL`, where events lie so near to each other that their order asks for it."""
+"""As `STILL`, of a motion settled further, as the order of events near each other may need it."""
 
 NEAR = 1e-2
-"""As `STILL`, of an orbit on which Newton's method on the return map ends: its word can be read."""
+"""As `STILL`, for the result of Newton's method on the return map: near enough to read its word."""
 
 TRANSIENTS = (10, 40)
-"""Periods after which an orbit is looked for near the motion."""
+"""Periods after which Newton's method on the return map is tried."""
 
 PLACES_IN_PERIOD = 193
-"""Places in a period at which it is looked at."""
+"""Phases in a period at which the motion is computed."""
 
 
 def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
     """Yield the motion to which a system settles from the beginning of an orbit, with its parameters.
 
-    By the method's own way, or by integration of all states; then the same settled further. None where it
-    does not settle within PERIODS, where its integration fails, and of a system that cannot be followed in
-    time.
+    By the method's own simulation, or by integration of all states; then the same motion settled further.
+    Nothing where it does not settle within PERIODS, where its integration fails, and for a system that cannot
+    be integrated.
     """
     own = method.settled(system, start)
     yield from _integrated(system, start) if own is None else own
@@ -91,7 +91,7 @@ def _fixed(
 def held(system: System, motion: Orbit) -> list[str]:
     """Return along which jumps of the equations a motion slides all the time, by their switches' names.
 
-    It has no isolated orbits there: where friction holds it is not determined.
+    There orbits are not isolated: the place at which friction holds is not determined.
     """
     states, tau = motion.nodes[:-1], motion.grid.left
     values = np.abs(system.switch(states, tau, motion.parameter)).max(axis=0)

@@ -1,4 +1,4 @@
-"""From what a user asks for to runs that can be set going: everything is checked before any work is done."""
+"""From the user's arguments to runs that can be started: all are checked before any work is done."""
 
 from __future__ import annotations
 
@@ -43,11 +43,9 @@ class Method:
         control: ArclengthControl | None,
         watch: Watch | None,
     ) -> tuple[Problem, Method]:
-        """Return it with defaults for what is not given, all made for the problem and the tolerance.
+        """Return the problem and the method, with defaults, made for each other and for the tolerance.
 
-        The problem too, of the system that suits it: condensed where that pays.
-
-        Raises ValueError for what is none of these.
+        The problem's system is condensed where that pays. Raises ValueError for arguments of other types.
         """
         if discretisation is not None and (
             isinstance(discretisation, type) or not isinstance(discretisation, Discretisation)
@@ -113,10 +111,10 @@ def setup(
     guess: Orbit | None,
     values: Mapping[str, float] | None,
 ) -> Setup:
-    """Return what runs begin with.
+    """Return the setup of the runs from one start.
 
-    `start` is where, unless a guess has a place of its own. Raises ValueError, in one sentence, for what is
-    not allowed.
+    `start` is the parameter there, by default the guess's, else the problem's. Raises ValueError, in one
+    sentence, for arguments that are not allowed.
     """
     system, parameter, low, high = problem.system, problem.parameter, problem.low, problem.high
     if low < 0 and parameter in layout_of(system).frequency:

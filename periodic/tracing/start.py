@@ -1,4 +1,4 @@
-"""The first orbit of a branch: from its guess, by other schemes, from elsewhere, settled or grown."""
+"""The first orbit of a branch: from its guess, by other methods, a simulation, or another branch."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from periodic.tracing.heldplaces import amid, unplaced
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
-"""Where a branch that leads to the first orbit is begun, over the wanted parameter, in turn."""
+"""Starts of a branch that leads to the first orbit, over the wanted parameter, tried in turn."""
 
 BESIDE_BOUND = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
@@ -35,10 +35,10 @@ GROWN = 300
 SPENT = (
     "more iterations, another start or guess=per.sampled(...), a motion from a simulation, may lead to one"
 )
-"""What the user can do where none was found in the iterations allowed."""
+"""What the user can do where no orbit was found in the iterations allowed."""
 
 Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
-"""What follows a branch from an orbit one way, in so many steps at most: its last orbit, and why it ends."""
+"""Follows a branch from an orbit one way, in at most so many steps: its last orbit, and why it ends."""
 
 
 @dataclass
@@ -59,7 +59,7 @@ class Start:
     def found(self, guess: Orbit, sign: float) -> Solution:
         """Find the first orbit: from the guess itself, else along a branch that comes from elsewhere.
 
-        Raises SpentError, which says so.
+        Raises SpentError where the iterations allowed are spent before.
         """
         try:
             first = self._found(guess, sign)
@@ -72,7 +72,7 @@ class Start:
 
     @property
     def _sought(self) -> str:
-        """Where none has been found so far."""
+        """From which guesses no orbit has been found so far."""
         also = f", nor yet from {', '.join(self.tried)}" if self.tried else ""
         return f"none was found at the start itself{also}"
 
@@ -81,7 +81,7 @@ class Start:
         solver = self.solver
         first = self._fixed(guess, sign)
         settles = solver.discretisation.settles(solver.problem.system)
-        slips = settles and first.ok and np.isinf(first.error.motion)  # where it should be held
+        slips = settles and first.ok and np.isinf(first.error.motion)  # violates its word
         if first.ok and not slips and not collapsed(guess, first):
             return first
         if not self.search:
@@ -137,7 +137,8 @@ class Start:
     def _other_guesses(self, guess: Orbit) -> Iterator[Orbit | None]:
         """Guesses at the wanted parameters, each computed only when those before have failed.
 
-        First a motion that has settled, further and further, then None; no more where friction holds it.
+        First a settled motion, and one settled further, then None, then `_grown`; no more after a motion that
+        friction holds at an undetermined place.
         """
         system, method = self.solver.problem.system, self.solver.discretisation
         for motion in self._settled(guess):
@@ -150,7 +151,7 @@ class Start:
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
-        """Equilibrium under the mean load, unless the guess begins there; none of free oscillations."""
+        """Equilibrium under the mean load, unless the guess begins there; none as in `_settled`."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
@@ -158,7 +159,7 @@ class Start:
         return None if rest is None else self._adopted(self.solver, rest)
 
     def _settled(self, guess: Orbit) -> Iterator[Orbit]:
-        """A simulation that is left to settle; none of free oscillations and equilibria."""
+        """A simulation run until it settles; none for free oscillations and equilibria."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return
@@ -204,7 +205,7 @@ class Start:
 
     @staticmethod
     def _loosely(solver: Solver, least: float) -> Solver:
-        """The same with orbits to a loose tolerance."""
+        """The solver with a looser tolerance of orbits."""
         tolerance = replace(solver.tolerance, orbit=max(least, solver.tolerance.orbit))
         return replace(solver, tolerance=tolerance, discretisation=solver.discretisation.at(tolerance.orbit))
 

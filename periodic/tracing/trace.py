@@ -1,4 +1,4 @@
-"""The usual ways in: trace a branch between two values of a parameter, or own the loop over its points."""
+"""Entry points: `trace` follows a branch between two parameter values, `continuation` yields its points."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def continuation(
     control: ArclengthControl | None = None,
     watch: Watch | None = None,
 ) -> Continuation:
-    """Return the continuation of a problem one way from a start: a generator of points that the user owns.
+    """Return the continuation of a problem one way from a start, to iterate for its points.
 
     Parameters
     ----------
@@ -132,8 +132,8 @@ def trace(
         An orbit to start from (default: rest): one of an earlier branch, `sampled` from a simulation, or from
         `doubled`, `branched` or `hopf`, of one excitation period or several; it brings its parameters and a
         start of its own. An interrupted branch is taken up where it stands, all other arguments as before but
-        for `control.max_points` and `control.max_newton`. Or states (SI) and unknowns by name that stand
-        still, the others being at rest: of several orbits the one near these is found.
+        for `control.max_points` and `control.max_newton`. Or constant values of states (SI) and unknowns by
+        name, the others being at rest: of several orbits the one near these is found.
     values : mapping of str to float, optional
         Other parameters (SI) by name, in place of the guess's or the system's nominal ones.
     determined : mapping of str to Condition, optional
@@ -213,12 +213,12 @@ def _one_thread() -> AbstractContextManager[object]:
 
 @lru_cache(maxsize=1)
 def _libraries(modules: int) -> ThreadpoolController:
-    """What has threads, looked for again where modules have been imported."""
+    """The thread pools of libraries, found anew where modules have been imported."""
     return ThreadpoolController()
 
 
 def _shown(ready: Setup, empty: Branch) -> AbstractContextManager[Advance]:
-    """How far the trace is, for whoever looks on; the user's own progress in its place."""
+    """A progress meter; none where the user has given `watch.progress`."""
     if ready.method.watch.progress is not None:
         return nullcontext(lambda steps, said: None)
     return meter(f"tracing over {empty.parameter}", "points")

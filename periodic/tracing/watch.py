@@ -166,7 +166,7 @@ def slack(limit: float) -> float:
 
 
 def _checked(test: TestFunction) -> TestFunction:
-    """The same test function, refused where its value is no finite number."""
+    """The same test function; it raises ValueError where its value is no finite number."""
     name = f"special point {test.label.value or test.name}"
 
     def value(solution: Solution) -> float:

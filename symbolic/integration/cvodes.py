@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -18,10 +19,10 @@ KEPT = 128
 """How many integrators are kept; each is for certain parts of an interval."""
 
 LENGTH = 1e6
-"""Every interval is run through in this time: CasADi takes times for one that are nearer than 1e-9."""
+"""Length to which every interval is scaled: CasADi takes times nearer than 1e-9 for the same time."""
 
-DIGITS = 15
-"""Of the parts of an interval at which a solution is wanted."""
+ROUNDING = 4.0
+"""By how many units in its last place a phase is rounded, so that like parts of intervals are the same."""
 
 
 class IntegrationError(ArithmeticError):
@@ -51,7 +52,7 @@ class Cvodes:
         tolerance: relative and absolute.
         """
         begin, width = phase[0], phase[-1] - phase[0]
-        parts, place = np.unique(np.round((phase - begin) / (width or 1.0), DIGITS), return_inverse=True)
+        parts, place = np.unique(_rounded(phase), return_inverse=True)
         if len(parts) == 1:
             return np.repeat(start[None], len(phase), axis=0)
         given = np.concatenate([parameter, [begin, width / LENGTH]])
@@ -64,7 +65,7 @@ class Cvodes:
         return found[place] if np.isfinite(found).all() else None
 
     def _integrator(self, parts: tuple[float, ...], tolerance: float) -> ca.Function:
-        """CVODES from the first of some parts of an interval to the others, kept; the oldest goes for it."""
+        """CVODES from the first of some parts of an interval to the others, from a cache."""
         key = (*parts, tolerance)
         if key not in self._integrators:
             while len(self._integrators) >= KEPT:
@@ -81,9 +82,18 @@ class Cvodes:
             self._integrators[key] = made
         return self._integrators[key]
 
-    @property
+    @cached_property
     def _stretched(self) -> dict[str, ca.SX]:
         """The problem with its interval, (begin, width / LENGTH), as parameters."""
         interval, own = ca.SX.sym("interval", 2), self.problem
         ode = ca.substitute(own["ode"], own["t"], interval[0] + interval[1] * own["t"])
         return own | {"p": ca.vertcat(own["p"], interval), "ode": interval[1] * ode}
+
+
+def _rounded(phase: Array) -> Array:
+    """Phases as parts of their interval, rounded to the decimals that are significant."""
+    width = phase[-1] - phase[0]
+    if not width:
+        return np.zeros(len(phase))
+    unit = ROUNDING * np.spacing(np.abs(phase).max()) / width
+    return np.round((phase - phase[0]) / width, max(0, math.floor(-math.log10(unit))))

@@ -2,9 +2,9 @@
 
 The step control of an integrator sees a kink where it evaluates the rates beside it. A short excursion past a
 level - a stop that is just touched - lies between two evaluations, and the motion goes on as if there were
-none. So the guards are looked at along the motion. Between neighbouring phases each is the cubic with its
-values and rates at both ends, known to the error of such cubics over two of these intervals; its Bernstein
-coefficients enclose it.
+none. So the guards are evaluated along the motion. Between neighbouring phases each is represented by the
+cubic with its values and rates at both ends; the error is estimated from such cubics over two of these
+intervals. Bernstein coefficients enclose the guard.
 """
 
 from __future__ import annotations
@@ -26,11 +26,22 @@ RESOLVED = 1e-15
 ITERATIONS = 50
 """Most iterations for a root."""
 
-Motion = Callable[[float], Array]
-"""y at a phase."""
+Motion = Callable[[float, Array, float], Array]
+"""(tau, y, later) to y at a later phase."""
 
-Guard = Callable[[float, Array], tuple[float, float]]
-"""(tau, y) to the value of a guard and its derivative in tau."""
+
+@dataclass(frozen=True)
+class Passed:
+    """A phase of a motion, y there, and the value of a guard with its derivative in tau."""
+
+    phase: float
+    y: Array
+    value: float
+    rate: float
+
+
+Guard = Callable[[float, Array], Passed]
+"""(tau, y) to a guard there."""
 
 
 def lowest(values: Array, rates: Array, phase: Array) -> Array:
@@ -46,9 +57,9 @@ def lowest(values: Array, rates: Array, phase: Array) -> Array:
 
 
 def _fourth(s: Array, rate: Array, phase: Array) -> Array:
-    """s''''/24 on the K-1 intervals, by what cubics over two of them miss in between.
+    """s''''/24 on the K-1 intervals, from the error of cubics over two of them at the phase in between.
 
-    A cubic is off by s''''/24 (t - a)^2 (b - t)^2; of a single interval nothing is known.
+    A cubic is off by s''''/24 (t - a)^2 (b - t)^2; for a single interval that is unknown.
     """
     if len(phase) < 3:
         return np.full((len(phase) - 1, s.shape[1]), np.inf)
@@ -71,24 +82,30 @@ class Root:
     rate: float
 
 
-def root(motion: Motion, guard: Guard, begin: float, end: float, near: float) -> Root:
+def root(motion: Motion, guard: Guard, low: Passed, high: Passed, near: float) -> Root:
     """Return where a guard falls through 0 between two phases, by Newton's method on either side.
 
     Both sides are within `near` of 0 where the phases resolve that.
     """
-    low, high, before, after = begin, end, motion(begin), motion(end)
-    (first, first_rate), (last, last_rate) = guard(low, before), guard(high, after)
-    roots = CubicHermiteSpline([low, high], [first, last], [first_rate, last_rate]).roots(extrapolate=False)
-    guess, found, slope = float(roots[0]) if len(roots) else low, [False, False], last_rate
+    guess, found, now = crossing(low, high), [False, False], high
     for _ in range(ITERATIONS):
-        at = guess if low < guess < high else (low + high) / 2
-        y = motion(at)
-        now, slope = guard(at, y)
-        past = now < 0
-        found[past] = found[past] or abs(now) <= near
-        low, high, before, after = (low, at, before, y) if past else (at, high, y, after)
-        if all(found) or high - low <= RESOLVED:
+        at = guess if low.phase < guess < high.phase else (low.phase + high.phase) / 2
+        now = guard(at, motion(low.phase, low.y, at))
+        past = now.value < 0
+        found[past] = found[past] or abs(now.value) <= near
+        low, high = (low, now) if past else (now, high)
+        if all(found) or high.phase - low.phase <= RESOLVED:
             break
         aim = near / 2 if found[True] else -near / 2
-        guess = at + (aim - now) / slope if slope else low
-    return Root(low, high, before, after, slope)
+        guess = at + (aim - now.value) / now.rate if now.rate else low.phase
+    return Root(low.phase, high.phase, low.y, high.y, now.rate)
+
+
+def crossing(low: Passed, high: Passed) -> float:
+    """Return where the cubic of a guard first vanishes between two phases; the first of them if nowhere."""
+    ends = [low.phase, high.phase]
+    if ends[1] - ends[0] <= RESOLVED:
+        return low.phase
+    cubic = CubicHermiteSpline(ends, [low.value, high.value], [low.rate, high.rate])
+    roots = cubic.roots(extrapolate=False)
+    return float(roots[0]) if len(roots) else low.phase

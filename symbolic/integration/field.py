@@ -1,7 +1,8 @@
 """The vector field of a system on given sides of its jumps, and the motions along it.
 
 The ODE is y' = f(y, tau, p, sigma), y = (x, z), of `symbolic.integration.rates`. CVODES integrates it: fast,
-though it gives up now and then where contact is lost; LSODA is slower and then takes its place.
+though it gives up now and then where contact is lost; LSODA is slower and then takes its place. A few single
+Runge-Kutta steps come before both, and Radau takes over for fast oscillations beside friction.
 """
 
 from __future__ import annotations
@@ -14,21 +15,23 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
+from symbolic.integration.buffered import Buffered
 from symbolic.integration.cvodes import Cvodes
 from symbolic.integration.lsoda import failure, followed
 from symbolic.integration.rates import SENSITIVITY, constraint_rows, explicit_rates
+from symbolic.integration.runge import Steps
 
 RINGING = 1000.0
-"""Rad by which a mode turns along a motion from which on Radau integrates it: CVODES follows each cycle."""
+"""Oscillation of a mode (rad) in a motion above which Radau is used: CVODES resolves each cycle."""
 
 LOOSE = 1e-6
-"""Tolerance from which on it does; to a finer one it takes as many steps."""
+"""Finest tolerance at which Radau is used; at finer ones it takes as many steps."""
 
 CONSTRAINT_ITERATIONS = 20
 """Most Gauss-Newton steps onto the constraints."""
 
 FULFILLED = 1e-14
-"""Residual at which they are fulfilled."""
+"""Residual at which the constraints are fulfilled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +41,9 @@ class VectorField:
     Parameters
     ----------
     expressions : Expressions
-        The equations; ValueError where they do not tell the rates.
+        The equations; ValueError where they are condensed, or not linear in the rates.
     sensitivity : float
-        Of their constraints: see `symbolic.integration.rates`.
+        Added to the derivatives of constraints: see `symbolic.integration.rates`.
     """
 
     expressions: Expressions
@@ -67,6 +70,9 @@ class VectorField:
 
         Raises IntegrationError where both integrators fail.
         """
+        near = self._steps.run(start, phase, given, tolerance)
+        if near is not None:
+            return near
         rings = tolerance >= LOOSE and self._rings(start, phase, given)
         found = None if rings else self._cvodes.run(start, phase, given, tolerance)
         if found is not None:
@@ -82,7 +88,7 @@ class VectorField:
         return np.concatenate([start[None], later])
 
     def _rings(self, start: Array, phase: Array, given: Array) -> bool:
-        """Whether beside friction a mode turns so often that Radau, which lets it die away, is faster."""
+        """Whether beside friction a mode oscillates so often that Radau, which damps it, is faster."""
         if not self.expressions.sided.slides:
             return False
         slope = np.array(self._slope(start, phase[0], given))
@@ -96,8 +102,13 @@ class VectorField:
 
     def guards(self, values: Array, phase: Array, given: Array) -> tuple[Array, Array]:
         """Return the switches along a motion and their derivatives in tau, both of shape (K, switches)."""
-        s, rate = self._guards(values.T, phase[None], given)
-        return np.array(s).T, np.array(rate).T
+        one = self._guards_at
+        found = np.empty((len(phase), 2, self.expressions.guards.numel()))
+        one.given[2][:] = given
+        for k, (y, tau) in enumerate(zip(values, phase, strict=True)):
+            one.given[0][:], one.given[1][:] = y, tau
+            found[k] = one()[0]
+        return found[:, 0], found[:, 1]
 
     def on_constraints(self, y: Array, phase: float, parameter: Array) -> Array:
         """Return the nearest point (w,) that fulfils the constraints (Gauss-Newton).
@@ -118,6 +129,10 @@ class VectorField:
         return Cvodes({"x": self.y, "t": self.expressions.phase, "p": self.given, "ode": self.rates})
 
     @cached_property
+    def _steps(self) -> Steps:
+        return Steps(self._rates)
+
+    @cached_property
     def _at(self) -> list[ca.SX]:
         return [self.y, self.expressions.phase, self.given]
 
@@ -130,10 +145,11 @@ class VectorField:
         return ca.Function("slope", self._at, [ca.densify(ca.jacobian(self.rates, self.y))])
 
     @cached_property
-    def _guards(self) -> ca.Function:
+    def _guards_at(self) -> Buffered:
         e = self.expressions
         along = ca.jtimes(e.guards, e.state, self.rates[: e.state.numel()])
-        return ca.Function("guards", self._at, [e.guards, along + ca.jacobian(e.guards, e.phase)])
+        both = ca.horzcat(e.guards, along + ca.jacobian(e.guards, e.phase))
+        return Buffered(ca.Function("guards", self._at, [ca.densify(both)]))
 
     @cached_property
     def _constraints(self) -> ca.Function:

@@ -48,8 +48,8 @@ class Flow:
     ) -> Trajectory:
         """Integrate from phase[0] and return the solution at all of `phase`, and at each impact twice.
 
-        modes: those with which it begins, by default as the state has them; earlier: those before it, of
-        which relays and what slides keep theirs. Raises IntegrationError where the integrators fail.
+        modes: those at the beginning, by default as the state has them; earlier: those before it, of which
+        relays and friction that sticks keep theirs. Raises IntegrationError where the integrators fail.
         """
         n, phase = self.system.expressions.state.numel(), np.asarray(phase, dtype=float)
         switching, field = Switching(self.system, parameter, self.tolerance), self.system.field
@@ -73,7 +73,7 @@ class Flow:
         return Trajectory(tau, values[:, :n], values[:, n:], found.events, found.modes)
 
     def rates(self, trajectory: Trajectory, parameter: Array) -> Array:
-        """Return (x', z') along a trajectory, shape (N, n+m), in the modes that it tells."""
+        """Return (x', z') along a trajectory, shape (N, n+m), in the modes that its events tell."""
         values = np.concatenate([trajectory.state, trajectory.algebraic], axis=1)
         switching, count = Switching(self.system, parameter, self.tolerance), len(values)
         modes = [(0,) * len(self.system.surfaces)] * count  # the state decides

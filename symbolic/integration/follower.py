@@ -1,8 +1,8 @@
 """A motion followed from event to event: pieces in the same modes, from one zero of a guard to the next.
 
-A piece is integrated ahead, and the guards of its modes are looked at along it: where their enclosures do not
-say that they stay positive the phases are put closer, until that is known. Where one falls to 0 the motion
-is begun anew in the modes after the event, and mapped at an impact.
+A piece is integrated ahead, and the guards of its modes are evaluated along it. Where their enclosures do not
+prove that they stay positive, the phases are refined until that is decided. Where a guard falls to 0 the
+motion starts anew in the modes after the event, and is mapped at an impact.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from numpy.typing import NDArray
 
 from symbolic.arrays import Array
 from symbolic.integration.cvodes import IntegrationError
-from symbolic.integration.enclosures import Root, lowest, root
+from symbolic.integration.enclosures import Passed, Root, crossing, lowest, root
 from symbolic.integration.interrupts import heard
 from symbolic.integration.modes import Event, Guard, Modes, Switching
 
 LONGEST = math.pi / 32
-"""Longest interval (rad) between two phases at which guards are looked at."""
+"""Longest interval (rad) between two phases at which guards are evaluated."""
 
 PERIOD = 2 * math.pi
-"""Of the excitation, in tau: no more is integrated at once before it is known whether a piece ends."""
+"""Of the excitation, in tau: the longest stretch integrated before guards are checked along it."""
 
 LEAST = 4
 """Fewest intervals that are integrated at once."""
@@ -42,7 +42,7 @@ SHARP = 1e-3
 """The same in tolerances of the integration."""
 
 BESIDE = 1e-13
-"""How far beside its zero a guard is, in the same part, where a piece ends and the next begins."""
+"""Distance of a guard from 0, as a part of its largest value, where a piece ends and the next begins."""
 
 MOST_EVENTS = 1000
 """Most events in a period: after more they pile up in a point."""
@@ -66,7 +66,7 @@ class Passage:
 
 @dataclass(frozen=True)
 class Followed:
-    """A motion at the phases asked for, (K, w), the events on its way, and the modes at its end."""
+    """A motion at the given phases, (K, w), the events on its way, and the modes at its end."""
 
     values: Array
     passages: list[Passage]
@@ -80,6 +80,22 @@ class Followed:
         places = np.repeat(np.searchsorted(phase, at), 2)
         each = np.reshape([y for p in impacts for y in (p.root.y_before, p.y)], (-1, self.values.shape[1]))
         return np.insert(phase, places, np.repeat(at, 2)), np.insert(self.values, places, each, axis=0)
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Guards and their derivatives along a piece, (K, guards) each, with phases (K,) and y (K, w)."""
+
+    phase: Array
+    y: Array
+    guards: Array
+    rates: Array
+
+    def at(self, j: int, level: Array) -> list[Passed]:
+        """Return the guards less their levels at a phase."""
+        tau, y = float(self.phase[j]), self.y[j]
+        each = zip(self.guards[j] - level, self.rates[j], strict=True)
+        return [Passed(tau, y, float(value), float(rate)) for value, rate in each]
 
 
 @dataclass(eq=False)
@@ -114,7 +130,7 @@ class Follower:
         """Integrate from phase[0] to all of `phase`, which rises. Raises IntegrationError.
 
         modes: those to begin with, by default as the state has them; earlier: those before, of which relays
-        and what slides keep theirs.
+        and friction that sticks keep theirs.
         """
         y = start
         if modes is None:
@@ -149,11 +165,13 @@ class Follower:
     def _enter(self, modes: Modes) -> None:
         """Begin a piece in some modes."""
         self._modes, self._guards = modes, self.switching.guards(modes)
+        self._places = [guard.switch for guard in self._guards]
+        self._signs = np.array([guard.sign for guard in self._guards])
         self._size = np.zeros(len(self._guards))
         self._least: Array | None = None
 
     def _ahead(self, y: Array, phase: Array) -> Array:
-        """The piece as far as it can be integrated at once: an event may come before the rest."""
+        """The piece as far as integration succeeds: an event may come before the point of failure."""
         count = len(phase)
         while True:
             if self._raised:
@@ -168,79 +186,74 @@ class Follower:
                     raise
                 count = reached
 
-    def _values(self, values: Array, phase: Array) -> tuple[Array, Array]:
-        """The guards and their derivatives along a piece, (K, guards) each."""
-        places, signs = [each for each in zip(*((g.switch, g.sign) for g in self._guards), strict=True)]
+    def _seen(self, values: Array, phase: Array) -> Seen:
+        """The guards along a piece."""
         s, rate = self.look(self._modes, values, phase)
-        return s[:, places] * signs, rate[:, places] * signs
+        return Seen(phase, values, s[:, self._places] * self._signs, rate[:, self._places] * self._signs)
 
     def _looked(self, values: Array, phase: Array) -> tuple[int, tuple[Array, float] | None]:
         """The last value of a piece before an event, and y and phase after that, None where there is none."""
-        for j, fallen, certain in self._doubts(values, phase):
+        if not self._guards:
+            return len(values) - 1, None
+        seen = self._seen(values, phase)
+        for j, fallen, certain in self._doubts(seen):
             before, left, right = len(self._passages), float(phase[j]), float(phase[j + 1])
             if right - left > SHORTEST and not certain:
                 after = self._across(values[j], left, right), right
             elif len(fallen):
-                after = self._event(values[j], left, right, fallen)
+                after = self._event(seen, j, fallen)
             if len(self._passages) > before:
                 return j, after
         return len(values) - 1, None
 
-    def _doubts(self, values: Array, phase: Array) -> list[tuple[int, NDArray[np.int_], bool]]:
-        """The intervals in which guards may fall to 0, with those that are below it at their ends.
-
-        And whether no other guard may fall there.
-        """
-        if not self._guards:
-            return []
-        g, rate = self._values(values, phase)
+    def _doubts(self, seen: Seen) -> list[tuple[int, NDArray[np.int_], bool]]:
+        """Intervals in which guards may fall to 0, those below 0 at the end, and whether no others may."""
+        g = seen.guards
         self._size = np.maximum(self._size, np.abs(g).max(axis=0))
         if self._least is None:
             self._least = np.minimum(g[0], 0.0)
-        below = lowest(g, rate, phase) < self._floor
+        below = lowest(g, seen.rates, seen.phase) < self._floor
         ends = below & (g[1:] < self._floor)
         at = np.flatnonzero(below.any(axis=1))
         return [(int(j), np.flatnonzero(ends[j]), bool((ends[j] == below[j]).all())) for j in at]
 
     @property
     def _floor(self) -> Array:
-        """What guards fall below at an event: 0, or where they begin."""
+        """The levels that guards fall below at an event: 0, or where they begin, less rounding."""
         assert self._least is not None
         return np.asarray(self._least - NOISE * self._size - SHARP * self.switching.tolerance)
 
     def _across(self, y: Array, begin: float, end: float) -> Array:
         """y at the end of an interval, through all events in it."""
         while begin < end:
-            phase = np.linspace(begin, end, PARTS + 1)
+            phase = np.linspace(begin, end, (PARTS if end - begin > SHORTEST else 1) + 1)
             values = self._ahead(y, phase)
             last, event = self._looked(values, phase[: len(values)])
             y, begin = (values[last], float(phase[last])) if event is None else event
         return y
 
-    def _event(self, y: Array, begin: float, end: float, fallen: NDArray[np.int_]) -> tuple[Array, float]:
+    def _event(self, seen: Seen, j: int, fallen: NDArray[np.int_]) -> tuple[Array, float]:
         """y after the first event in an interval, and where it is."""
-        floor = self._floor
-
-        def motion(tau: float) -> Array:
-            return self.sweep(self._modes, y, np.array([begin, tau]))[-1]
-
-        def at(k: int) -> Root:
-            level = 0.0 if guard(k, 0.0)(begin, y)[0] > 0 else float(floor[k])
-            return root(motion, guard(k, level), begin, end, BESIDE * float(self._size[k]))
-
-        def guard(k: int, level: float) -> Callable[[float, Array], tuple[float, float]]:
-            def value(tau: float, y: Array) -> tuple[float, float]:
-                g, rate = self._values(y[None], np.array([tau]))
-                return float(g[0, k]) - level, float(rate[0, k])
-
-            return value
-
-        found = min((at(int(k)) for k in fallen), key=lambda each: each.after)
-        now = self._values(found.y_after[None], np.array([found.after]))[0][0]
+        level = np.where(seen.guards[j] > 0, 0.0, self._floor)  # or where a guard begins, if it is below 0
+        low, high, found, earlier = seen.at(j, level), seen.at(j + 1, level), None, list(fallen)
+        while earlier:  # another may have fallen before the one whose cubic did first
+            k = min(earlier, key=lambda k: crossing(low[k], high[k])) if len(earlier) > 1 else earlier[0]
+            found = root(self._onward, self._above(k, level), low[k], high[k], BESIDE * float(self._size[k]))
+            high = self._seen(found.y_before[None], np.array([found.before])).at(0, level)
+            earlier = [k for k in fallen if high[k].value < 0 and found.before > low[k].phase]
+        assert found is not None
+        now = self._seen(found.y_after[None], np.array([found.after])).guards[0]
         return self._passed(found, [self._guards[k] for k in fallen if now[k] <= 0])
 
+    def _onward(self, tau: float, y: Array, later: float) -> Array:
+        return self.sweep(self._modes, y, np.array([tau, later]))[-1]
+
+    def _above(self, k: int, level: Array) -> Callable[[float, Array], Passed]:
+        """A guard less its level along a motion."""
+        return lambda tau, y: self._seen(y[None], np.array([tau])).at(0, level)[k]
+
     def _passed(self, found: Root, fallen: Sequence[Guard]) -> tuple[Array, float]:
-        """What an event makes of a motion."""
+        """Apply an event to the motion: y and the phase after it."""
         mapped, before = self.switching.maps(fallen), self._modes
         at, y = (found.before, found.y_before) if mapped else (found.after, found.y_after)
         if len(self._passages) == self._most:
@@ -259,7 +272,7 @@ class Follower:
 
 
 def _power_of_2(number: int) -> int:
-    """The largest that is no larger, so that few integrators do; 0 for 0."""
+    """The largest power of 2 up to a number, so that few integrators are needed; 0 for 0."""
     return 1 << number.bit_length() >> 1
 
 

@@ -1,7 +1,7 @@
-"""Ctrl-C, or a timer, inside CasADi: what a signal's handler raises there is taken for a failed step.
+"""Ctrl-C, or a timer, inside CasADi, which takes the exception of a signal's handler for a failed step.
 
-The handlers that are in force stay in force; what they raise is kept and raised again after the call, which
-ends early for it.
+The handlers stay in force. The exceptions that they raise are kept, end the call early, and are raised again
+after it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ INTERRUPTING = [
     for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGVTALRM", "SIGPROF")
     if (each := getattr(signal, name, None)) is not None
 ]
-"""Signals whose handlers end a computation: of keys, of other processes and of timers, as there are."""
+"""Signals whose handlers end a computation: of keys, of other processes and of timers, if they exist."""
 
 Handler = Callable[[int, FrameType | None], object]
 
@@ -26,8 +26,8 @@ Handler = Callable[[int, FrameType | None], object]
 def heard() -> Iterator[list[BaseException]]:
     """Raise at the end of the block what a handler of an interrupting signal raised inside.
 
-    The block is given the list of it, to end where CasADi drops it. Only the main thread is interrupted;
-    elsewhere the block is as it is.
+    The block is given the list of these exceptions, to end early where CasADi drops one. Only the main thread
+    is interrupted; in other threads nothing is done.
     """
     raised: list[BaseException] = []
     if threading.current_thread() is not threading.main_thread():

@@ -1,4 +1,4 @@
-"""One call of LSODA, which follows a motion where CVODES gives up; its work is bounded."""
+"""One call of LSODA or Radau with bounded work, for motions on which CVODES gives up or is slow."""
 
 from __future__ import annotations
 

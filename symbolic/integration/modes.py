@@ -1,11 +1,11 @@
 """The modes of a system's surfaces along a motion: what ends a piece of it, and the modes of the next.
 
 A surface is on a side of its guard, PLUS or MINUS, or STUCK: friction that sticks, a slider that is held,
-what rests on a wall after bounces without number. A relay is on or off, PLUS or MINUS, and its guard another
-one in either mode.
+a mass that rests on a wall after complete chatter. A relay is on or off, PLUS or MINUS, and has a different
+guard in either mode.
 Which joints stick where several come to rest or tear off at once is a linear complementarity problem: each
 sticks where up < 0 < down, slips up where up >= 0, down where down <= 0, given the modes of the others. It is
-solved by Murty's rule of the least index, which ends where A is a P-matrix.
+solved by Murty's least-index rule, which terminates if the matrix of the problem is a P-matrix.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.field import VectorField
 
 Modes = tuple[int, ...]
-"""Of every surface of a system, in their order; 0 of those that have none."""
+"""The mode of every surface of a system, in their order; 0 of surfaces that have none."""
 
 LOW = 0.1
-"""Height of a bounce, in tolerances, that is none."""
+"""Height of a bounce, in tolerances, up to which the motion rests."""
 
 NONE = 1e-8
-"""What is left of a slider's rate of strain where those of others make it up, relatively: half the digits."""
+"""Relative residual up to which a slider's guard is a combination of friction's guards: half the digits."""
 
 PIVOTS = 1000
 """Most changes of a mode until all are consistent."""
 
 
 class Switched(Protocol):
-    """What is asked of a system that is followed from event to event."""
+    """The members of a system that is integrated from event to event."""
 
     @property
     def expressions(self) -> Expressions: ...
@@ -76,7 +76,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Guard:
-    """What is positive as long as a surface keeps its mode: a switch, times a sign."""
+    """A function that is positive as long as a surface keeps its mode: a switch, times a sign."""
 
     surface: int
     switch: int
@@ -94,7 +94,7 @@ class Switching:
     parameter : ndarray, shape (p,)
         SI.
     tolerance : float
-        What is smaller than this is at rest.
+        Values of guards up to this count as 0.
     """
 
     system: Switched
@@ -107,7 +107,7 @@ class Switching:
         return self.system.surfaces
 
     def side(self, modes: Modes) -> Array:
-        """Return the sides of the equations' jumps, (columns,); 0 of those that no guard follows."""
+        """Return the sides of the equations' jumps, (columns,); 0 in columns without a surface."""
         found = np.zeros(self.system.expressions.sided.side.numel())
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.column is not None:
@@ -120,7 +120,7 @@ class Switching:
         return surface.kind == Kind.IMPACT and mode == STUCK
 
     def guards(self, modes: Modes) -> list[Guard]:
-        """Return what is positive in some modes."""
+        """Return the functions that are positive as long as surfaces keep some modes."""
         found = []
         for i, (surface, mode) in enumerate(zip(self.surfaces, modes, strict=True)):
             if mode == STUCK and surface.releases is not None:
@@ -133,9 +133,9 @@ class Switching:
         return found
 
     def begin(self, tau: float, state: Array, earlier: Modes | None = None) -> tuple[Array, Modes]:
-        """Return the modes at the beginning of a motion, and the state, on the limits of what slips.
+        """Return the modes at the beginning of a motion, and the state projected on them.
 
-        earlier: modes before it, in which relays, and what slides, stay where they may.
+        earlier: modes before it, in which relays, and friction that sticks, stay where they may.
         """
         values = self._at((0,) * len(self.surfaces), tau, state)
         modes = [self._first(surface, values) for surface in self.surfaces]
@@ -195,9 +195,9 @@ class Switching:
         return self.consistent(tuple(self._relayed(new, tau, state)), tau, state, tossed)
 
     def _settles(self, surface: Surface, values: Array, tau: float, state: Array) -> bool:
-        """Whether what is on a wall bounces no higher than is nothing: it rests, if it is pressed to it.
+        """Whether a mass on a wall comes to rest: it is pressed to the wall, and its bounce is negligible.
 
-        What is behind the wall, as by the error of a guess, is laid on it where it does not come out again.
+        A mass behind the wall, as by the error of a guess, is put on the wall if it would not come out again.
         """
         if surface.leaves is None or values[surface.leaves] >= 0:
             return False
@@ -221,23 +221,9 @@ class Switching:
     def consistent(
         self, modes: Modes, tau: float, state: Array, tossed: Collection[int] = ()
     ) -> tuple[Array, Modes]:
-        """Return modes in which what is at rest sticks or begins to slip, and the state at rest or limits.
+        """Return consistent modes, in which joints at rest stick or begin to slip, and the state projected.
 
-        Parameters
-        ----------
-        modes : tuple of int
-            To begin with.
-        tau : float
-            Phase.
-        state : ndarray, shape (n,)
-            State.
-        tossed : collection of int
-            Surfaces that have just begun to slip.
-
-        Raises
-        ------
-        IntegrationError
-            Where no modes are consistent.
+        tossed: surfaces that have just begun to slip. Raises IntegrationError where no modes are consistent.
         """
         for _ in range(PIVOTS):
             values, changed = self._at(modes, tau, state), None
@@ -254,9 +240,9 @@ class Switching:
         raise IntegrationError(f"no joints were found that stick after tau = {tau:.6g}", tau)
 
     def _held_by_friction(self, modes: Modes, tau: float, state: Array) -> Modes:
-        """The modes with those sliders held whose strain friction that sticks keeps as it is.
+        """The modes with those sliders held whose strain is kept constant by friction that sticks.
 
-        Their guards are sums of those of friction, and 0: held on a moving belt a mass goes on to strain one.
+        Their guards are combinations of friction's, and 0: on a moving belt a stuck mass strains one further.
         """
         stuck = self._having(modes, Kind.SLIDING, (STUCK,))
         carried = self._having(modes, Kind.SLIDER, (PLUS, MINUS))
@@ -277,7 +263,7 @@ class Switching:
         return [i for i, (surface, mode) in each if surface.kind == kind and mode in those]
 
     def _placed(self, modes: Modes, tau: float, state: Array) -> Array:
-        """The nearest state at which what sticks is at rest, and what is carried at its limit."""
+        """The nearest state at which friction that sticks is at rest, and carried sliders at limits."""
         rows, state = [], self._laid(modes, tau, state)
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.kind == Kind.SLIDING and mode == STUCK:
@@ -289,7 +275,7 @@ class Switching:
         side, at = self.side(modes)[None], np.array([tau])
         value = self._at(modes, tau, state)[rows]
         gradient = self.system.switch_gradient(state[None], at, self.parameter, side)[0][0, rows]
-        for row, k in enumerate(rows):  # a limit is met by its slider alone
+        for row, k in enumerate(rows):  # a limit is reached by a change of its slider alone
             for held in self.system.expressions.sliders.values():
                 if k in held.releases:
                     own = gradient[row, held.place]
@@ -297,7 +283,7 @@ class Switching:
         return np.asarray(state - np.linalg.pinv(gradient) @ value)
 
     def _laid(self, modes: Modes, tau: float, state: Array) -> Array:
-        """The state with what rests on walls just on them, without speed."""
+        """The state with masses that rest on walls just on them, without speed."""
         state = state.copy()
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if self._rests(surface, mode):
@@ -315,12 +301,12 @@ class Switching:
         return self.system.switch(state, phase, self.parameter, side)
 
     def struck(self, guard: Guard) -> bool:
-        """Whether what has fallen to 0 is an impact."""
+        """Whether a guard's fall to 0 is an impact."""
         surface = self.surfaces[guard.surface]
         return surface.kind == Kind.IMPACT and guard.switch == surface.switch
 
     def events(self, before: Modes, after: Modes, fallen: Sequence[Guard], tau: float) -> list[Event]:
-        """Return what has happened to the surfaces: changes of mode, and impacts."""
+        """Return the events at the surfaces: changes of mode, and impacts."""
         struck = {guard.surface for guard in fallen if self.struck(guard)}
         each = enumerate(zip(before, after, strict=True))
         return [Event(i, a, b, tau, after) for i, (a, b) in each if a != b or i in struck]
@@ -347,7 +333,7 @@ def _stays(surface: Surface, before: int) -> bool:
 
 
 def _mode(surface: Surface, values: Array, mode: int) -> int:
-    """The mode of what is at rest, by its releases; as it is where it is consistent."""
+    """The mode of a joint at rest, by its releases; unchanged where it is consistent."""
     assert surface.releases is not None
     up, down = (values[k] for k in surface.releases)
     if up < 0 < down:

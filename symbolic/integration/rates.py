@@ -17,7 +17,7 @@ import casadi as ca
 from symbolic.equations.expressions import Expressions
 
 SENSITIVITY = 1e-8
-"""Added to the derivative of each constraint in its unknown, with which it rises."""
+"""Added to the derivative, which is positive, of each constraint in its unknown."""
 
 
 def constraint_rows(e: Expressions) -> list[int]:
@@ -29,7 +29,7 @@ def constraint_rows(e: Expressions) -> list[int]:
 def explicit_rates(e: Expressions, sensitivity: float = SENSITIVITY) -> ca.SX:
     """Return (x', z') as an expression in states, unknowns, phase and parameters.
 
-    Raises ValueError for a system whose rows are not linear in x'.
+    Raises ValueError for a condensed system, and for rows that are not linear in x'.
     """
     if any(e.residual[i].is_zero() for i in range(e.residual.size1())):
         raise ValueError("the system's linear part is condensed; time integration needs condense=False")

@@ -1,12 +1,12 @@
-"""Time integration with sensitivities by CVODES: what a system offers to shooting.
+"""Time integration with sensitivities by CVODES, for shooting.
 
 The ODE y' = f(y, tau, p), y = (x, z), of `symbolic.integration.rates` is integrated together with the
 derivatives of y in the first state and in the free parameters q,
 
     Y' = f_y Y + (0, f_q),
 
-so that the step control answers for both. The unknowns start on the constraints: g(x, z) + EPSILON z = 0 has
-a solution for every x, also where contact is lost and g hardly depends on z. The flow keeps to it.
+so that the step control bounds the errors of both. The unknowns start on the constraints: g(x, z) + EPSILON z
+= 0 has a solution for every x, also where contact is lost and g hardly depends on z. The flow keeps to it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from symbolic.integration.modes import Modes, Switched, Switching
 from symbolic.integration.rates import constraint_rows
 
 EPSILON = 1e-10
-"""Added to the derivative of each constraint in its unknown, with which it rises."""
+"""Added to the derivative, which is positive, of each constraint in its unknown."""
 
 TIGHTER = (1.0, 0.1, 0.01)
 """Tolerances tried in turn, as parts of the wanted one."""
 
 ASIDE = 1e3
-"""How far before a kink, in tolerances, the derivatives are integrated: past it they have none."""
+"""Distance before a kink, in tolerances, at which `_carried` takes over from the integrator."""
 
 UNKNOWN_ITERATIONS = 60
 INCREMENT = 1e-13
@@ -125,7 +125,7 @@ class SensitiveFlow:
     def _followed(
         self, start: Array, parameter: Array, phase: Array, tolerance: float
     ) -> tuple[Followed, Modes]:
-        """The motion alone, and the modes in which it begins; just its start where nothing ends them."""
+        """The motion alone, and its first modes; just its start where no guard can end these."""
         n, y = self.expressions.state.numel(), start[: self._field.y.numel()]
         switching = Switching(self.system, parameter, tolerance)
         _, modes = switching.begin(float(phase[0]), y[:n])
@@ -154,7 +154,7 @@ class SensitiveFlow:
         return np.concatenate([parameter, Switching(self.system, parameter, 0.0).side(modes)])
 
     def _carried(self, y: Array, given: Array, phase: float, way: float, free: tuple[int, ...]) -> Array:
-        """y and its derivatives a short way on, by the equations linearised where they are."""
+        """y and its derivatives a short way on, by the equations linearised at y."""
         field, n = self._field, self.expressions.state.numel()
         size, width = field.y.numel(), n + len(free)
         if free not in self._slopes:

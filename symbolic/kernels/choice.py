@@ -70,7 +70,7 @@ def chosen(kernels: Kernels | str | None) -> Kernels:
 
 
 def shared(source: str, kernels: Kernels) -> ctypes.CDLL | None:
-    """Return the library of a C source that every run needs, or None where NumPy is to do.
+    """Return the library of a C source that every run needs, or None where NumPy must be used.
 
     AUTO compiles it at once if it can be kept: later runs have it for nothing.
     """

@@ -8,7 +8,7 @@ from typing import Any
 from symbolic.quoting import LONGEST_QUOTE, shortened
 
 HUGE = 10**LONGEST_QUOTE
-"""Whole numbers of which it is enough to say so; Python refuses to write the largest out."""
+"""Whole numbers from here on are not written out: Python refuses to convert the largest to text."""
 
 
 class InputError(Exception):
@@ -20,7 +20,7 @@ class InputError(Exception):
 
     @classmethod
     def said(cls, sentence: str) -> InputError:
-        """Return the error that a sentence tells already, as those of functions for Python do.
+        """Return an error with a sentence that is complete already, as that of a ValueError.
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class InputError(Exception):
 
 
 class ToldError(InputError):
-    """Bad input told in a sentence as it stands."""
+    """Bad input whose whole message is a sentence given by the caller."""
 
     def __init__(self, sentence: str) -> None:
         Exception.__init__(self, plain(" ".join(sentence.split())))
@@ -83,7 +83,7 @@ def shown(value: Any) -> str:
 
 
 def plain(text: str) -> str:
-    """Return a text with escapes in place of what a terminal does not show but obeys."""
+    """Return a text with control characters escaped, which a terminal would obey and not show."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 

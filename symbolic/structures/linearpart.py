@@ -23,7 +23,7 @@ class Modal(Protocol):
 
     @property
     def varying(self) -> bool:
-        """Whether they depend on the speed."""
+        """Whether the modes depend on the speed."""
 
     @property
     def size(self) -> int:
@@ -33,15 +33,15 @@ class Modal(Protocol):
         """Return the modes at a speed in rad/s."""
 
     def modal_slope(self, speed: float) -> ModalSlope | None:
-        """Return how they change with the speed, None where only differences tell."""
+        """Return the derivatives of the modes in the speed; None where only differences give them."""
 
 
 @dataclass(frozen=True)
 class Held:
     """A place of a structure: its degree of freedom, its states, its force, and their units in SI.
 
-    coasting: the state that is its acceleration without forces at the places, where there is one, with its
-    scale.
+    coasting: where friction may stick there, the further state that is the acceleration which the place would
+    have without forces at the places; coasting_scale: its unit in SI.
     """
 
     structure: Modal
@@ -68,7 +68,7 @@ class Modes:
     outputs : ndarray of complex, shape (2k, J)
         The 2k states in `LinearPart.states`.
     direct, direct_rate : ndarray, shape (2k, k)
-        What forces do to them at once.
+        Feedthrough to these states from the forces and from the forces' rates.
     """
 
     exponents: Complex
@@ -209,10 +209,10 @@ class LinearPart:
                     outputs[2 * i, own] = change.shapes[place.freedom] / place.scale
         # velocities are exponents times displacements
         both, coasting = slice(0, 2 * k, 2), self._coasting
-        faster, steeper = outputs[both], at.outputs[both]
-        outputs[1 : 2 * k : 2] = faster * at.exponents + steeper * exponents
-        turned = faster * at.exponents**2 + 2 * steeper * at.exponents * exponents
-        outputs[2 * k :] = turned[coasting] * self._coasting_scales
+        slopes, shapes = outputs[both], at.outputs[both]
+        outputs[1 : 2 * k : 2] = slopes * at.exponents + shapes * exponents
+        accelerations = slopes * at.exponents**2 + 2 * shapes * at.exponents * exponents
+        outputs[2 * k :] = accelerations[coasting] * self._coasting_scales
         zero = np.zeros_like(at.direct)
         return Modes(rate * exponents, rate * inputs, rate * outputs, zero, zero)
 
@@ -223,7 +223,7 @@ class LinearPart:
 
     @property
     def _coasting_scales(self) -> Array:
-        """Units of displacements in those of accelerations there, shape (c, 1)."""
+        """Scales of the displacements there over those of the accelerations, shape (c, 1)."""
         places = [self.places[i] for i in self._coasting]
         return np.array([place.scale / place.coasting_scale for place in places]).reshape(-1, 1)
 
@@ -302,7 +302,7 @@ class LinearPart:
 
 
 def _change(structure: Modal, omega: float) -> ModalSlope | None:
-    """How the modes of a structure change, not at all where its matrices do not."""
+    """Derivatives of a structure's modes in the speed: 0 where its matrices do not depend on it."""
     if structure.varying:
         return structure.modal_slope(omega)
     form = structure.modal(omega)
@@ -310,7 +310,11 @@ def _change(structure: Modal, omega: float) -> ModalSlope | None:
 
 
 def like(given: Modes, other: Modes) -> Modes:
-    """Modes near to others in their order and with their factors: of each, the largest input is alike."""
+    """Return `other` in the order and normalisation of the nearby modes `given`.
+
+    Each mode is matched by its exponent, and scaled so that the largest input of the mode given is the same.
+    Raises ArithmeticError where two modes match the same one.
+    """
     order = [int(np.abs(other.exponents - value).argmin()) for value in given.exponents]
     if len(set(order)) < len(order):
         raise ArithmeticError("modes of the structure cannot be followed in the speed: two of them meet")

@@ -49,7 +49,9 @@ class Chatter:
         brief = 2 * speed / pressed if pressed > 0 and speed > 0 else np.inf
         span = min(TWO_PI, 2 * brief)
         at = begin + span * np.linspace(0, 1, SAMPLES + 1)[1:]
-        below = np.flatnonzero(self.flight(begin, speed, at)[0] < 0)
+        down = self.flight(begin, speed, at)[0] < 0
+        early = at < begin + (brief / 2 if brief < span else 0.0)  # a slow flight begins within rounding
+        below = np.flatnonzero(down & ~early)
         first = below[0] if speed > 0 else below[below > 0][0]
         when = brentq(lambda t: float(self.flight(begin, speed, np.array(t))[0]), at[first - 1], at[first])
         return when, -float(self.flight(begin, speed, np.array(when))[1])

@@ -1,8 +1,8 @@
 """Test functions along a branch, and of codimension two along curves of its special points in two parameters.
 
-On a curve of folds, doublings or tori one multiplier (or a pair's product) stays where it is; test functions
-leave it out. With d_i = mu_i - 1 (or + 1) the second multiplier gets there where the sum of the products of
-all d_i but one vanishes, which is smooth where two multipliers coincide.
+On a curve of folds, doublings or tori one multiplier (or a pair's product) is held at 1 or -1; test functions
+leave it out. With d_i = mu_i - 1 (or + 1) a second multiplier comes to 1 (or -1) where the sum of the
+products of all d_i but one vanishes. The sum is smooth where two multipliers coincide.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ BESIDE_FOLDS = {Stability.MULTIPLIERS: (BRANCHING,), Stability.EIGENVALUES: ()}
 """Those that are looked for only where the branch does not turn."""
 
 REVERSED = 0.05
-"""At a cusp both parameters turn: the second one's rate is this part of that at the step's ends at most."""
+"""At a cusp both parameters turn: the second one's rate is at most this part of that at the step's ends."""
 
 
 def second_at(solution: Solution, at: float) -> float:
@@ -69,7 +69,7 @@ def _beside(solution: Solution) -> Complex:
 
 
 def _product_beside(solution: Solution, at: int) -> float:
-    """Whether one passes 1 or -1 of the multipliers without the pair whose product is held at 1."""
+    """`product_test` of the multipliers without the pair whose product is held at 1."""
     found = solution.spectrum.nontrivial
     return product_test(np.delete(found, nearest_pair(found)), at)
 
@@ -92,7 +92,7 @@ def _resonance(label: Label, at: float) -> TestFunction:
 
 
 def _torus_too(label: Label) -> TestFunction:
-    """Where a pair passes the circle on a curve that holds another multiplier there."""
+    """Where a pair passes the circle on a curve that holds another multiplier at 1 or -1."""
     return TestFunction(label=label, value=_torus_beside, sharp=_sharp_beside, genuine=_complex_beside)
 
 
@@ -175,7 +175,7 @@ def alignment(base: Solution, new: Solution) -> float:
 
 
 def _critical(solution: Solution, held: float) -> Array:
-    """The disturbance (N+1, n) that comes back `held` times itself."""
+    """The perturbation (N+1, n) that is multiplied by `held` over the period."""
     monodromy = solution.spectrum.monodromy
     vector = np.linalg.svd(monodromy - held * np.eye(len(monodromy)))[2][-1]
     return solution.spectrum.fundamental @ vector

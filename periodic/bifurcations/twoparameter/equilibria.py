@@ -1,7 +1,7 @@
 """Special points on curves of folds and of Hopf points of equilibria in two parameters.
 
 BT  a second eigenvalue is 0       ZH  a pair is on the imaginary axis beside a real one that is 0
-GH  the first Lyapunov coefficient is 0: orbits are born on the other side beyond it (Bautin)
+GH  the first Lyapunov coefficient is 0 (Bautin): between supercritical and subcritical Hopf points
 """
 
 from __future__ import annotations
@@ -24,7 +24,10 @@ def _scaled(solution: Solution) -> Complex:
 
 
 def _second(solution: Solution) -> float:
-    """Sum of the products of all eigenvalues but one: of all but the one that is 0."""
+    """Sum of the products of all eigenvalues but one, up to its sign.
+
+    One eigenvalue is 0 on a curve of folds, so this is the product of the others.
+    """
     return float(np.poly(_scaled(solution))[-2].real)
 
 

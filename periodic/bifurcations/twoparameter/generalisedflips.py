@@ -21,7 +21,7 @@ SIMPLE = 1e-3
 
 
 LEAST_COEFFICIENT = 1e-8
-"""Smaller coefficients, in norms of the monodromy matrix, are 0: rounding leaves as much."""
+"""Coefficients smaller than this times the norm of the monodromy matrix are rounding, and taken as 0."""
 
 
 def _simple(solution: Solution) -> bool:
@@ -31,9 +31,10 @@ def _simple(solution: Solution) -> bool:
 
 
 def _coefficient(solution: Solution) -> float:
-    """The cubic coefficient; 0 where it is not known: beside kinks, of condensed and of autonomous systems.
+    """The cubic coefficient of the period map; 0 where it is not computed.
 
-    A remark of the branch says so; where the computation fails, a warning does.
+    It is not computed for orbits with event nodes, for condensed and for autonomous systems, and beside a
+    second multiplier -1. A remark of the branch says so; where the computation fails, a warning does.
     """
     problem, orbit = solution.problem, solution.orbit
     system, known = problem.system, _simple(solution) and not problem.autonomous

@@ -1,10 +1,11 @@
 """Perturbations that grow or decay faster than the mesh resolves, followed in substeps.
 
 A slow motion beside a repelling equilibrium of the fast states, as of a canard, is smooth, and few intervals
-have it to all digits; perturbations grow by exp(z) in one of them, z the interval's width times an eigenvalue
-of the Jacobian, for which the scheme has a rational function: right for small z, 0 for large ones. So
-where a perturbation grows by more than exp(GROWING) in an interval, all are followed on shorter intervals
-along the same polynomials: those that decay fast too, as growth and decay may cancel.
+resolve it to all digits. A perturbation, however, grows by exp(z) in an interval, z its width times an
+eigenvalue of the Jacobian. The scheme replaces exp(z) by a rational function, which is accurate for small z
+but tends to 0 for large ones. So where a perturbation grows by more than exp(GROWING) in an interval, all
+perturbations are followed on shorter intervals along the same polynomials: those that decay fast too, as
+growth and decay may cancel.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ from periodic.system import System, jumps_of, resets_of
 from periodic.system.precision import EPSILON
 
 GROWING = 1.0
-"""Motions whose rate times interval z has a real part beyond this are followed in substeps."""
+"""Re z, z an interval's width times an eigenvalue of the Jacobian, beyond which it is divided."""
 
 EACH, FASTEST = 0.7, 2.0
-"""Largest Re z of a growing motion in a substep, and largest |z| of any other motion there."""
+"""Largest Re z and largest |z| of the motions in a substep."""
 
 MOST_SUBSTEPS = 64
 """Most substeps of an interval."""
@@ -37,14 +38,14 @@ MOST_SUBSTEPS = 64
 
 @dataclass(frozen=True)
 class SteppedCorrection(Correction):
-    """A correction with the propagation of perturbations, on intervals that resolve it."""
+    """A correction that knows how perturbations grow, on intervals short enough to resolve it."""
 
     system: System | None = None
     equations: Linearise | None = None
 
     @cached_property
     def stepping(self) -> Operator | None:
-        """The linearised equations, in substeps where growth is fast; None where it is not."""
+        """The linearised equations in substeps where growth is fast; else `operator`, which may be None."""
         assert self.system is not None and self.equations is not None
         if self.gentle:
             return self.operator
@@ -54,9 +55,10 @@ class SteppedCorrection(Correction):
 def stepping(
     equations: Linearise, system: System, orbit: Orbit, operator: Operator | None, finer: float = 1.0
 ) -> Operator | None:
-    """Return equations that resolve how perturbations of an orbit grow: `operator` where that does.
+    """Return equations that resolve how perturbations of an orbit grow: `operator` if its mesh does.
 
-    finer: in substeps so many times as short, as an error estimate has them. Raises FAILURES.
+    finer: by which factor substeps are shorter than needed, so that an error estimate can compare. Raises
+    FAILURES.
     """
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
         return operator

@@ -1,8 +1,9 @@
-"""Vibrations too fast for the mesh: what the multipliers lose to them.
+"""Vibrations too fast for the mesh: the error that they make in the multipliers.
 
-A stiffly accurate scheme damps what it does not resolve. A slow orbit is none the worse, but the multiplier
-of a fast vibration reads 0, on the halved mesh as well, where it is exp of the integral of Re lambda, lambda
-an eigenvalue of the Jacobian in dx' = J dx (adiabatically; the vibration is fast).
+A stiffly accurate scheme damps vibrations that it does not resolve. That does a slow orbit no harm, but the
+multiplier of a fast vibration comes out near 0, on the halved mesh as well, so that the error estimate does
+not show it. Its true modulus is about exp of the integral of Re lambda over the period, lambda an eigenvalue
+of the Jacobian in dx' = J dx (the adiabatic approximation, as the vibration is fast).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import System
 
 FAST = 4.0
-"""rad in an interval beyond which a vibration is looked at; below, the halved mesh tells its error."""
+"""Turn of a vibration in an interval (rad) above which it is examined; below, the halved mesh shows it."""
 
 Complex = NDArray[np.complex128]
 
@@ -47,7 +48,7 @@ def jacobians(system: System, orbit: Orbit) -> Array:
     rates = np.concatenate([found.d_rate, found.d_algebraic], axis=2)
     try:
         return np.linalg.solve(rates, -found.d_state)[:, :n].astype(float, copy=False)
-    except np.linalg.LinAlgError:  # rates that the equations do not determine there
+    except np.linalg.LinAlgError:  # the matrix of the rates is singular there
         return np.full((len(rates), n, n), np.nan)
 
 

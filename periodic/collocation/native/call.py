@@ -1,4 +1,4 @@
-"""What C takes of an orbit's equations (`struct call` of newton.c), and who may be left to it."""
+"""What C is given of an orbit's equations (`struct call` of newton.c), and for which systems it is used."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import System, address_of, jumps_of, resets_of
 
 MOST_STATES = 60
-"""Number of states up to which it is worth its while; where matrices are full, up to `LARGE`."""
+"""Largest number of states for which C is used; with full matrices it must be less than `LARGE`."""
 
 _SOURCES = (ELIMINATION, *(f"periodic.collocation.native:{name}.c" for name in ("newton", "estimate")))
 
@@ -39,7 +39,7 @@ _SYSTEM = {
     "guards": "guards",
     "guard_slopes": "guards_gradient",
 }
-"""Functions of a system in C, and the kernels that they are."""
+"""Members of `struct call` that are functions of the system, with the names of its kernels."""
 
 _CONSTRAINT = ("weighted", "origin_nodes")
 ORIGIN = ("node_rates", "knots", "knot_rates", "phases", "left", "width")
@@ -82,7 +82,7 @@ class Prepared(NamedTuple):
     side: Array
 
     def holds(self, system: System, orbit: Orbit) -> bool:
-        """Whether these are the modes of an orbit that was found with them."""
+        """Whether an orbit that was solved for with these modes has them itself."""
         own = self.side[:: orbit.mesh.scheme.ncol]
         return own.size == 0 or np.array_equal(own, sides(system, orbit))
 
@@ -92,8 +92,8 @@ def prepared(
 ) -> Prepared | None:
     """A call for an orbit on a mesh, with what belongs to mesh, system and settings, and the library.
 
-    The modes are those of the orbit. None where NumPy is to do: it takes small systems without impacts whose
-    kernels are compiled, in one free parameter.
+    The modes are those of the orbit. None where NumPy must be used: C does periodic orbits of small systems
+    without impacts whose kernels are compiled, in one free parameter.
     """
     n = orbit.nodes.shape[1]
     if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system):
@@ -127,7 +127,7 @@ def _full(system: System, orbit: Orbit) -> bool:
 
 
 def _functions(system: System, free: tuple[int, ...], sided: bool) -> dict[str, int] | None:
-    """Where the kernels are that are needed, with given modes or without; None where one is not compiled."""
+    """Addresses of the kernels needed; `sided`: those in given modes. None where one is not compiled."""
     depend = getattr(system, "guards_depend", False)
     values = ("guards", "guard_slopes") if depend else ("switch_values", "switch_slopes")
     needed = ["beside" if sided else "rows"]
@@ -140,7 +140,7 @@ def _functions(system: System, free: tuple[int, ...], sided: bool) -> dict[str, 
 
 
 def given(call: ctypes.Structure, names: Sequence[str], arrays: Sequence[Array]) -> list[Array]:
-    """Give arrays to a call; return those that are to be kept meanwhile."""
+    """Write the addresses of arrays into a call; return the arrays, to be kept alive while C uses them."""
     kept = [plain(array) for array in arrays]
     for name, array in zip(names, kept, strict=True):
         setattr(call, name, address(array))

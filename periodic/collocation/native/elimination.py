@@ -125,7 +125,7 @@ class Routines:
 
 
 def routines(system: System, line: LinearisationLike) -> Routines | None:
-    """Return what a system has compiled, or None where NumPy is to do for its linearised equations."""
+    """Return what a system has compiled, or None where NumPy must be used for its linearised equations."""
     if len(system.states) >= LARGE and _full(line):
         return None
     library = library_of(system, ELIMINATION)

@@ -49,9 +49,11 @@ class Estimate(ctypes.Structure):
     """`struct estimate` of estimate.c.
 
     Limits: `reach` is the arclength up to which the orbit of the same parameter is looked for, `straight` the
-    factor by which the rate of the parameter changes on the way at the most, `steep` the rate beside kinks
-    that counts half, `rounding` what of a switch's terms it may be off by, `digits` to how much of itself the
-    parameter is known, `fast` the turn of a vibration in an interval.
+    largest factor by which d parameter / d arclength may change on the way, `steep` the rate of the states,
+    in their size per rad, at which a mesh point of an orbit with kinks has half its weight in the metric,
+    `rounding` the error of a switch relative to the terms that cancel in it, `digits` the relative rounding
+    error of the parameter, `fast` the turn of a vibration in an interval (rad) above which it may be too fast
+    for the mesh.
     """
 
     _fields_ = (
@@ -70,7 +72,7 @@ class Estimated:
 
 
 def estimated(problem: Problem, orbit: Orbit, tangent: Increment, spectrum: Spectrum) -> Estimated | None:
-    """Return the errors of an orbit that the parameter alone determines, or None where NumPy is to do."""
+    """Return the errors of an orbit with one free parameter, or None where NumPy must be used."""
     ready = prepared(problem.system, orbit, orbit.mesh.bisected(), problem.free, USUAL)
     if ready is None:
         return None
@@ -124,7 +126,7 @@ def _room(orbit: Orbit) -> list[Array]:
 
 
 def _halved(orbit: Orbit, arrays: list[Array]) -> Orbit:
-    """The orbit on the halved mesh that C has found."""
+    """The orbit of the arrays in which C has left its solution on the halved mesh."""
     nodes, stages, algebraic, phases, parameter = arrays
     return replace(
         orbit,

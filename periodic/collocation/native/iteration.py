@@ -1,7 +1,8 @@
 """Newton's iteration of small systems in one call of C (`newton.c`), where their kernels are compiled.
 
-It takes orbits on arclength constraints, each surface in the modes of the guess. Where it does not come
-through (a singular matrix, event nodes that cross, other modes at the end) it returns None: NumPy does all.
+It solves for an orbit on one arclength constraint, all surfaces kept in the modes of the guess. Where it
+fails (a singular matrix, event nodes that cross, other modes at the end) `corrected` returns None, and the
+whole iteration is done in NumPy.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from periodic.orbit.scheme import Array
 from periodic.system import System
 
 _OUTCOMES = {0: Outcome.CONVERGED, 5: Outcome.TOO_MANY}
-"""What newton answers, where it needs no other to say what is wrong."""
+"""Return codes of newton that are results as they stand; after any other NumPy finds out what is wrong."""
 
 
 def corrected(
@@ -62,7 +63,7 @@ def corrected(
 
 
 def _fundamental(system: System, orbit: Orbit, maps: Array, steps: Array) -> Array | None:
-    """The fundamental matrices, None where NumPy is to say what is wrong with them or with their growth."""
+    """The fundamental matrices; None where a jump has no rates or they grow too much, which NumPy reports."""
     if not jumping(system, orbit):
         return maps[:, :, 1 : 1 + orbit.nodes.shape[1]]
     try:
@@ -73,7 +74,7 @@ def _fundamental(system: System, orbit: Orbit, maps: Array, steps: Array) -> Arr
 
 
 def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
-    """Give a constraint to a call; return the arrays that are to be kept meanwhile."""
+    """Write a constraint into a call; return the arrays to keep alive, as the call has their addresses."""
     origin = constraint.origin
     names, arrays = ["weighted", "origin_nodes"], [constraint.weighted, origin.nodes]
     if call.k:
@@ -87,7 +88,7 @@ def _constrained(call: Call, constraint: ArclengthConstraint) -> list[Array]:
 
 
 def _into(call: Call, guess: Orbit) -> tuple[Orbit, list[Array], Array, Array]:
-    """The orbit, which begins as the guess, the parts of the kernel, maps and steps: where C writes them."""
+    """Arrays that C writes into: the orbit, at first the guess, the parts of the kernel, maps and steps."""
     begun = (guess.nodes, guess.stages, guess.algebraic, guess.phases, guess.parameter)
     shapes = [array.shape for array in begun]
     own = laid_out(call, FOUND, shapes)

@@ -17,22 +17,27 @@ Matrix = NDArray[Any]
 """Real or complex."""
 
 SPREAD = 300.0
-"""Decay (nepers) over a run of intervals up to which the response between any two of them is one product."""
+"""Largest decay (nepers) of a mode over a run of intervals whose responses one matrix product gives.
+
+Its factors are as large as exp(SPREAD): a mode that decays faster is followed from interval to interval.
+"""
 
 
 @dataclass(frozen=True)
 class Flexibility:
-    """States at the points of N intervals by forces there, (N, a, s, N, b, k), seldom made as a whole.
+    """The linear map from forces to states at the points of N intervals, (N, a, s, N, b, k).
+
+    It is seldom formed as a whole matrix.
 
     Parameters
     ----------
     response : Response
         The modes.
     closing : tuple of ndarray, optional
-        Factors, (J,) each, by which modes and their conjugates at the beginning follow from what the forces
-        of a period leave in them; default 0, z(0) = 0.
+        Factors, (J,) each, for the modes and their conjugates: z(0) is the factor times the response at the
+        end of the period of modes that begin at rest. Default 0, z(0) = 0.
     past : bool
-        Whether forces act within their own period too, not just in later ones.
+        Whether forces act directly on states in the same period; else through `closing` alone.
     """
 
     response: Response
@@ -57,7 +62,7 @@ class Flexibility:
 
     @property
     def intervals(self) -> NDArray[np.int_]:
-        """All of them."""
+        """Indices of all intervals."""
         return np.arange(len(self.response.grid.width))
 
     @cached_property
@@ -75,11 +80,11 @@ class Flexibility:
         return response.uniform and self.past and begun
 
     def _alike_between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Matrix:
-        """All columns of some forces for some states then, (N, a, s, N, b, k)."""
+        """The map from some forces to some states where it is `_alike`, (N, a, s, N, b, k)."""
         return self.response.circulant(None if self.closing is None else self.closing[0], states, forces)
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Flexibility:
-        """Return that of some of the states by some of the forces."""
+        """Return the flexibility of some of the states by some of the forces."""
         return replace(self, response=self.response.between(states, forces))
 
     def part(
@@ -90,9 +95,9 @@ class Flexibility:
         *,
         everywhere: bool,
     ) -> Matrix:
-        """Return what some forces in some intervals, in order, do there to some states, (C, a, s, C, b, k).
+        """Return the block from some forces in some intervals, in order, to some states in these intervals.
 
-        Or what they do everywhere, (N, a, s, C, b, k).
+        Shape (C, a, s, C, b, k); `everywhere`: to the states in all intervals, (N, a, s, C, b, k).
         """
         if not self._alike:
             return self.between(states, forces).block(intervals, everywhere=everywhere)
@@ -102,28 +107,28 @@ class Flexibility:
         return found[self.intervals if everywhere else intervals][:, :, :, intervals]
 
     def block(self, intervals: NDArray[np.int_], *, everywhere: bool) -> Matrix:
-        """Return the same of all forces and states."""
+        """Return the block of `part` for all forces and states."""
         rows = self.intervals if everywhere else intervals
         if len(intervals) == len(self.intervals):
             return self.whole
         return self.whole[rows][:, :, :, intervals] if self.response.uniform else self._block(rows, intervals)
 
     @property
-    def _chained_up(self) -> bool:
-        """Whether motion follows from interval to interval, without the matrix."""
+    def _stepped(self) -> bool:
+        """Whether products are computed from interval to interval, without the matrix."""
         return self.real and self.past
 
     def applied(self, forces: Array) -> Matrix:
         """Return the states at the points, (N, a, s, r), by forces (N, b, k, r)."""
         response = self.response
-        if not self._chained_up or np.iscomplexobj(forces):
+        if not self._stepped or np.iscomplexobj(forces):
             found = self.whole.reshape(-1, forces[..., 0].size) @ forces.reshape(-1, forces.shape[3])
             return np.asarray(found.reshape(*self.whole.shape[:3], forces.shape[3]))
         return response.stages(forces, 0.0 if self.closing is None else self.closing[0])
 
     def pulled(self, weights: Array) -> Matrix:
         """Return the transposed product: weights of forces (N, b, k, r) from those of states (N, a, s, r)."""
-        if not self._chained_up or np.iscomplexobj(weights):
+        if not self._stepped or np.iscomplexobj(weights):
             found = self.whole.reshape(weights[..., 0].size, -1).T @ weights.reshape(-1, weights.shape[3])
             return np.asarray(found.reshape(*self.whole.shape[3:], weights.shape[3]))
         return self.response.pulled(weights, 0.0 if self.closing is None else self.closing[0])
@@ -144,7 +149,7 @@ class Flexibility:
     def _earlier(
         self, at: NDArray[np.int_], intervals: NDArray[np.int_], own: Complex, other: Complex
     ) -> Matrix:
-        """The response to the periods before."""
+        """The response to forces in the periods before this one."""
         size = len(own)
         rows = self.response.ahead(at).reshape(-1, size)
         columns = self.response.left(intervals).reshape(size, -1)
@@ -154,7 +159,7 @@ class Flexibility:
         return np.asarray((plain + conjugate.conj()) / 2)
 
     def _run(self, found: Matrix, rows: NDArray[np.int_], first: int) -> None:
-        """Add the response within the period to a run of intervals, in rows with all of these."""
+        """Add the response, within the period, to forces in a run of intervals; `rows` hold all of these."""
         response, count = self.response, found.shape[3]
         inside, size = slice(first, first + count), len(response.modes.exponents)
         here = int(np.searchsorted(rows, first))
@@ -179,7 +184,7 @@ class Flexibility:
             found[here + count :] += real_product(outputs, columns).reshape(len(start), *found.shape[1:])
 
     def _spread(self, chosen: NDArray[np.int_], inside: slice) -> Array:
-        """Responses of some modes to earlier intervals of a run by one product."""
+        """Responses of some modes to forces in earlier intervals of a run, by one matrix product."""
         response = self.response
         exponents, begun = response.modes.exponents[chosen], response.start[inside.start]
         ahead = np.exp(exponents * (response.start[inside] - begun)[:, None])
@@ -190,7 +195,7 @@ class Flexibility:
         return found.reshape(*outputs.shape[:3], *left.shape[1:])
 
     def _chained(self, chosen: NDArray[np.int_], inside: slice) -> Array:
-        """The same interval after interval, for modes that decay too fast for one product."""
+        """Responses as in `_spread`, interval by interval, for modes that decay too fast for one product."""
         response, size = self.response, len(chosen)
         outputs = response.stage_outputs[inside][..., chosen]
         left = np.moveaxis(response.impulse[inside][:, chosen], 1, 0)

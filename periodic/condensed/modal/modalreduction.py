@@ -1,4 +1,4 @@
-"""Modal reduction: modes too fast and too weak to matter follow the forces with their static flexibility."""
+"""Modal reduction: fast modes that contribute too little are replaced by their quasi-static response."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Modes:
 
 
 def retained_modes(modes: ModesLike, deciding: list[int], period: float, tolerance: float) -> np.ndarray:
-    """Return which modes are to be integrated, (J,), by their part in the outputs `deciding` (or all)."""
+    """Return which modes are integrated, (J,), by their contribution to the outputs `deciding` (or all)."""
     exponents = modes.exponents
     with np.errstate(all="ignore"):
         resonance = np.maximum(1.0, np.abs(1 / np.expm1(exponents * period)))
@@ -47,7 +47,7 @@ def retained_modes(modes: ModesLike, deciding: list[int], period: float, toleran
 
 
 def reduced(modes: ModesLike, kept: np.ndarray) -> ModesLike:
-    """Return the modes kept; the others follow with f/lambda + f'/lambda^2 but for their free vibrations."""
+    """Return the modes kept; the others are replaced by z = -B (f/lambda + f'/lambda^2), B their inputs."""
     if kept.all():
         return modes
     left = ~kept
@@ -64,7 +64,7 @@ def reduced(modes: ModesLike, kept: np.ndarray) -> ModesLike:
 
 
 def reduced_slope(modes: ModesLike, slope: ModesLike | None, kept: np.ndarray) -> ModesLike | None:
-    """Return the derivative of the modes kept, that of the others' flexibility by the product rule."""
+    """Return the derivative of `reduced`: of the modes kept, and of the flexibility of the others."""
     if slope is None or kept.all():
         return slope
     left = ~kept

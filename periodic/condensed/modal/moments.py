@@ -1,11 +1,11 @@
-"""Exponentials and their moments: how a mode answers forces that are polynomials within an interval.
+"""Exponentials and their moments: the response of a mode to forces that are polynomials in an interval.
 
 With l_b the Lagrange polynomials of the collocation points c_a on the unit interval,
 
     moment_ab(x) = int_0^{e_a} exp(x (e_a - s)) l_b(s) ds,
 
-with e_a the places asked for: the collocation points, unless others are. By its Taylor series where |x| is
-small, else in closed form by the derivatives of l_b.
+with e_a the collocation points, or other places given. It is computed by its Taylor series where |x| is
+small, else in closed form with the derivatives of l_b.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Table:
     slope: Complex
 
     def take(self, chosen: NDArray[np.int_], modes: int) -> Table:
-        """Return it for intervals, (N, J, ...), from that of their widths, `modes` values of x for each."""
+        """Return the table of intervals, (N, J, ...), from this of widths, `modes` values of x for each."""
         arrays = [a.reshape(-1, modes, *a.shape[1:]) for a in (self.growth, self.moment, self.slope)]
         if len(arrays[0]) == 1:
             return Table(*(np.broadcast_to(a, (len(chosen), *a.shape[1:])) for a in arrays))

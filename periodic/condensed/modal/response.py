@@ -65,7 +65,7 @@ class Response:
         return self.grid.width[first], which
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Response:
-        """Return that of some of the states to some of the forces."""
+        """Return the response of some of the states to some of the forces."""
         modes = self.modes
         chosen = Modes(
             modes.exponents,
@@ -80,7 +80,7 @@ class Response:
 
     @property
     def _shared(self) -> Sequence[str]:
-        """What depends on mesh and exponents alone."""
+        """Names of cached values that depend on mesh and exponents alone."""
         return "_distinct", "_table", "closing"
 
     @property
@@ -90,23 +90,23 @@ class Response:
 
     @cached_property
     def _table(self) -> Table:
-        """Of the distinct widths, (U J, ...)."""
+        """Moments for the distinct widths, (U J, ...)."""
         return self.moments.table((self._distinct[0][:, None] * self.modes.exponents).ravel())
 
     @cached_property
     def table(self) -> Table:
-        """Of all intervals, (N, J, ...)."""
+        """Moments for all intervals, (N, J, ...)."""
         return self._table.take(self._distinct[1], len(self.modes.exponents))
 
     @cached_property
     def grown(self) -> Complex:
-        """How the modes grow in each interval, (N, J)."""
+        """Growth factors of the modes over each interval, (N, J)."""
         growth = self._table.growth[:, -1].reshape(-1, len(self.modes.exponents))
         return np.asarray(growth[self._distinct[1]])
 
     @cached_property
     def closing(self) -> Complex:
-        """1/(1 - exp(lambda T)): how a mode's periodic motion follows from that of one period, (J,)."""
+        """1/(1 - exp(lambda T)), (J,): periodic z(0) over the z(T) that the same forces reach from rest."""
         with np.errstate(all="ignore"):
             return np.asarray(-1 / np.expm1(self.modes.exponents * self.period))
 
@@ -117,12 +117,12 @@ class Response:
 
     @cached_property
     def end(self) -> Array:
-        """Phases of their right ends, (N,)."""
+        """Phases of the intervals' right ends after the first left end, (N,)."""
         return self.start + self.grid.width
 
     @cached_property
     def local(self) -> Array:
-        """States at the points of an interval by its own forces, (N, a, s, b, k)."""
+        """States at the points of an interval per unit of its own forces, (N, a, s, b, k)."""
         widths, which = self._distinct
         modes, count = self.modes, self.scheme.ncol
         s, k = modes.direct.shape
@@ -139,22 +139,22 @@ class Response:
 
     @cached_property
     def impulse(self) -> Complex:
-        """What forces leave in the modes at the end of their interval, (N, J, b, k)."""
+        """Modes at the end of an interval per unit of the forces in it, from rest before: (N, J, b, k)."""
         widths, which = self._distinct
         moment = self._table.moment[:, -1].reshape(len(widths), len(self.modes.exponents), -1, 1)
         return np.asarray((widths[:, None, None, None] * moment * self.modes.inputs[:, None, :])[which])
 
     @cached_property
     def stage_outputs(self) -> Complex:
-        """States at the points by the modes at the left end, (N, a, s, J)."""
+        """States at the points per unit of the modes at the left end, (N, a, s, J)."""
         widths, which = self._distinct
         growth = np.swapaxes(self._table.growth.reshape(len(widths), len(self.modes.exponents), -1), 1, 2)
         return np.asarray((growth[:, :, None, :] * self.modes.outputs)[which])
 
     def history(self, forces: Array, closing: Complex | None = None) -> Complex:
-        """Return the modes at the left ends and at the end in periodic motion, (N+1, J, ...).
+        """Return the modes at the mesh points in periodic motion, (N+1, J, ...); forces (N, b, k, ...).
 
-        Forces (N, b, k, ...). Another `closing` than the periodic one is that of `closings`.
+        With one of `closings` as `closing`, the motion is multiplied by a number over the period.
         """
         found = self.closed(self._kicks(forces), self.closing if closing is None else closing)
         return found.reshape(*found.shape[:2], *forces.shape[3:])
@@ -173,9 +173,9 @@ class Response:
         return self._states(forces, history[:-1])
 
     def pulled(self, weights: Array, closing: Complex | float) -> Array:
-        """Return the weights of forces, (N, b, k, r), in those of the states that `stages` makes of them.
+        """Return the adjoint of `stages`: weights of states to weights of forces, (N, b, k, r).
 
-        It is the adjoint, and goes from interval to interval backwards.
+        It goes backwards from interval to interval.
         """
         count, points, s, r = weights.shape
         flat = weights.reshape(count, points * s, r)
@@ -183,7 +183,7 @@ class Response:
         transposed = np.swapaxes(self.stage_outputs.reshape(count, -1, size), 1, 2) @ flat
         driven, grown = _joined(transposed[::-1].copy(), self.grown[::-1].copy())
         ends = np.zeros_like(driven)
-        # the period before takes what all of this one asks for at its beginning
+        # adjoint of z(0) = closing z(T): the weight of z(0) goes to the end of the period
         ends[0] = np.asarray(closing).reshape(-1, 1) * driven[-1]
         ends[1:] = driven[:-1] + grown[:-1, :, None] * ends[0]
         impulse = np.swapaxes(self.impulse.reshape(count, size, -1), 1, 2)
@@ -192,14 +192,9 @@ class Response:
         return np.asarray(found.reshape(count, points, -1, r))
 
     def motions(self, forces: Array, begun: Complex) -> tuple[Array, Complex]:
-        """Return states at the points (N, a, s, r) and modes at the end (J, r) of motions from z(0).
+        """Return states at the points (N, a, s, r) and modes at the end (J, r) of r motions.
 
-        Parameters
-        ----------
-        forces : ndarray, shape (N, b, k, r)
-            Forces of r motions.
-        begun : ndarray of complex, shape (J, r)
-            z(0).
+        They begin with z(0) = `begun`, (J, r), under forces (N, b, k, r).
         """
         driven, grown = self._chain(self._kicks(forces))
         at = np.concatenate([begun[None], driven + grown[:, :, None] * begun])
@@ -211,7 +206,7 @@ class Response:
         return np.concatenate([np.zeros_like(left[:1]), self._chain(left)[0]])
 
     def _kicks(self, forces: Array) -> Complex:
-        """What forces (N, b, k, ...) leave in the modes at the end of their interval, (N, J, r)."""
+        """Modes at the end of each interval due to forces (N, b, k, ...) in it, from rest: (N, J, r)."""
         count, size = len(forces), len(self.modes.exponents)
         flat = forces.reshape(count, forces.shape[1] * forces.shape[2], -1)
         if not self.uniform:
@@ -220,7 +215,7 @@ class Response:
         return np.ascontiguousarray(found.reshape(size, count, -1).transpose(1, 0, 2))
 
     def _states(self, forces: Array, at: Complex) -> Array:
-        """States at the points (N, a, s, ...) by forces (N, b, k, ...) and modes at left ends (N, J, r)."""
+        """States at the points (N, a, s, ...) from forces (N, b, k, ...), modes at left ends (N, J, r)."""
         count, points = forces.shape[:2]
         flat = forces.reshape(count, points * forces.shape[2], -1)
         own = self.local.reshape(count, -1, flat.shape[1]) @ flat
@@ -228,7 +223,7 @@ class Response:
         return np.asarray((own + self._driven_states(at)).reshape(shape))
 
     def _driven_states(self, at: Complex) -> Array:
-        """States at the points by the modes at the left ends, (N, J, r): shape (N, a s, r)."""
+        """States at the points due to modes at the left ends, (N, J, r): shape (N, a s, r)."""
         count, size, r = at.shape
         rows = self.stage_outputs.reshape(count, -1, size)
         if not self.uniform:
@@ -254,24 +249,25 @@ class Response:
         closing: Complex,
         history: Complex | None = None,
     ) -> tuple[NDArray[Any], Complex]:
-        """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
+        """Return the derivatives of states at the points, (N, a, s, q), and modes at the beginning, (J, q).
 
-        With widths in the first directions, and with modes in further ones; see `slopes`, which is for all.
+        The first directions change the intervals' widths, further ones the modes. States are complex here;
+        `slopes` takes their real parts, and allows for modes that do not change and for complex forces.
         """
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
         stretch = np.zeros((len(width), q))
         stretch[:, :first] = widths
-        faster = np.zeros((len(modes.exponents), q), dtype=complex)
+        by_exponent = np.zeros((len(modes.exponents), q), dtype=complex)
         for i, change in enumerate(changes):
-            faster[:, first + i] = change.exponents
-        # x = lambda h
-        shift = width[:, None, None] * faster + stretch[:, None, :] * modes.exponents[:, None]
+            by_exponent[:, first + i] = change.exponents
+        # derivative of lambda h, h the width
+        shift = width[:, None, None] * by_exponent + stretch[:, None, :] * modes.exponents[:, None]
         history = self.history(forces, closing) if history is None else history
         driven = _driving(forces, modes.inputs)
-        answer, steeper = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
-        inner = stretch[:, None, None, :] * answer[..., None]
-        inner += (width[:, None, None] * steeper)[..., None] * shift[:, :, None, :]
+        own, own_slope = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
+        inner = stretch[:, None, None, :] * own[..., None]
+        inner += (width[:, None, None] * own_slope)[..., None] * shift[:, :, None, :]
         turn = self.scheme.points[:, None] * shift[:, :, None, :]
         inner += (table.growth * history[:-1, :, None])[..., None] * turn
         for i, change in enumerate(changes):
@@ -282,7 +278,7 @@ class Response:
         count, points = len(width), len(self.scheme.points)
         flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
         found = (modes.outputs @ flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
-        stages = table.growth * history[:-1, :, None] + width[:, None, None] * answer
+        stages = table.growth * history[:-1, :, None] + width[:, None, None] * own
         rates = np.einsum("ab,nbk->nak", self.moments.derivatives[1, 1:], forces) / width[:, None, None]
         for i, change in enumerate(changes):
             found[..., first + i] += (change.outputs @ stages).transpose(0, 2, 1)
@@ -292,15 +288,15 @@ class Response:
         return np.asarray(found), moved[0]
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
-        """Return what some forces do to some states everywhere on a uniform mesh, (N, a, s, N, b, k).
+        """Return the map from some forces to some states on a uniform mesh, (N, a, s, N, b, k).
 
-        Without `closing` from rest. Only how many intervals later counts.
+        It depends on the number of intervals in between alone. Without `closing` the modes begin at rest.
         """
         modes, count, points = self.modes, len(self.grid.width), self.scheme.ncol
         s, k = len(states), len(forces)
         impulse = self.impulse[0][:, :, forces]
         impulse = impulse if closing is None else impulse * closing[:, None, None]
-        # by falling number of intervals, as the columns of a row have it
+        # from the largest number of intervals in between to the smallest, as along a row of the map
         ahead = np.exp(modes.exponents[:, None] * (self.grid.width[0] * np.arange(count - 1.0, -1.0, -1.0)))
         moved = ahead[:, :, None] * impulse.reshape(len(ahead), 1, -1)
         stage_outputs = self.stage_outputs[0][:, states].reshape(points * s, -1)
@@ -318,7 +314,7 @@ class Response:
         return whole
 
     def closed(self, left: Complex, closing: Complex) -> Complex:
-        """Return the history, (N+1, J, ...), of what each interval leaves in the modes, (N, J, ...)."""
+        """Return the modes at the mesh points, (N+1, J, ...); `left`: the addition of each interval."""
         size = [1] * (left.ndim - 2)
         driven, grown = self._chain(left)
         found = np.zeros((len(left) + 1, *left.shape[1:]), dtype=complex)
@@ -327,34 +323,34 @@ class Response:
         return found
 
     def _chain(self, left: Complex) -> tuple[Complex, Complex]:
-        """What all intervals so far leave in modes at rest, as `left`, and how these have grown, (N, J)."""
+        """Modes at the right ends from z(0) = 0 with additions `left`; growth factors from tau_0, (N, J)."""
         return _joined(left.copy(), self.grown.copy())
 
     @cached_property
     def growth(self) -> Complex:
-        """How the modes have grown at the mesh points, (N+1, J)."""
+        """Growth factors of the modes from tau_0 to the mesh points, (N+1, J)."""
         return np.exp(self.modes.exponents * np.append(self.start, self.period)[:, None])
 
     def grown_since(self, node: int) -> Complex:
-        """Return how the modes have grown at the mesh points from one of them on, (N+1 - node, J)."""
+        """Return growth factors of the modes from a mesh point to it and the later ones, (N+1 - node, J)."""
         times = np.append(self.start, self.period)[node:]
         return np.exp(self.modes.exponents * (times - times[0])[:, None])
 
     def ahead(self, intervals: NDArray[np.int_]) -> Complex:
-        """Return the states at the points of some intervals by the modes at the beginning, (R, a, s, J)."""
+        """Return the states at points of some intervals per unit of the initial modes, (R, a, s, J)."""
         return np.asarray(self.stage_outputs[intervals] * self.growth[intervals, None, None])
 
     def left(self, intervals: NDArray[np.int_]) -> Complex:
-        """Return what forces of some intervals leave in the modes at the end of the period, (J, C, b, k)."""
+        """Return the modes at the end of the period per unit of forces in some intervals, (J, C, b, k)."""
         after = self.period - self.end[intervals]
         left = np.exp(self.modes.exponents * after[:, None])[:, :, None, None] * self.impulse[intervals]
         return np.moveaxis(left, 1, 0)
 
 
 def _joined(driven: Complex, grown: Complex) -> tuple[Complex, Complex]:
-    """Add up what intervals leave in the modes, (N, J, ...), while these grow by (N, J) in each.
+    """Return z_j = grown_j z_{j-1} + driven_j from z = 0, (N, J, ...), and products of the grown_j, (N, J).
 
-    Neighbours are joined in pairs, pairs in fours, and so on.
+    It is a parallel prefix scan, in about log2 N array operations.
     """
     size, step = [1] * (driven.ndim - 2), 1
     while step < len(driven):
@@ -371,12 +367,12 @@ def real_product(rows: Complex, columns: Complex) -> Array:
 
 
 def _driving(forces: Array, inputs: Complex) -> Complex:
-    """Forces (N, b, k) as they drive the modes, (N, J, b)."""
+    """Modal forces, (N, J, b), due to forces (N, b, k)."""
     return np.asarray((forces @ inputs.T).transpose(0, 2, 1))
 
 
 def _applied(response: Response, moment: Complex, driven: Complex) -> Complex:
-    """Moments (N, J, a, b) of what drives the modes, (N, J, b): shape (N, J, a)."""
+    """Moments (N, J, a, b) times modal forces (N, J, b): shape (N, J, a)."""
     if response.uniform:
         return np.asarray((moment[0] @ driven.transpose(1, 2, 0)).transpose(2, 0, 1))
     return np.asarray((moment @ driven[..., None])[..., 0])

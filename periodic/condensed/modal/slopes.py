@@ -1,4 +1,4 @@
-"""How the motion of the modes changes where intervals are wider and the modes are others, forces held."""
+"""Derivatives of the modes' motion in the intervals' widths and in the modes themselves, forces fixed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def slopes(
     multiplier: complex = 1.0,
     history: Complex | None = None,
 ) -> tuple[Array, Complex]:
-    """Return how states at the points, (N, a, s, q), and modes at the beginning, (J, q), change.
+    """Return the derivatives of states at the points, (N, a, s, q), and of modes at the beginning, (J, q).
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ def slopes(
     changes : list of ModesLike or None
         Changes of the modes in further ones.
     multiplier : complex
-        What forces and motion are multiplied by over the period; with a complex one the forces may be
-        complex, and the modes at the beginning are left out.
+        The factor of forces and motion over the period. Where it is complex the forces may be complex; the
+        derivatives of the modes at the beginning then lack those of the conjugate modes.
     history : ndarray of complex, shape (N+1, J), optional
         The modes' motion under real forces, if it is known.
     """

@@ -20,7 +20,7 @@ from periodic.orbit.scheme import Array, Scheme
 from periodic.system import ModesLike, System
 
 MANY = 12
-"""Columns from which products of matrices are BLAS's."""
+"""Number of columns from which matrix products are left to BLAS."""
 
 _SOURCES = tuple(f"periodic.condensed.native:{name}.c" for name in ("modes", "motion", "slopes"))
 
@@ -55,13 +55,13 @@ class _Change(ctypes.Structure):
 
 @dataclass(frozen=True)
 class NativeResponse(Response):
-    """See `Response`. library: that of the sources."""
+    """See `Response`. library: the compiled sources."""
 
     library: ctypes.CDLL
 
     @cached_property
     def _laid(self) -> tuple[_Call, dict[str, NDArray[Any]], Sequence[Any]]:
-        """The call, its tables by name, of the distinct widths, and what is to be kept meanwhile."""
+        """The call, its tables by name, of the distinct widths, and the arrays to be kept alive."""
         count, size, a = len(self._distinct[0]), len(self.modes.exponents), self.scheme.ncol
         s, k = self.modes.direct.shape
         table = (count, size, a)
@@ -88,27 +88,27 @@ class NativeResponse(Response):
 
     @cached_property
     def table(self) -> Table:
-        """Of all intervals, (N, J, ...)."""
+        """Moments for all intervals, (N, J, ...)."""
         return Table(*(self._each(name) for name in _LAID[:3]))
 
     @cached_property
     def grown(self) -> Complex:
-        """How the modes grow in each interval, (N, J)."""
+        """Growth factors of the modes over each interval, (N, J)."""
         return np.asarray(self._laid[1]["growth"][:, :, -1][self._distinct[1]])
 
     @cached_property
     def local(self) -> Array:
-        """States at the points of an interval by its own forces, (N, a, s, b, k)."""
+        """States at the points of an interval per unit of its own forces, (N, a, s, b, k)."""
         return self._each("local")
 
     @cached_property
     def impulse(self) -> Complex:
-        """What forces leave in the modes at the end of their interval, (N, J, b, k)."""
+        """Modes at the end of an interval per unit of the forces in it, (N, J, b, k)."""
         return self._each("impulse")
 
     @cached_property
     def stage_outputs(self) -> Complex:
-        """States at the points by the modes at the left end, (N, a, s, J)."""
+        """States at the points per unit of the modes at the left end, (N, a, s, J)."""
         return self._each("stage_outputs")
 
     def _each(self, name: str) -> NDArray[Any]:
@@ -120,7 +120,7 @@ class NativeResponse(Response):
         return "_distinct", "closing"
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Response:
-        """Return that of some of the states to some of the forces."""
+        """Return the response of some of the states to some of the forces."""
         if self.modes.direct.shape == (len(states), len(forces)):
             return self
         found = super().between(states, forces)
@@ -190,7 +190,7 @@ class NativeResponse(Response):
         return found if found.ndim else np.full(len(self.modes.exponents), found)
 
     def pulled(self, weights: Array, closing: Complex | float) -> Array:
-        """Return the weights of forces in those of the states, as `Response.pulled`."""
+        """Return weights of forces from weights of states, as `Response.pulled`."""
         if not _few(weights):
             return super().pulled(weights, closing)
         call, size = self._laid[0], len(self.modes.exponents)
@@ -203,7 +203,7 @@ class NativeResponse(Response):
         return found
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
-        """Return what some forces do everywhere on a uniform mesh, as `Response.circulant`."""
+        """Return the map from some forces to some states on a uniform mesh, as `Response.circulant`."""
         call, shape = self._laid[0], (self.scheme.ncol, len(forces))
         count, points, coupled = call.count, call.points, np.ascontiguousarray(states, dtype=np.intp)
         acting = np.ascontiguousarray(forces, dtype=np.intp)
@@ -225,7 +225,7 @@ class NativeResponse(Response):
         closing: Complex,
         history: Complex | None = None,
     ) -> tuple[NDArray[Any], Complex]:
-        """Return how states and modes at the beginning change, as `Response.sloped`."""
+        """Return derivatives of states and of modes at the beginning, as `Response.sloped`."""
         if np.iscomplexobj(forces):
             return super().sloped(forces, widths, changes, closing, history)
         call, size = self._laid[0], len(self.modes.exponents)
@@ -261,7 +261,7 @@ def _few(forces: Array) -> bool:
 
 
 def _complex(array: NDArray[Any]) -> Complex:
-    """An array of complex numbers that C takes."""
+    """A contiguous array of complex numbers that C may take."""
     found = np.ascontiguousarray(array, dtype=np.complex128)
     return found if found.flags.writeable else found.copy()
 

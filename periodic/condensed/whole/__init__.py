@@ -1,1 +1,1 @@
-"""Condensed orbits seen with all states of the structure."""
+"""Condensed orbits expanded to all states of the structure."""

@@ -17,7 +17,7 @@ from periodic.orbit.scheme import Array, Family, Scheme
 from periodic.system import ModesLike, System, linear_of
 
 SCHEME = Scheme(Family.RADAU, 7)
-"""Collocation points of the forces of a Fourier series."""
+"""Collocation points at which the forces of a Fourier series are evaluated."""
 
 
 def motion(
@@ -25,8 +25,8 @@ def motion(
 ) -> tuple[Array, Array]:
     """Return displacements and velocities of any degrees of freedom of a structure along an orbit.
 
-    An operating deflection shape is the displacement of all degrees of freedom at one phase. What a recovery
-    matrix makes of them, stresses say, is `recovery`.
+    An operating deflection shape is the displacement of all degrees of freedom at one phase. For stresses and
+    other linear functions of displacements see `recovery`.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def motion(
     Raises
     ------
     ValueError
-        For a system without a structure, names and indices that are none, and an orbit of another system.
+        For a system without a structure, a name or index that does not exist, an orbit of another system.
     """
     part = linear_of(system)
     if part is None:
@@ -67,7 +67,7 @@ def displacements(
 ) -> Array:
     """Return displacements (SI) of nodes of a structure, (K, nodes), whether it is condensed or not.
 
-    A node is a name among the outputs of a system with all states, and the index of a degree of freedom.
+    A node is its output's name, for systems with all states, and its degree of freedom, for condensed ones.
     """
     if linear_of(system) is None:
         return np.stack([orbit[name](tau / orbit.omega) for name, _ in nodes], axis=1)

@@ -1,4 +1,4 @@
-"""What a recovery matrix makes of the motion of a structure: stresses, strains, moments, sensors."""
+"""Quantities that are linear in the displacements of a structure: stresses, strains, moments, sensors."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from periodic.system import System
 def recovery(
     system: System, orbit: Orbit, matrix: Any, tau: ArrayLike, structure: str | None = None
 ) -> Array:
-    """Return R q, what a recovery matrix R makes of the displacements q of a structure along an orbit.
+    """Return R q, a recovery matrix R times the displacements q of a structure along an orbit.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def recovery(
     Raises
     ------
     ValueError
-        For a matrix that is none, is not finite or has other than n columns, and as `motion` does.
+        For anything but a matrix of finite numbers with n columns, and where `motion` raises it.
     """
     rows = _checked(matrix)
     read = np.unique(rows.nonzero()[1])

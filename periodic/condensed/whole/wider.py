@@ -1,4 +1,4 @@
-"""A system whose linear part was found in its equations, seen with all of its states."""
+"""Orbits with all states, of systems that were condensed to the nonlinear places of their equations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class WholeSystem:
     Parameters
     ----------
     split : Within
-        The system of the nonlinear places, which is solved.
+        The condensed system, which is solved; its states are some of the whole system's.
     """
 
     split: Within

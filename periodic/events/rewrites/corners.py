@@ -1,4 +1,4 @@
-"""Excursions in the midst of which there is an impact: it reverses the switch, and they end in a corner."""
+"""Excursions with an impact inside, which reverses the rate of their switch: they end in a corner."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from periodic.system import System, guards_gradient
 
 
 def reversed_by_impact(system: System, orbit: Orbit, segment: int) -> bool:
-    """Whether an impact at an end of a segment reverses the switch at the other end: they do not swap."""
+    """Whether an impact at an end of a segment reverses ds/dtau of the other end's switch: no swap then."""
     ends, impacts = (segment, (segment + 1) % len(orbit.phases)), tied(system, orbit)
     for node, other in (ends, ends[::-1]):
         if node in impacts:
@@ -31,9 +31,9 @@ def reversed_by_impact(system: System, orbit: Orbit, segment: int) -> bool:
 
 
 def corner(system: System, orbit: Orbit, segment: int) -> tuple[int, int] | None:
-    """Return the ends of an excursion about an impact, at an end of a segment, if it is so.
+    """Return the ends of an excursion about an impact that lies at an end of a segment; None without one.
 
-    The impact reverses the switch; the excursion ends in a corner, and all three events meet.
+    The impact reverses the switch's rate; the excursion ends in a corner, where all three events meet.
     """
     events, k = orbit.mesh.events, len(orbit.phases)
     impacts = tied(system, orbit)

@@ -1,4 +1,4 @@
-"""Where something ends in the word of an orbit: the rows of the table read from right to left."""
+"""Sites where a part of the word of an orbit ends: the rows of the table read from right to left."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 
 @dataclass(frozen=True)
 class Excursion:
-    """What may end: its row, the event node at which it begins, and its size in the row's measure.
+    """A part of the word that may end: its row, the event node at which it begins, and its size's measure.
 
-    unit: of the row's sizes, 1 rad or how far the switch of an impact or a relay ranges. segments: those
-    whose lengths together are its size, where it is not the one that begins there.
+    unit: of the row's sizes, 1 rad or the largest value of the switch of an impact or a relay. segments:
+    those whose lengths together are its size, by default the one that begins at `index`.
     """
 
     row: Row
@@ -64,14 +64,14 @@ class Excursion:
     segments: tuple[int, ...] = ()
 
     def size(self, system: System, orbit: Orbit) -> float:
-        """How long it lasts, or with which speed it arrives."""
+        """Its length, or the speed with which its switch arrives."""
         if self.row.by_speed:
             return speed(system, orbit, self.index)
         lengths = orbit.mesh.segment_lengths(orbit.phases)
         return float(lengths[list(self.segments or (self.index,))].sum())
 
     def held(self, size: float) -> SideCondition:
-        """What keeps it as small as that, in its own unit."""
+        """The side condition that keeps it at a size, in rad or as a speed."""
         if self.row.by_speed:
             return Speed(self.index, size)
         return Lengths(self.segments, size) if self.segments else Length(self.index, size)
@@ -116,7 +116,7 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
 
 
 def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
-    """Return the sites at which an excursion may end: what goes, and what is 0 on the orbit without it."""
+    """Return the sites at which an excursion may end: nodes removed, and the condition there."""
     if excursion.row is IMPACT:
         return last_impact(system, orbit, excursion.index)
     if excursion.row in (FIRST_SLIPS, FIRST_DEPARTURES):
@@ -186,7 +186,7 @@ def slip_about(system: System, orbit: Orbit, begin: int) -> tuple[int, ...]:
 
 
 def _shallow(system: System, orbit: Orbit, begin: int, end: int) -> bool:
-    """Whether what is released at an event node is hardly pulled more than it holds, until another one."""
+    """Whether the force on a joint hardly exceeds its limit from its release to another event node."""
     event, mesh = orbit.mesh.events[begin], orbit.mesh
     dense = SwitchPolynomials(system, orbit)
     first, last = int(mesh.starts[begin]), int(mesh.starts[end])
@@ -206,7 +206,7 @@ def _about(system: System, orbit: Orbit, begin: int) -> Site:
 def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:
     """Return all slips of a joint if they end at once, and one of them begins at an event; else [].
 
-    From its place a joint goes there and back. What slides all along has none: its slips are alike.
+    A joint with a place slips there and back. One without a place slides all along: its slips are alike.
     """
     surface = surface_of(system, orbit.mesh.events[begin].switch)
     if surface.releases is None or (surface.place is None and not surface.alone):
@@ -233,7 +233,7 @@ def _slip(system: System, orbit: Orbit, begin: int) -> Excursion | None:
 
 
 def _first_slips(system: System, orbit: Orbit, row: Row, begin: int) -> list[Site]:
-    """The only slips of a joint, without which it is held all along and touches where one was."""
+    """The sites of a joint's only slips: without them it is held all along, at its limit where one was."""
     each = [_end(system, orbit, slip.row, slip.index) for slip in only_slips(system, orbit, begin)]
     removed = tuple(j for site in each for j in site.removed)
     replaced = tuple(pair for site in each for pair in site.replaced)
@@ -241,7 +241,7 @@ def _first_slips(system: System, orbit: Orbit, row: Row, begin: int) -> list[Sit
 
 
 def _surface(system: System, orbit: Orbit, segment: int) -> SurfaceLike | None:
-    """The surface both of whose neighbouring transitions a segment lies between, if any."""
+    """The surface that may hold motions and that both event nodes of a segment change, if any."""
     i, j = segment, (segment + 1) % len(orbit.phases)
     if i == j:
         return None

@@ -33,7 +33,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.system import Kind, System
 
 ENDS_BELOW = SHORT[-1]
-"""Length (rad) of an excursion below which a grazing within it that is foreseen may be its end."""
+"""Length (rad) of an excursion below which a grazing foreseen within it may be its end."""
 
 
 def first_change(
@@ -41,8 +41,8 @@ def first_change(
 ) -> Change | None:
     """Return the first rewrite between two orbits on one mesh, where there is one.
 
-    `after` may be a guess, its event nodes out of order. What begins comes before what ends: an orbit past
-    it is none of the system, on this mesh. A grazing that may be the end of an excursion is given as both.
+    `after` may be a guess, its event nodes out of order. Beginnings come before ends, as orbits past them on
+    this mesh violate their word. A grazing that may be the end of an excursion is returned with both.
     """
     if not system.switches:
         return None
@@ -55,9 +55,9 @@ def first_change(
 
 
 def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], ends_below: float) -> Begins:
-    """The grazing, and if it may be that of an excursion which ends, that one's end as another way.
+    """The grazing; if it may be the end of an excursion, with that end as `otherwise`.
 
-    In a guess depth goes before length.
+    In a guess the depth of an excursion vanishes before its length.
     """
     each = [end for end in ending if end.site.row is GRAZING]
     end = min(each, key=lambda end: end.part, default=None)
@@ -71,7 +71,7 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], end
 
 
 def _alone(ending: list[Ends]) -> list[Ends]:
-    """What ends, without swaps within slips that end as a whole."""
+    """The ends, without swaps within slips that end as a whole."""
     whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
     return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
 
@@ -95,7 +95,7 @@ def _onsets(
         part = _share(system, before, violation)
         slider = surface_of(system, violation.switch).kind == Kind.SLIDER
         if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
-            continue  # it stops at its limit there: what comes after is decided by the turn of its strain
+            continue  # it stops at its limit there; the turn of its strain decides what follows
         if _at_end(after, violation, ending):
             continue
         whole = whole_orbit(system, before, violation, part)
@@ -108,7 +108,7 @@ def _onsets(
 
 
 def _at_end(after: Orbit, violation: Violation, ending: list[Ends]) -> bool:
-    """Whether a relay goes past its threshold ahead of an event node that has come to lie past a graze."""
+    """Whether an excursion lies just before a relay's event node whose passage ends in a graze."""
     if not isinstance(violation.at, Extremum):
         return False
     segment = int(after.mesh.segments[0][violation.at.interval])
@@ -117,7 +117,7 @@ def _at_end(after: Orbit, violation: Violation, ending: list[Ends]) -> bool:
 
 
 def _share(system: System, before: Orbit, violation: Violation) -> float:
-    """At which part of the way to an orbit that is past a change the change lies, about."""
+    """The part of the way to an orbit past a change at which the change lies, about."""
     dense, at = SwitchPolynomials(system, before), violation.at
     if isinstance(at, Extremum):
         if not dense.minima(at.switch, violation.side):
@@ -133,7 +133,7 @@ def _share(system: System, before: Orbit, violation: Violation) -> float:
 
 
 def _endings(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Ends]:
-    """What becomes so small between two orbits that it may end."""
+    """The excursions that become so small between two orbits that they may end."""
     if not before.mesh.events:
         return []
     each = (_ending(system, before, after, shortest, excursion) for excursion in excursions(system, before))

@@ -1,9 +1,9 @@
-"""Events of friction that meet an impact: the impact throws the speed at which friction slides.
+"""Events of friction that meet an impact at which the sliding speed jumps.
 
-Just before an impact friction may turn, be caught, or be released; just after it it may turn or be caught,
-where it slides against a belt or another mass. Where such an event and the impact meet, the impact takes its
-part: it leads from the mode before both to the mode after both. Where the event is a stop after the impact
-its part cannot be taken; the stop is reached from the other side.
+Just before an impact friction may reverse, stick or be released. Just after the impact it may reverse or
+stick, where it slides against a belt or another mass. Where such an event meets the impact, the impact
+replaces it: the impact leads from the mode before both to the mode after both. A stop after the impact cannot
+be replaced; it is reached from the other side instead.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from periodic.system import STUCK, Kind, SurfaceLike, System, guards
 
 
 def meeting(system: System, orbit: Orbit, segment: int) -> Row | None:
-    """Return the row of a segment between an impact and an event of a surface that it throws."""
+    """Return the row of a segment between an impact and an event of a surface whose guard jumps there."""
     i, j, impacts = segment, (segment + 1) % len(orbit.phases), tied(system, orbit)
     if (i in impacts) == (j in impacts):
         return None
@@ -89,14 +89,14 @@ def _mode_before(system: System, orbit: Orbit, surface: SurfaceLike, node: int) 
 def begun(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation) -> Site | None:
     """Return the site at an impact where an event before or after it begins.
 
-    None where the guard comes from its level: there an event ends.
+    None where the guard comes from its level: there an event ends instead.
     """
     assert isinstance(limit.at, int)
     return (_before if limit.arriving else _after)(system, orbit, surface, limit, limit.at)
 
 
 def _before(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation, node: int) -> Site | None:
-    """What turns, is caught or released just before an impact."""
+    """The site where friction reverses, sticks or is released just before an impact; None as in `begun`."""
     k, way, event = surface.switch, -limit.side, orbit.mesh.events[node]
     earlier = _mode_before(system, orbit, surface, node)
     later = mode_after(surface, event) or earlier
@@ -116,7 +116,7 @@ def _before(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation
 
 
 def _after(system: System, orbit: Orbit, surface: SurfaceLike, limit: Violation, node: int) -> Site | None:
-    """What turns just after an impact."""
+    """The site where friction reverses just after an impact; None as in `begun`."""
     k, way, event = surface.switch, limit.side, orbit.mesh.events[node]
     start = int(orbit.mesh.starts[node])
     if way * _slopes(system, orbit, surface, node, orbit.nodes[start][None], start, way)[0] <= 0:

@@ -1,7 +1,7 @@
-"""Stops of two joints that become one where friction holds both masses together: their guards are one then.
+"""Stops of two joints that become one where friction holds both masses: then their guards are the same.
 
-As friction between two masses sticks earlier, two joints at them that stop just before it come to do so at
-one instant just after it; as it is released earlier, two that stop at once do so one after the other.
+If friction between two masses sticks earlier, two joints on them that stopped just before now stop
+simultaneously just after. If it is released earlier, two joints that stopped simultaneously stop in turn.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from periodic.system import HELD, STUCK, Kind, System
 
 @dataclass(frozen=True)
 class Meeting:
-    """Event nodes next to each other: where friction sticks or is released, and stops of two joints.
+    """Neighbouring event nodes: where friction sticks or is released, and the stops of two joints.
 
-    node: the first of them. friction: that of friction. stops: those of the stops, two or a joint one.
-    alike: the guards that are one where friction holds, with their signs.
+    node: the first of them. friction: the node of friction. stops: the nodes of the stops, two, or one for
+    both. alike: the guards that are the same function where friction holds, with their signs.
     """
 
     node: int
@@ -41,7 +41,7 @@ class Meeting:
 
 
 def merging(system: System, orbit: Orbit, node: int) -> Meeting | None:
-    """Return the event nodes from one on at which stops become one, or part; None where they do not."""
+    """Return the neighbouring event nodes, the first of them `node`, at which stops merge or part, if any."""
     events, count = orbit.mesh.events, len(orbit.phases)
     always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
     for size in (2, 3) if count > 2 else ():
@@ -74,7 +74,7 @@ def _stopped(events: Sequence[EventNode], stops: Sequence[int]) -> list[int]:
 
 
 def merged(system: System, orbit: Orbit, node: int) -> Iterator[Site]:
-    """Yield the sites where they have become one, or have parted, in either order."""
+    """Yield the sites at which the stops have merged, or have parted, in either order."""
     found = merging(system, orbit, node)
     assert found is not None
     events, begin = orbit.mesh.events, float(orbit.phases[node])
@@ -88,7 +88,7 @@ def merged(system: System, orbit: Orbit, node: int) -> Iterator[Site]:
 
 
 def _other(system: System, stops: Sequence[EventNode], alike: dict[int, int]) -> Iterator[list[EventNode]]:
-    """Yield the joint stop of two, or two for a joint one, in either order."""
+    """Yield one event node for two stops, or two for one of both, in either order."""
     if len(stops) == 2:
         first = next((e for e in stops if surface_of(system, e.switch).kind == Kind.SLIDING), stops[0])
         others = [event for event in stops if event is not first]

@@ -1,4 +1,4 @@
-"""Where something begins in the word of an orbit: the rows of the table read from left to right."""
+"""Sites where a part of the word of an orbit begins: the rows of the table read from left to right."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
 def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     """Return a site as it is on the orbit where it begins, and those of its row that begin there too.
 
-    Nothing where it is none on that orbit.
+    Empty where there is no such site on that orbit.
     """
     near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
@@ -62,7 +62,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     if first is None:
         return []
     found, guard = [first], surface_of(system, own.switch).switch
-    if own.row is FIRST_SLIPS:  # what slips one way alone would go on and on
+    if own.row is FIRST_SLIPS:  # a joint that slips one way alone would drift
         back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
         other = (site for site in back if surface_of(system, site.switch).switch == guard)
         near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
@@ -73,7 +73,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
-    """All sites of a row on an orbit, with what is left to them."""
+    """All sites of a row on an orbit, with how far each is from being reached."""
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
         for switch in (surface.switch, *(surface.releases or ())):
@@ -98,14 +98,14 @@ def row_of(orbit: Orbit, surface: SurfaceLike, switch: int) -> str:
 
 
 def _slip(orbit: Orbit, surface: SurfaceLike) -> Row:
-    """The row of a slip of what is held."""
+    """The row of a slip at a surface that holds motions."""
     if held_all_along(orbit.mesh, surface):
         return FIRST_DEPARTURES if surface.place is None else FIRST_SLIPS
     return LIMIT_GRAZING if surface.kind == Kind.SLIDER else ADDING_SLIDING
 
 
 def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
-    """The extrema of a switch on the sides that it is on."""
+    """The sites at extrema of a switch on its expected sides, away from its own event nodes."""
     sides = dense.expected(switch, dense.side(switch))
     most = largest(dense, switch)
     tied = surface.releases is not None or surface.kind == Kind.RELAY
@@ -150,8 +150,8 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:
     """A short excursion about an extremum.
 
-    Where friction holds the switch at its level the event nodes lie before and after that, the latter as the
-    third root of their depth: from there it sets out without acceleration.
+    Where friction holds the motion at the extremum the event nodes lie before and after the sticking. The
+    later one is as far off as the third root of the depth, as the motion sets out without acceleration.
     """
     k, (begin, end) = at.switch, held(system, orbit, at.switch, at.phase)
     out, back = EventNode(k, -side), EventNode(k, side)

@@ -1,8 +1,8 @@
 """Excursions about an event node of the speed: a mass that meets a stop turns back where its speed is 0.
 
-There friction turns or holds it, or a law changes that is another in loading than in unloading. Between the
-event nodes of such an excursion lie that of the zero of the speed and, where the mass sticks there, that of
-its release; all of them meet where the excursion ends.
+There friction reverses or holds the mass, or a law changes that differs between loading and unloading.
+Between the event nodes of such an excursion lie the node of the speed's zero and, where the mass sticks
+there, the node of its release. All of them meet where the excursion ends.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from periodic.system import System
 
 @dataclass(frozen=True)
 class Reversal:
-    """The event nodes at which an excursion begins and ends, and those of the speed between them."""
+    """The event nodes at which an excursion begins and ends, and the nodes of the speed between them."""
 
     begin: int
     inside: tuple[int, ...]
@@ -78,7 +78,7 @@ def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float
 
 
 def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
-    """Return how far short of its level a touch is held: 0 but where friction turns the motion."""
+    """Return how far short of its level a touch is held: 0 except where friction reverses the motion."""
     begin, end = held(system, orbit, switch, phase)
     events = zip(orbit.mesh.events, orbit.phases, strict=True)
     far = [apart(begin, float(tau), orbit) for e, tau in events if sliding(system, e.switch) is not None]

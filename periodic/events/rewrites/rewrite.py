@@ -1,9 +1,9 @@
 """Rewrites: changes of the word of an orbit, at one site or at several at once.
 
-What begins with depth d past a level is of size c d^power, and where the power is less than 1 it has no
-derivative in the parameter there. Without it the orbit is a smooth function of the parameter, with it of the
-size; so a branch is followed without it up to where it begins, and with it from a small size on. The other
-way round it is the same.
+An excursion of depth d past a level has the size c d^power. Where the power is less than 1, the size has no
+derivative in the parameter at d = 0. Without the excursion the orbit is a smooth function of the parameter,
+with it a smooth function of the size. So a branch is followed without the excursion up to where it begins,
+and with it from a small size on; in the other direction likewise.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ from periodic.system import HELD, System
 
 @dataclass(frozen=True)
 class Begins:
-    """Something begins: beyond, orbits without it are none of the system.
+    """An excursion, or another part of the word, begins: beyond, orbits without it violate their word.
 
-    otherwise: what it is where no orbit is found at which it begins.
+    otherwise: the change to try where no orbit is found at which this one begins.
     """
 
     system: System
@@ -62,7 +62,7 @@ class Begins:
 
     @property
     def condition(self) -> SideCondition:
-        """What is 0 there."""
+        """The side condition that holds where it begins."""
         return self.site.held
 
     @property
@@ -80,7 +80,7 @@ class Begins:
         return f"a slip begins while {name} holds"
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
-        """Yield orbits with what begins, small, and with what begins at once elsewhere by symmetry."""
+        """Yield ways on with a small excursion, and with those that begin at once elsewhere by symmetry."""
         row = self.site.row
         sites = [] if self.last else at_once(system, orbit, self.site)
         for size in (*row.sizes, *row.spare) if sites else ():
@@ -95,7 +95,7 @@ class Begins:
                 yield Beyond(mesh, phases, held, touches=False, spare=size in row.spare)
 
     def _held(self, system: System, orbit: Orbit, begin: int, size: float) -> SideCondition:
-        """What keeps it as small as that."""
+        """The side condition that keeps the excursion at a size."""
         if self.site.row is IMPACT:
             dense = SwitchPolynomials(system, orbit)
             return Speed(begin, size * float(np.abs(dense.knots[:, :, self.site.switch]).max()))
@@ -104,9 +104,9 @@ class Begins:
 
 @dataclass(frozen=True)
 class Ends:
-    """Something becomes as small as `size`: beyond, it is gone.
+    """An excursion, or another part of the word, becomes as small as `size`: beyond, it is gone.
 
-    final: whether it is never looked at when smaller. strict: whether the motion is not followed beyond.
+    final: whether no smaller size is tried. strict: whether the branch is not followed beyond with it.
     """
 
     system: System
@@ -133,11 +133,11 @@ class Ends:
 
     @property
     def condition(self) -> SideCondition:
-        """How small it becomes."""
+        """The side condition that keeps it at `size`."""
         return self.excursion.held(self.size)
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
-        """Yield the orbit without it, and without what is as small elsewhere by symmetry."""
+        """Yield ways on without it, and without those that are as small elsewhere by symmetry."""
         if self.last:
             return
         for own in ends(system, orbit, self.excursion):
@@ -153,7 +153,7 @@ class Ends:
                 yield Beyond(mesh, phases, held, own.row.touches, parameter=parameter)
 
     def _alike(self, system: System, orbit: Orbit, own: Site) -> list[Site]:
-        """What ends of the same row, as small as this."""
+        """The sites of excursions of the same row that are as small as this one."""
         found = [own]
         for other in excursions(system, orbit):
             if other.row is own.row and abs(other.size(system, orbit) / self.size - 1) < BESIDE_EXTREMUM:
@@ -162,7 +162,7 @@ class Ends:
         return found
 
     def _mesh(self, orbit: Orbit, events: tuple[EventNode, ...], phases: Array) -> Mesh:
-        """The mesh without it; of excursions that are no more derivatives are rounding."""
+        """The mesh without it; derivatives within excursions that end are rounding, and do not count."""
         if self.site.row not in (GRAZING, CORNER):
             return redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
         gone = MIN_INTERVALS * (len(orbit.mesh.events) - len(events)) // 2
@@ -178,7 +178,7 @@ class Ends:
     def _held(
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
-        """What is 0 where it ends, but for what rounding decides."""
+        """The side condition where it ends, short of a level so far that rounding does not decide."""
         held, left = own.held, 0.0
         if isinstance(held, Length | Lengths):
             return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)

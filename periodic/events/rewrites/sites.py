@@ -28,32 +28,32 @@ class Added:
     power: float = 1.0
 
     def at(self, size: float) -> Node:
-        """Return it, with its phase, for a size."""
+        """Return the event node with its phase for a size."""
         return self.event, self.phase + self.part * size**self.power
 
 
 @dataclass(frozen=True)
 class Site:
-    """Where something may begin, or end.
+    """A place where an excursion, or another change of the word, may begin or end.
 
     Parameters
     ----------
     row : Row
-        What.
+        The row of the table.
     switch : int
         The switch that decides.
     at : Extremum or int
-        The extremum of it, or the event node.
+        An extremum of the switch, or an event node.
     held : SideCondition
-        What is 0 there on the orbit without it.
+        The condition that is 0 on the orbit where it begins or ends.
     value : float
-        How far that is from 0, as a part of the largest value: positive as long as it is not there.
+        How far the condition is from 0; positive as long as it is not reached.
     added : tuple of Added
-        The event nodes that come, where it begins; the first one begins it.
+        New event nodes; with the first of them the change begins.
     removed : tuple of int
-        Those that go.
+        Event nodes that are removed.
     replaced : tuple of (int, EventNode)
-        Those that stay where they are as others.
+        Event nodes that keep their phase, with those that take their place.
     """
 
     row: Row
@@ -66,7 +66,7 @@ class Site:
     replaced: tuple[tuple[int, EventNode], ...] = ()
 
     def begin(self, orbit: Orbit, size: float) -> Node:
-        """The event node with which what begins begins."""
+        """The event node at which the change begins, with its phase, for a size."""
         early = any(each.part < 0 for each in self.added)
         if self.replaced and isinstance(self.at, int) and not early:
             node, event = self.replaced[0]

@@ -1,8 +1,8 @@
-"""Grazing of an impact whose rebound reverses what slides: events of friction that meet it.
+"""Grazing of an impact whose rebound reverses the sliding of the mass: friction's events at the touch.
 
-The speed of a mass that just touches a wall is 0 there, and so is that at which it slides: the orbit without
-the impact has an event node of friction at the touch. With the impact, that takes the guard to its other
-side; where friction held the mass at the touch, it stops it again after the rebound.
+The speed of a mass that just touches a wall is 0 there, and so is its sliding speed: the orbit without the
+impact has an event node of friction at the touch. On the orbit with the impact, the impact takes the guard to
+its other side; where friction held the mass at the touch, it stops the mass again after the rebound.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def first_impact(system: System, orbit: Orbit, at: Extremum, side: int, value: f
 
 
 def last_impact(system: System, orbit: Orbit, index: int) -> list[Site]:
-    """Return the sites where an impact ends: what it reversed passes its level there instead, or stops."""
+    """Return the sites where an impact ends: guards that it reversed pass their level instead, or stop."""
     event, phase = orbit.mesh.events[index], float(orbit.phases[index])
     held, found = Clearance(event.switch, -event.direction, phase), list[Site]()
     crossing = [Added(EventNode(k, mode), phase, 0.0) for k, mode in event.modes]

@@ -27,9 +27,9 @@ def swaps(system: System, orbit: Orbit, segment: int) -> bool:
 
 
 def _bound(system: System, orbit: Orbit, segment: int) -> bool:
-    """Whether one node changes friction that what another one changes depends on.
+    """Whether one event node changes friction on which the change at the other one depends.
 
-    What stops at once with it only where friction holds, or is not strained where it holds.
+    Then joints stop simultaneously, or are not strained, only while that friction holds.
     """
     events, count = orbit.mesh.events, len(orbit.phases)
     ends = segment, (segment + 1) % count
@@ -53,7 +53,7 @@ def _bound(system: System, orbit: Orbit, segment: int) -> bool:
 
 
 def _stopped(event: EventNode) -> list[int]:
-    """The guards of what stops at an event node."""
+    """The guards that are held from an event node on."""
     return [k for k, mode in event.modes if mode == STUCK]
 
 
@@ -66,7 +66,7 @@ def _changed(system: System, event: EventNode) -> list[SurfaceLike]:
 def swapped(system: System, orbit: Orbit, segment: int) -> Site:
     """Return the site where the event nodes at the ends of a segment are the other way round.
 
-    The state before an impact is that of its phase: there the other one goes to the far side of it.
+    An impact keeps its phase, so that its state fits; the other event goes to the far side of it.
     """
     i, j = segment, (segment + 1) % len(orbit.phases)
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]

@@ -1,4 +1,4 @@
-"""The table of rewrites: what may begin or end in the word of an orbit, by its name in the literature.
+"""The table of rewrites: transitions that may begin or end in the word of an orbit, by their usual names.
 
 With + and - the sides of a surface, 0 where the motion is held at it, (a b) a transition:
 
@@ -24,16 +24,16 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     release at an impact   I from 0            (0 b) I from b    limit            length
     caught after impact    I to +, (+ 0)       I to -, (- 0)     length           length
 
-The grazing of a limit is adding-sliding of a slider: what slips forgets where it was held before, however
-briefly, and so the multipliers jump, which they do not where friction slips.
+The grazing of a limit is adding-sliding of a slider. A slider that slips, however briefly, forgets where it
+was held before, so that the multipliers jump; where friction slips they do not.
 
-I is an impact that throws the guard of another surface, as that of friction against a belt: it takes it
-from a mode to a mode. Where the guard is 0 just before or after it the orbit passes the corner of both.
-F is friction between two masses that sticks: two joints at them have one guard then, and stop at once.
-w are events of friction at which an excursion turns back, an impact in its midst, or what happens at another
-joint where one is pulled most. Where a relay just reaches its threshold a branch ends: past it the relay
-switches, and the motion is another one. What begins is of no
-size there: size = c depth^power, the depth being how far the orbit without it would go past its level.
+I is an impact at which the guard of another surface jumps, as of friction against a belt: it takes that
+surface from one mode to another. Where the guard is 0 just before or after the impact the orbit passes the
+corner of both surfaces. F is friction between two masses that sticks: two joints on them have the same guard
+then, and stop at once. w are the events inside an excursion: of friction at which it turns back, an impact,
+or events at other joints while one joint is pulled most. Where a relay just reaches its threshold a branch
+ends: past it the relay switches, and the motion is another one. An excursion has size 0 where it begins:
+size = c depth^power, the depth being how far the orbit without it would go past its level.
 
 References
 ----------
@@ -48,14 +48,14 @@ from dataclasses import dataclass
 from periodic.events.thresholds import LEAST_CROSSING, LEAST_GRAZING, LONGEST, decades
 
 ROOT, LINEAR = 0.5, 1.0
-"""Powers of the size in the depth: of what touches, and of what passes."""
+"""Powers of the size in the depth: after a touch of a level, and after a passage."""
 
 SHORT = decades(LONGEST, LEAST_GRAZING)
 SHORTER = decades(LONGEST, LEAST_CROSSING)[len(SHORT) :]
 FLAT = tuple(size ** (2 / 3) for size in decades(LONGEST, LEAST_GRAZING**1.5))
-"""Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: of what
-touches; the further ones of what passes; of slips between two sticking segments. The latter change the
-states by the cube of their length, what touches by its square: the sizes are those of one effect.
+"""Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: SHORT
+after touches; SHORTER, further ones after passages; FLAT of slips between two sticking segments. Slips change
+the states by the cube of their length, touches by the square: FLAT are the sizes of equal effect.
 """
 
 
@@ -63,9 +63,9 @@ states by the cube of their length, what touches by its square: the sizes are th
 class Row:
     """A row of the table.
 
-    name: in the literature. touches: whether a switch just touches its level there (GR). power: of the size
+    name: the usual one. touches: whether a switch just touches its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
-    gradual: whether steps shorten so much on the way that each size is looked at as it is passed. by_speed:
+    gradual: whether steps shorten so much on the way that each size is tried as it is passed. by_speed:
     whether the size is the speed with which a level is passed. last: whether no orbits are near beyond it.
     """
 
@@ -80,15 +80,15 @@ class Row:
 
     @property
     def least(self) -> float:
-        """The size below which nothing is looked at."""
+        """The least size at which words are exchanged."""
         return self.sizes[-1]
 
     def size_below(self, size: float) -> float:
-        """Return the first of the sizes that is less than this one, or it where there is none."""
+        """Return the first of the sizes that is less than `size`, or `size` where there is none."""
         return next((each for each in self.sizes if each < size), size)
 
     def part(self, now: float, then: float, size: float) -> float:
-        """Return at which part of the way from one size to another it has a third."""
+        """Return the part of the way from the size `now` to the size `then` at which it is `size`."""
         if self.power == ROOT:
             return min((now**2 - size**2) / (2 * now * (now - then)), 1.0)
         return min((now - size) / (now - then), 1.0)

@@ -1,9 +1,9 @@
-"""Sliders that are let go together: which of them, the rest of the word says.
+"""Sliders that are released together: the rest of the word determines which.
 
-A slider that is carried, stops where its strain turns, and is let go the same way as it was carried is let go
-where the strain is back at that turn, if it has not slipped since. So are all that stopped there with it, at
-one event node; and where dry friction beside them stopped there too and holds the strain, they go with it. As
-soon as one of them slips in between it is let go by itself.
+A slider that is carried stops where its strain turns. If it is released the same way, and has not slipped
+since, it is released where the strain is back at that turn. So are all sliders that stopped there with it, at
+one event node. Where dry friction in parallel stopped there too and holds the strain, they are released with
+the friction. A slider that slips in between is released by itself.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from periodic.orbit.mesh import EventNode
 from periodic.system import STUCK, Kind, SurfaceLike, System
 
 EARLIER, LATER = (-0.5, 2.0), (1.0, 2.0 / 3.0)
-"""Part and power of the length of a slip, by which a slider is let go before others that have not slipped,
-and after friction: the strain it has to make up for is as its square, and grows from friction's release as
-the cube of time."""
+"""Part and power of the length of a slip by which a slider is released before others that have not slipped,
+and after friction: the strain to be made up is as the length squared, and the strain grows from friction's
+release as the cube of time."""
 
 
 def together(system: System, nodes: Sequence[Node], size: float, held: Sequence[int] = ()) -> list[Node]:
-    """Return event nodes in order with sliders let go together where they are, and by themselves elsewhere.
+    """Return event nodes in order, with sliders released together where the word says so, else by themselves.
 
-    size: of what begins or ends, by which those that are let go by themselves are put aside. held: the guards
+    size: of the excursion that begins or ends; releases of single sliders are moved by it. held: the guards
     of friction that is held all along.
     """
     found, joints = list(nodes), of_kind(system, Kind.SLIDING, Kind.SLIDER)
@@ -50,7 +50,7 @@ class Word:
     held: Sequence[int]
 
     def twins(self, surface: SurfaceLike, node: int) -> list[tuple[SurfaceLike, int]]:
-        """Return the surfaces with the guard of one where an event node happens, and their signs."""
+        """Return the other surfaces with the same guard as one at an event node, and their signs."""
         held = held_at(self.system, [event for event, _ in self.nodes], node, self.held)
         each = twins(self.system, surface.switch, held).items()
         return [(surface_of(self.system, k), sign) for k, sign in each if k != surface.switch]
@@ -66,7 +66,7 @@ class Word:
 
 @dataclass(frozen=True)
 class Release:
-    """Where a slider is let go: the node, the direction, and the node at which it stopped after having been
+    """The release of a slider: the node, the direction, and the node at which it stopped after having been
     carried the same way; None where it was not."""
 
     node: int
@@ -86,7 +86,7 @@ def _releases(surface: SurfaceLike, nodes: Sequence[Node]) -> Iterator[Release]:
 
 
 def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list[Node] | None:
-    """The nodes with one release where it belongs; None where it is there."""
+    """The nodes with a release moved to where it belongs; None where it is there already."""
     system, nodes = word.system, word.nodes
     leader = _leader(word, surface, own)
     joint = _partners(word, surface, own)
@@ -110,7 +110,7 @@ def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list
 
 
 def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
-    """The node at which a slider is let go with others; None where it is let go by itself."""
+    """The node at which a slider is released with others; None where it is released by itself."""
     if own.stop is None:
         return None
     event, _ = word.nodes[own.stop]
@@ -138,7 +138,7 @@ def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end
 
 
 def _after(surface: SurfaceLike, nodes: Sequence[Node], node: int) -> int:
-    """How many nodes after one the next is that changes a surface's mode; 0 where none does."""
+    """The number of nodes from one to the next that changes a surface's mode; 0 where none does."""
     count = len(nodes)
     changes = (m for m in range(1, count + 1) if _changes(surface, nodes[(node + m) % count]))
     return next(changes, 0)
@@ -149,7 +149,7 @@ def _changes(surface: SurfaceLike, node: Node) -> bool:
 
 
 def _partners(word: Word, surface: SurfaceLike, own: Release) -> list[SurfaceLike]:
-    """The surfaces that may let go of a slider, and that its event node changes as well."""
+    """A slider's twins, and friction that held its strain, that the slider's event node changes as well."""
     friction = {} if own.stop is None else word.holding(surface, own.stop)
     each = [*(k for k, _ in word.twins(surface, own.node)), *(surface_of(word.system, k) for k in friction)]
     event, _ = word.nodes[own.node]
@@ -157,7 +157,7 @@ def _partners(word: Word, surface: SurfaceLike, own: Release) -> list[SurfaceLik
 
 
 def without(system: System, event: EventNode, guard: int) -> EventNode | None:
-    """Return the event node of twins without one of them; None where it is its alone."""
+    """Return the event node of twins without one of them; None where no other is left."""
     others = event.modes_beside(guard)
     if surface_of(system, event.switch).switch != guard:
         return replace(event, modes=others)

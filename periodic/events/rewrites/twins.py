@@ -1,13 +1,13 @@
-"""Joints side by side: their guards are one function, so those that slip stop together, at one event node.
+"""Joints in parallel: their guards are the same function, so those that slip stop at one event node.
 
-Where they are let go together is said by `together`.
+Which of them are released together is decided by `together`.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from periodic.events.modes import mode_after, sticks, surface_of
+from periodic.events.modes import column, sides, sticks, surface_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING
 from periodic.events.switchpolynomials import Extremum
@@ -18,10 +18,10 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
-    """Return where a joint begins to slip, or to be held, with what its twins do at the same event nodes.
+    """Return a site where a joint begins to slip, or to be held, with its twins at the same event nodes.
 
-    A slider that begins to slip where the strain turns stops where the others do; where the strain turns back
-    for a while all that slip are held together, and let go together.
+    A slider that begins to slip where the strain turns stops where the others do. Where the strain turns back
+    for a while, all sliders that slip are held together, and released together.
     """
     assert isinstance(site.at, Extremum)
     guard = surface_of(system, site.switch).switch
@@ -42,7 +42,7 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
 
 
 def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> int | None:
-    """The event node at which others stop where a strain turns: at that phase, or where friction holds it."""
+    """The event node at which twins stop as the strain turns: at that phase, or before, held by friction."""
     for j, event in enumerate(orbit.mesh.events):
         if event.switch not in both:
             continue
@@ -60,9 +60,9 @@ def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> i
 
 
 def leading(system: System, orbit: Orbit, surface: SurfaceLike, interval: int) -> tuple[SurfaceLike, int]:
-    """Return the surface whose grazing-sliding that of another one is, and the sign between their guards.
+    """Return the surface whose row grazing-sliding of a surface is, and the sign between their guards.
 
-    Of dry friction beside sliders it is that of friction.
+    It is dry friction in parallel with sliders, where there is any, else the surface itself.
     """
     both = twins(system, surface.switch, held_in(system, orbit, interval))
     each = ((surface_of(system, k), sign) for k, sign in both.items())
@@ -70,24 +70,15 @@ def leading(system: System, orbit: Orbit, surface: SurfaceLike, interval: int) -
 
 
 def _grazing(system: System, orbit: Orbit, site: Site, guard: int, both: dict[int, int]) -> Site:
-    """All that slip about the turn are held for a while."""
+    """The site at which all joints that slip about the turn are held for a while."""
     assert isinstance(site.at, Extremum)
     stop, release = site.added
     way = release.event.direction
     ways = {k: sign * way for k, sign in both.items()}
-    slipping = [k for k in both if _mode(system, orbit, k, site.at.interval) == ways[k]]
+    modes = sides(system, orbit)[site.at.interval]
+    slipping = [k for k in both if modes[column(system, k)] == ways[k]]
     stuck = tuple((k, STUCK) for k in slipping)
     onward = tuple((k, ways[k]) for k in slipping)
     first = Added(replace(stop.event, modes=(*stop.event.modes, *stuck)), stop.phase, stop.part)
     last = Added(replace(release.event, modes=onward), release.phase, release.part)
     return replace(site, added=(first, last))
-
-
-def _mode(system: System, orbit: Orbit, switch: int, interval: int) -> int:
-    """The mode of a surface in an interval; 0 where no event node says it."""
-    surface, mesh = surface_of(system, switch), orbit.mesh
-    each = zip(mesh.starts, mesh.events, strict=True)
-    changes = [(int(j), mode_after(surface, event)) for j, event in each]
-    known = [(j, mode) for j, mode in changes if mode is not None]
-    before = [mode for j, mode in known if j <= interval] or [mode for _, mode in known]
-    return before[-1] if before else 0

@@ -1,4 +1,4 @@
-"""A whole orbit that touches a level at once, as a circle in a ring: no row, as it has no extremum."""
+"""An orbit that touches a level everywhere at once, as a circle in a ring: it has no extremum, so no row."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from periodic.orbit.orbit import Orbit
 from periodic.system import Kind, System
 
 RIPPLES = 2.0
-"""How far short of its level a switch is held that is the same all along the orbit, in its ripples."""
+"""Distance from its level at which a switch that is constant along the orbit is held, in its variations."""
 
 FLAT = 1e-5
-"""A switch is the same all along an orbit where it changes by no more, as a part of its size."""
+"""Variation of a switch along an orbit, as a part of its size, up to which it is constant."""
 
 
 @dataclass(frozen=True)
 class WholeOrbit:
-    """All of an orbit touches: it goes beyond at once, on the same mesh."""
+    """A touch of a level by a whole orbit: the branch goes on beyond it on the same mesh."""
 
     name: str
     condition: Clearance
@@ -47,7 +47,7 @@ class WholeOrbit:
 
 
 def whole_orbit(system: System, before: Orbit, violation: Violation, part: float) -> WholeOrbit | None:
-    """Return the touch of a whole orbit, if a violation is that; it is held where it still has a tangent."""
+    """Return the touch of a whole orbit, if a violation is one; it is held where there still is a tangent."""
     k, dense = violation.switch, SwitchPolynomials(system, before)
     if violation.breach is not Breach.EXCURSION or not isinstance(violation.at, Extremum):
         return None

@@ -39,7 +39,7 @@ def source(*files: str) -> str:
 
 
 def library_of(system: System, *files: str) -> ctypes.CDLL | None:
-    """Return the loaded library of some C sources, see `source`; None where NumPy is to do."""
+    """Return the loaded library of some C sources, see `source`; None where NumPy must be used."""
     with_compiler = compiling(system)
     return None if with_compiler is None else with_compiler.library(source(*files))
 

@@ -28,7 +28,7 @@ class Call(ctypes.Structure):
 
 
 def outputs(system: System, orbit: Orbit, tau: Array) -> Array | None:
-    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy is to do."""
+    """Return what `periodic.orbit.extrema.outputs` does, or None where NumPy must be used."""
     return _called("outputs", system, orbit, tau, np.zeros((len(tau), len(system.outputs))))
 
 
@@ -38,7 +38,7 @@ def extremes(system: System, orbit: Orbit) -> Array | None:
 
 
 def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) -> Array | None:
-    """Return the values that a function of C writes, or None where NumPy is to do.
+    """Return the values that a function of C writes, or None where NumPy must be used.
 
     Only piecewise polynomials are read in C: what a Fourier series is between its samples, it knows itself.
     """

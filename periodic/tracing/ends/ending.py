@@ -1,4 +1,4 @@
-"""Where nothing of a branch is left that its arclength could find: the parameter stands still."""
+"""Ends of branches on which the parameter stands still: arclength steps get no further."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from periodic.system.precision import EPSILON
 from periodic.tracing.ends import homoclinic
 
 LEAST_MOTION = 1e2
-"""Motion of so many units of rounding of its states is none."""
+"""Span of an orbit, in units of rounding of its states, up to which it does not move."""
 
 COLLAPSED_BY = 1e2
 """How many times as large orbits were when the parameter was the same but for rounding."""
@@ -31,7 +31,7 @@ def reached(problem: Problem, points: Sequence[Point]) -> Stop | None:
 def vanished(problem: Problem, points: Sequence[Point]) -> bool:
     """Whether orbits have shrunk to rounding of their states while the parameter stood still.
 
-    Those that only pass through a rest, or stay at rest from there on, do so along the parameter.
+    Orbits that only pass through a rest, or stay at rest from there on, do so as the parameter changes.
     """
     last = points[-1]
     span = last.orbit.span()

@@ -1,7 +1,7 @@
 """Branches of autonomous orbits that end at a homoclinic or heteroclinic orbit: their periods grow forever.
 
 The nearer the orbits pass to an equilibrium the longer they stay, T ~ -log|p - p*|, so that the parameter
-stops changing long before the period does: nothing of the branch is left that its arclength could find.
+stops changing long before the period does: arclength steps get no further.
 
 References
 ----------
@@ -24,19 +24,11 @@ LONGER_PERIOD = 10.0
 """How many times as long orbits have become since the parameter changed by more than its error."""
 
 LEAST_SPEED = 1e-3
-"""Least speed on such an orbit, in peaks to peak a rad: a canard is slow, but does not stand still."""
+"""Largest value of the least speed on such an orbit (peak to peak per rad): a canard is faster."""
 
 
 def period(problem: Problem, points: Sequence[Point]) -> float | None:
-    """Return the period of the last point (s) where orbits grow longer without bound, None elsewhere.
-
-    Parameters
-    ----------
-    problem : Problem
-        What is solved.
-    points : sequence of Point
-        The branch so far.
-    """
+    """Return the period of the branch's last point (s) where periods grow without bound, None elsewhere."""
     at = [k for k, condition in enumerate(problem.conditions) if isinstance(condition, PhaseCondition)]
     if len(at) != 1 or codim2.picked(problem) is not None:
         return None

@@ -75,7 +75,7 @@ def _rate_of(functional: Smooth) -> Callable[[Solution], float]:
 
 
 def called(what: str, functional: Functional, system: System, orbit: Orbit) -> object:
-    """Return what a functional of the user's gives. Raises ValueError that names the one that fails."""
+    """Return the value of a user's functional. Raises ValueError that names the functional that fails."""
     try:
         return functional(system, orbit)
     except (ArithmeticError, LookupError, TypeError, AttributeError) as error:

@@ -20,14 +20,14 @@ FARTHEST_AHEAD = 1.2
 """A change of pattern that lies within so many steps is where the step ends."""
 
 CHANGE_ITERATIONS = 8
-"""Newton's, to a change that may be none: it takes 2 to 5 where there is one."""
+"""Most Newton iterations towards a change that may not exist: 2 to 5 suffice where it does."""
 
 FARTHEST_BEYOND = 0.02
 """Distance of the orbits on either side of a change, in the metric of continuation, at the most,"""
 
 ACROSS = 2.0
-"""... or in the last step, in which what ends has become half as large at least: beyond, two events that have
-changed places are as far apart again."""
+"""... or so many lengths of the last step, in which the distance of two events has been at least halved:
+beyond, events that have changed places are as far apart again."""
 
 MESHES_BEYOND = 4
 """How often the mesh of the orbit beyond a change is made anew."""
@@ -46,7 +46,7 @@ class Reached:
 
 
 def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
-    """Return the base itself as the end of a step, where a switch touches there that it would pass next."""
+    """Return the base itself as the end of a step, where a switch touches that it would pass."""
     guess = tangent(solver.problem, base, ds)
     change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
     if change is None or not change.strict or change.part > CONVERGED:
@@ -78,10 +78,10 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
 
 
 def _comes_back(found: Solution, change: Change, at_base: bool) -> bool:
-    """Whether the branch comes back there from where its orbits are none of the system: it began before.
+    """Whether the branch comes back there from orbits that violate their word: the change began before.
 
-    at_base: whether that is where the step begins. Extrema do not come and go within a step, but one that
-    touches at its begin may leave its level there.
+    at_base: whether the change lies where the step begins. Extrema do not come and go within a step, but one
+    that touches at its beginning may leave its level there.
     """
     row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
     if not change.strict or (row.stages is not None and not at_base):
@@ -169,7 +169,7 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
 def _accurate(solver: Solver, found: Solution, condition: SideCondition) -> Solution:
     """Return the solution on meshes made for it, as long as it misses the tolerance.
 
-    Multipliers depend on how deep an excursion is, which is far less than the orbit itself.
+    Multipliers depend on the depth of an excursion, which is far smaller than the orbit itself.
     """
     for _ in range(MESHES_BEYOND):
         if not found.ok or found.error.curable <= solver.tolerance.orbit:

@@ -27,7 +27,7 @@ class ArclengthControl:
     winding : WindingLimits
         How far multipliers may turn past +1, so that no resonance is passed unseen.
     aim : float
-        The part of what a step may turn, bend and wind that the next one aims at.
+        Part of the bounds on turning, bending and winding at which the next step aims.
     growth : tuple of (int, float)
         Factors on the next step by the Newton iterations of this one: up to 3, 4, 5, 6.
     slow : float

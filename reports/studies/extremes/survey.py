@@ -95,6 +95,10 @@ class Row:
         return asdict(self)
 
 
+AGAIN = 5.0
+"""Seconds at the least until an interrupt is repeated: a trace takes less to end."""
+
+
 class _TimeUpError(KeyboardInterrupt):
     """The time of a cell is up; a trace takes it for Ctrl-C."""
 
@@ -201,15 +205,26 @@ def specials(branch: per.Branch) -> str:
 
 @contextmanager
 def within(seconds: float) -> Iterator[None]:
-    """Interrupt a trace, as Ctrl-C does, when its processor time is up."""
+    """Interrupt a trace, as Ctrl-C does, when its processor time is up.
+
+    CasADi loses what is raised while it converts arguments, or raises something else for it: a lost interrupt
+    comes again, and any error after it is taken for one.
+    """
+    fired = False
 
     def interrupt(*_: object) -> None:
+        nonlocal fired
+        fired = True
         raise _TimeUpError
 
     before = signal.signal(signal.SIGPROF, interrupt)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, seconds, max(seconds, AGAIN))
     try:
         yield
+    except Exception as error:
+        if fired:
+            raise _TimeUpError from error
+        raise
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.signal(signal.SIGPROF, before)

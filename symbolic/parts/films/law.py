@@ -13,7 +13,7 @@ from symbolic.equations.variables import Value, above_zero
 
 
 class FilmLaw(Protocol):
-    """Steady thickness h(W) of a film: all that parts ask of its law, as F(delta) is of a ContactLaw.
+    """Steady thickness h(W) of a film: parts need no more of its law, as they need F(delta) of a ContactLaw.
 
     A law is a frozen dataclass of numbers that inherits from this protocol and defines `thickness`: positive,
     falling with W, ln h a smooth function of ln W.

@@ -1,4 +1,4 @@
-"""What tables of a scene refer to by name: coordinates, shared parameters, places of several parts."""
+"""What tables of a scene refer to: coordinates and shared parameters by name, objects of inline tables."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ from symbolic.scenes.errors import InputError, listed, shown
 T = TypeVar("T")
 
 MOST_NAMES = 12
-"""Names that a sentence lists."""
+"""Most names that an error message lists."""
 
 
 @dataclass(frozen=True)
 class Bench:
-    """Coordinates, structures and parameters by name, and what has been made of equal inline tables."""
+    """Coordinates, structures and parameters by name, and `places`: objects made from inline tables.
+
+    Parts with equal inline tables share one object, such as the contact pair that they all act on.
+    """
 
     coordinates: dict[str, Coordinate] = field(default_factory=dict)
     structures: dict[str, Structure] = field(default_factory=dict)
@@ -56,14 +59,14 @@ def _freedom(structure: Structure, where: str, owner: str, place: str) -> Coordi
 
 
 def nearest(name: str, names: list[str]) -> str:
-    """Return the name that one was probably meant to be, or "" """
+    """Return the one of some names that a misspelt name is nearest to; "" where none is near."""
     small = {each.lower(): each for each in names}
     found = get_close_matches(name.lower(), list(small), n=1, cutoff=0.5)
     return small[found[0]] if found else ""
 
 
 def unknown(where: str, name: object, names: list[str], allowed: str) -> InputError:
-    """Return the error of a name that is not among some, with the nearest that is."""
+    """Return the error for a name that is none of `names`; it tells the nearest of these."""
     near = nearest(str(name), names)
     first = names if len(names) <= MOST_NAMES else [*names[:MOST_NAMES], "others"]
     known = f"nearest is {shown(near)}" if near else f"there is {listed(first, 'and') or 'none'}"

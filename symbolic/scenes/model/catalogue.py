@@ -28,7 +28,7 @@ from symbolic.scenes.model.described import Described, described
 from symbolic.scenes.model.readers import CoordinateName, Reader, UnreadableError, reader_of
 
 ENTRY_POINT = "orbitrace.parts"
-"""Installed packages name modules with parts under it."""
+"""Entry point group under which installed packages name their modules with parts."""
 
 KIND = "kind"
 """The key that says which class a table stands for."""
@@ -117,7 +117,7 @@ class Inline:
         return kind | self.entries[0].example
 
     def read(self, bench: Bench, where: str, value: Any) -> Any:
-        """Return the object; equal tables are one."""
+        """Return the object; equal tables give the same one."""
         if not isinstance(value, dict):
             raise InputError(where, "is no table", f"it must be {self.allowed}")
         names = {entry.name: entry for entry in self.entries}
@@ -176,7 +176,7 @@ def register_module(name: str) -> None:
 
 @cache
 def catalogue() -> dict[str, Entry]:
-    """Return all parts that text can give, by name in alphabetical order. Raises InputError."""
+    """Return all parts that a scene file can describe, by name in alphabetical order. Raises InputError."""
     for point in entry_points(group=ENTRY_POINT):
         try:
             given = list(_parts_in(point.load()))
@@ -191,12 +191,12 @@ def catalogue() -> dict[str, Entry]:
 
 
 def entry_of(owner: Callable[..., Any]) -> Entry | None:
-    """Return the keys of a class or function, None where text cannot give what it must be given."""
+    """Return the entry of a class or function; None where a scene file cannot give a required argument."""
     return _entry(owner, ())
 
 
 def _entry(owner: Callable[..., Any], within: tuple[Any, ...]) -> Entry | None:
-    """The same for a class inside others, none of which it may hold."""
+    """The same for a class nested in the classes `within`, which it may not hold in turn."""
     text, hints = described(owner), typing.get_type_hints(owner)
     keys = []
     for name, default in _arguments(owner):
@@ -255,7 +255,7 @@ def _built_in() -> dict[str, type[Part]]:
 
 
 def _objects() -> tuple[type, ...]:
-    """Public dataclasses beside the parts, that parts may hold, and the laws of contact of the user's."""
+    """Dataclasses that parts may hold: public ones, contact laws, those of user modules; no parts."""
     public = importlib.import_module("symbolic")
     given = [getattr(namespace, name) for namespace in (public, films) for name in namespace.__all__]
     given += contact_laws().values()
@@ -276,7 +276,7 @@ def _is_part(value: Any) -> bool:
 
 
 def _parts_in(module: Any) -> Iterator[type[Part]]:
-    """The parts that a module defines; a class of parts stands for itself."""
+    """The public parts that a module defines; given a part class, that class alone."""
     if _is_part(module):
         yield cast(type[Part], module)
         return

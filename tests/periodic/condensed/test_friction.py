@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -25,11 +27,17 @@ def compiled(structure: sym.Structure, *places: str) -> sym.CompiledSystem:
     return sym.compile(sym.combine([structure, *frictions, force]))
 
 
+@cache
+def stuck() -> tuple[sym.CompiledSystem, per.Point]:
+    """The system with friction at its tip alone, and an orbit of it."""
+    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
+    return system, per.trace(system, "Omega", (2.2, 2.21), control=per.ArclengthControl(max_points=1))[0]
+
+
 def test_settled() -> None:
     """Assert the stops of motions in time: to 0.002 rad as in the orbit, and to 0.0002 settled further."""
-    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
+    system, found = stuck()
     motions = settled(system, at_rest(system, uniform(Scheme(), 8), system.nominal))
-    found = per.trace(system, "Omega", (2.2, 2.21))[0]
     for most, orbit in zip((0.002, 0.0002), motions, strict=False):
         assert [event.switch for event in orbit.mesh.events] == [e.switch for e in found.orbit.mesh.events]
         assert orbit.phases == pytest.approx(found.orbit.phases, abs=most)
@@ -59,8 +67,8 @@ def test_beside_own_states(joint: str) -> None:
 
 def test_forces_at_an_event_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that saltation is not made of forces that a last Newton step still moved."""
-    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
-    orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
+    system, point = stuck()
+    orbit = point.orbit
     assert len(SplitLinearisation.about(system, orbit, ()).saltations) == 2
     monkeypatch.setattr(modalsaltation, "MOST_ITERATIONS", 1)
     with pytest.raises(np.linalg.LinAlgError, match="forces at an event"):
@@ -69,8 +77,8 @@ def test_forces_at_an_event_are_solved_for(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_refused() -> None:
     """Assert what is said of gradients of multipliers, and of modes left out."""
-    system = compiled(sym.Structure(BEAM, damping=0.02), "tip")
-    orbit = per.trace(system, "Omega", (2.2, 2.21))[0].orbit
+    system, point = stuck()
+    orbit = point.orbit
     with pytest.raises(ValueError, match="derivatives of multipliers need a structure"):
         CondensedVariations.about(system, orbit, ())
     some = compiled(sym.Structure(BEAM, damping=0.02, modes=2), "tip")

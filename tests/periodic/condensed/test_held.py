@@ -22,7 +22,10 @@ def floating(condense: bool, **given: object) -> sym.CompiledSystem:
     return sym.compile(sym.combine([beam, *supports, sym.HarmonicForce(tip, 0.2, 2.5)]), condense=condense)
 
 
-@pytest.mark.parametrize("given", [{}, {"damping": 0.0, "rayleigh": (0.1, 0.01)}, {"damping": 0.0}])
+@pytest.mark.parametrize(
+    "given",
+    [{}, {"damping": 0.0, "rayleigh": (0.1, 0.01)}, pytest.param({"damping": 0.0}, marks=pytest.mark.long)],
+)
 def test_floating_beam_is_that_of_all_states(given: dict[str, object]) -> None:
     """Assert motion, forces and multipliers of a beam with two rigid-body modes to 8 digits."""
     found = []

@@ -64,6 +64,7 @@ def test_hertzian_contact_needs_few_intervals(ratio: float) -> None:
             assert point.error.multiplier < 1e-6 / 3
 
 
+@pytest.mark.usefixtures("users_kernels")
 def test_ball_bearing_needs_few_intervals() -> None:
     """Assert it of eight contacts lost and made in turn: at most 200 intervals but at three points."""
     krpm, places = 1000 * np.pi / 30, (9.0, 5.6, 5.2)

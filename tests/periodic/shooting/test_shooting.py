@@ -159,6 +159,7 @@ def test_disc(segments: int) -> None:
             assert largest_multiplier(point) == pytest.approx(LARGEST[speed], abs=5e-7)
 
 
+@pytest.mark.long
 def test_folds_of_the_disc() -> None:
     """Assert both folds of the disc by shooting alone, through contact lost over dozens of powers of ten.
 

@@ -74,7 +74,7 @@ def films(count: int, state: Array) -> Array:
     return np.asarray(np.log((deflection - approach) / 2 * 1e6))
 
 
-@pytest.mark.parametrize("count", [4, 5])
+@pytest.mark.parametrize("count", [4, pytest.param(5, marks=pytest.mark.long)])
 def test_motion_returns_after_relabelling(count: int) -> None:
     """Assert the orbit to 1e-9 and the multipliers of one passage, for even and odd numbers of balls."""
     point = traced(count)

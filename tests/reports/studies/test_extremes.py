@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -152,6 +153,10 @@ def test_outcomes() -> None:
         while True:
             pass
 
+    def again(*given: Any) -> per.Branch:
+        while True:  # an interrupt may be lost in CasADi, and come again
+            case.trace(*given)
+
     def warned(*_: object) -> per.Branch:
         warnings.warn("overflow", RuntimeWarning, stacklevel=1)
         raise AssertionError
@@ -170,7 +175,7 @@ def test_outcomes() -> None:
     assert survey(replace(case, trace=refused)).outcome == "refused"
     assert survey(replace(case, trace=warned)).outcome == "wrong"
     assert survey(replace(case, points=5)).outcome == "cut short"
-    assert survey(replace(case, seconds=0.02)).outcome in ("cut short", "stopped")
+    assert survey(replace(case, trace=again, seconds=0.5)).outcome in ("cut short", "stopped")
     assert survey(replace(case, system=slow, seconds=0.02)).outcome == "cut short"
     assert survey(replace(case, confirm=lost)).outcome == "unconfirmed"
     assert survey(replace(case, confirm=off)).outcome == "wrong"

@@ -133,6 +133,7 @@ def test_band_does_not_close_with_the_step() -> None:
     assert band.swing[6] * 1e6 == pytest.approx(3.865414, rel=1e-5)
 
 
+@pytest.mark.long
 def test_failures_begin_with_loss_of_contact() -> None:
     """Assert that with 0.02 ms all failures follow the exact motion's loss of contact, the steps stable."""
     band = stepped_at(Form.THIRD_ORDER, 2e-5)
@@ -141,6 +142,7 @@ def test_failures_begin_with_loss_of_contact() -> None:
         assert 3e-3 < loss(OIL_A, rpm, time) < time + band.step
 
 
+@pytest.mark.long
 def test_failures_of_another_kind() -> None:
     """Assert that unstable steps, and failures before the contact is lost, are told from loss of contact."""
     band = stepped_at(Form.THIRD_ORDER, 1e-4)
@@ -167,7 +169,7 @@ def test_method_leaves_orbits_that_lose_contact() -> None:
     assert found == dict.fromkeys((290, 315, 320, 360), Outcome.SETTLED)
 
 
-@pytest.mark.parametrize("rpm", [270.0, 290.0])
+@pytest.mark.parametrize("rpm", [270.0, pytest.param(290.0, marks=pytest.mark.long)])
 def test_error_control_goes_through(rpm: float) -> None:
     """Assert that CVODES settles to the branch from the same start, inside the band."""
     (point,) = [p for p in known().labelled(per.Label.USER) if abs(p.parameter / RPM - rpm) < 1e-6]

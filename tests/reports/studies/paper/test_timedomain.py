@@ -32,6 +32,7 @@ def section() -> Found:
     return timedomain.compute(lambda what: None)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("key", "value", "accuracy"),
     [
@@ -55,6 +56,7 @@ def test_key_numbers(key: str, value: float, accuracy: float) -> None:
     assert section().numbers[key] == pytest.approx(value, rel=accuracy)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("disc", ["oil_a", "heavy", "oil_b"])
 def test_decay_is_that_of_the_multiplier(disc: str) -> None:
     """Assert that the free motion dies out as fast as collocation's largest multiplier says."""
@@ -62,12 +64,14 @@ def test_decay_is_that_of_the_multiplier(disc: str) -> None:
     assert n[f"{disc}_decay_per_s"] == pytest.approx(n[f"{disc}_orbit_decay_per_s"], rel=5e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("disc", ["oil_a", "heavy", "oil_b"])
 def test_forced_line(disc: str) -> None:
     """Assert that one of the two lines of the spectrum is the excitation's, to a bin of 1.25 Hz."""
     assert section().numbers[f"{disc}_forced_Hz"] == pytest.approx(720, abs=1.25)
 
 
+@pytest.mark.long
 def test_verdicts() -> None:
     """Assert what the first table says of each number of the paper."""
     assert {row.key: row.verdict for row in rows("timedomain", section().numbers)} == {
@@ -82,6 +86,7 @@ def test_verdicts() -> None:
     }
 
 
+@pytest.mark.long
 def test_figures_are_those_of_the_text() -> None:
     """Assert that the text shows each figure once."""
     text = REPORT.told("timedomain", section().kept())
@@ -112,6 +117,7 @@ def test_spectrum_of_two_sines() -> None:
     assert found.amplitude.max() == pytest.approx(2.0, rel=0.02)
 
 
+@pytest.mark.long
 def test_thin_oil_is_not_settled_after_a_second() -> None:
     """Assert that oil B still swings 1.8 times its settled motion after 1 s, and decays slowly."""
     late = trusted(B, DURATION[B]).during(0.95, 1.0)
