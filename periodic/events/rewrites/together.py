@@ -131,7 +131,9 @@ def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
 
 
 def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end: int) -> bool:
-    """Whether two surfaces are twins from one node to another."""
+    """Whether two surfaces are twins from one node to another, where held friction keeps both guards at 0 too."""
+    if other.switch in twins(word.system, one.switch):
+        return True
     count = (end - begin) % len(word.nodes)
     between = ((begin + m) % len(word.nodes) for m in range(count + 1))
     return all(other in (k for k, _ in word.twins(one, node)) for node in between)
