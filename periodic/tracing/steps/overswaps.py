@@ -83,17 +83,18 @@ class _Way:
         if not self._swaps(ds):
             return None
         try:
-            new = self.at(ds)
+            new = self._accurate(self.at(ds))
+            ratios = list(bound_ratios(self.base, new, ds, self.control, self.solver.tolerance.orbit))
+            if not all(ratio.size <= 1 for ratio in ratios):
+                return None
             if any(self._passed(test, new, ds, course) for test in codim2.sought(new, folded=False)):
                 return None
         except RejectedError:
             return None
-        limit = self.solver.tolerance.orbit
-        ratios = list(bound_ratios(self.base, new, ds, self.control, limit))
-        return Over(new, ds, max(r.ahead for r in ratios)) if all(r.size <= 1 for r in ratios) else None
+        return Over(new, ds, max(ratio.ahead for ratio in ratios))
 
     def at(self, distance: float) -> Solution:
-        """Return the orbit at a distance, to the tolerance. Raises RejectedError where there is none."""
+        """Return the orbit at a distance. Raises RejectedError where there is none."""
         if distance not in self.known:
             self.known[distance] = self._solved(distance)
         return self.known[distance]
@@ -103,17 +104,26 @@ class _Way:
         return not in_order(tangent(self.solver.problem, self.base, distance))
 
     def _solved(self, distance: float) -> Solution:
-        solver, sign = self.solver, float(np.sign(self.base.tangent.parameter))
-        newton = solver.tolerance.newton
+        newton = self.solver.tolerance.newton
         patient = replace(newton, max_iterations=min(self.control.patience, newton.max_iterations))
-        each = (solver.at_parameter(guess, sign, patient) for guess in self._guesses(distance))
-        new = next((new for new in each if new.ok and np.isfinite(new.error.motion)), None)
-        better = None if new is None else refined(solver, new, fixed=True)
-        if better is None or not better.ok or not better.error.curable <= solver.tolerance.orbit:
+        guesses = self._guesses(distance)
+        each = (self.solver.at_parameter(guess, self._sign, patient) for guess in guesses)
+        new = next((new for new in each if new.ok), None)
+        if new is None or new.tangent.parameter * self._sign <= 0:
             raise RejectedError("no orbit was found on which only the order of events has changed")
-        if better.tangent.parameter * sign <= 0:
-            raise RejectedError("the branch turns back")
-        return better
+        return new
+
+    @property
+    def _sign(self) -> float:
+        return float(np.sign(self.base.tangent.parameter))
+
+    def _accurate(self, new: Solution) -> Solution:
+        """The orbit to the tolerance. Raises RejectedError where its word is another one."""
+        if np.isfinite(new.error.motion):
+            new = refined(self.solver, new, fixed=True)
+        if not new.ok or not new.error.curable <= self.solver.tolerance.orbit:
+            raise RejectedError("the orbit does not meet the tolerance, or violates its word")
+        return new
 
     def _guesses(self, distance: float) -> Iterator[Orbit]:
         """Yield guesses of the orbit at a distance."""
