@@ -140,9 +140,9 @@ class MeshMethod(Discretisation):
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
         found = refusals(system, correction.orbit)
-        wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
-        if wrong is not None:
-            return replace(correction, outcome=wrong)
+        wrong = (outcome for breach, outcome in WRONG.items() if found and self._breached(found, breach))
+        if (first := next(wrong, None)) is not None:
+            return replace(correction, outcome=first)
         return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
@@ -159,6 +159,8 @@ class MeshMethod(Discretisation):
 
     def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
         """Infinite for an orbit that slips where it should stick, or the reverse; else 0."""
+        if not of_held(system):
+            return 0.0
         own = error.orbit if error.curable > self.tolerance else 0.0  # up to this the mesh may be to blame
         if self._creeps(system, orbit):
             return np.inf

@@ -21,12 +21,14 @@ def tangent(problem: Problem, solution: Solution, distance: float) -> Orbit:
 
 
 def spaced(before: Orbit, guess: Orbit) -> Orbit:
-    """Return a guess with its event nodes in order, where it is a step from an orbit that brings some together.
+    """Return a guess with event nodes in order that a step along the tangent has brought past each other.
 
     As friction lets go, the way slipped grows as the cube of time, so two events that merge as it does are as
     far apart as the cube of their distance from it: a length l that changes by d along the tangent becomes
     l (1 + d / 3 l)^3. A guess in which events pass each other is left as it is.
     """
+    if not before.mesh.events:
+        return guess
     lengths, ahead = (orbit.mesh.segment_lengths(orbit.phases) for orbit in (before, guess))
     crossed = ahead <= 0
     if not crossed.any() or (ahead <= -2 * lengths).any():
@@ -46,7 +48,9 @@ def at_fixed_phases(problem: Problem, solution: Solution, distance: float) -> Or
 def rates_at_fixed_phases(solution: Solution) -> Array:
     """Return how the states change along the branch at the knots, these held in tau, shape (N, ncol+1, n)."""
     orbit, way = solution.orbit, solution.tangent
-    left, width = (gradient @ way.phases for gradient in (orbit.grid.left_gradient, orbit.grid.width_gradient))
+    left, width = (
+        gradient @ way.phases for gradient in (orbit.grid.left_gradient, orbit.grid.width_gradient)
+    )
     later = left[:, None] + width[:, None] * orbit.mesh.scheme.points
     stages = way.stages - orbit.knot_rates[:, 1:] * later[:, :, None]
     return np.concatenate([way.profile[:-1, None], stages], axis=1)

@@ -140,7 +140,7 @@ def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
 
 
 def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end: int) -> bool:
-    """Whether two surfaces are twins from one node to another, where held friction keeps both guards at 0 too."""
+    """Whether two surfaces are twins from one node to another; held friction may keep both guards at 0."""
     if other.switch in twins(word.system, one.switch):
         return True
     count = (end - begin) % len(word.nodes)

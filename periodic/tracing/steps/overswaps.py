@@ -26,7 +26,6 @@ from periodic.refinement.adaptation import refined
 from periodic.tracing.steps.stepbounds import bound_ratios
 from periodic.tracing.steps.stepsize import ArclengthControl
 
-
 PARTS = (1.0, 0.5, 0.25)
 """Parts of the step that are tried in turn."""
 
@@ -63,7 +62,7 @@ def over_swaps(
     Over or None
         None where the step is to be taken in parts.
     """
-    if solver.problem.free != (solver.problem.index,):
+    if solver.problem.free != (solver.problem.index,) or not base.orbit.mesh.events:
         return None
     way = _Way(solver, control, base)
     return next((over for over in (way.over(part * ds, course) for part in PARTS) if over is not None), None)
@@ -101,7 +100,10 @@ class _Way:
 
     def _swaps(self, distance: float) -> bool:
         """Whether events have changed places at a distance."""
-        return not in_order(tangent(self.solver.problem, self.base, distance))
+        orbit = self.base.orbit
+        return bool(
+            (orbit.mesh.segment_lengths(orbit.phases + distance * self.base.tangent.phases) <= 0).any()
+        )
 
     def _solved(self, distance: float) -> Solution:
         newton = self.solver.tolerance.newton

@@ -58,7 +58,9 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
     """Return the orbit at a change of pattern within a step, if one is found; `near` is a guess of it."""
     method, system = solver.discretisation, solver.problem.system
     for _ in range(CHANGES_IN_A_STEP):
-        guess = near if near is not None else spaced(base.orbit, tangent(solver.problem, base, change.part * ds))
+        guess = (
+            near if near is not None else spaced(base.orbit, tangent(solver.problem, base, change.part * ds))
+        )
         found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), CHANGE_ITERATIONS)
         if not found.ok and change.otherwise is not None:
             change, near = change.otherwise, None

@@ -38,7 +38,9 @@ def _order(orbit: Orbit) -> tuple[int, ...]:
 
 def test_one_step_over_two_swaps(rubbing: sym.CompiledSystem, branch: per.Branch) -> None:
     """Assert that symmetric swaps take one step, and four where each is stopped at, to the same orbits."""
-    changes = [(a, b) for a, b in zip(branch[:-1], branch[1:], strict=True) if _order(a.orbit) != _order(b.orbit)]
+    changes = [
+        (a, b) for a, b in zip(branch[:-1], branch[1:], strict=True) if _order(a.orbit) != _order(b.orbit)
+    ]
     over = [(a, b) for a, b in changes if sorted(_order(a.orbit)) == sorted(_order(b.orbit))]
     assert len(over) >= 2
     with pytest.MonkeyPatch.context() as patched:
@@ -52,7 +54,9 @@ def test_one_step_over_two_swaps(rubbing: sym.CompiledSystem, branch: per.Branch
     (ours,), (theirs,) = (b.labelled(per.Label.USER) for b in (branch, stopping))
     tau = np.linspace(0, 2 * np.pi, 97)
     np.testing.assert_allclose(ours.orbit.state(tau), theirs.orbit.state(tau), atol=1e-7)
-    np.testing.assert_allclose(np.sort(np.abs(ours.multipliers)), np.sort(np.abs(theirs.multipliers)), atol=1e-6)
+    np.testing.assert_allclose(
+        np.sort(np.abs(ours.multipliers)), np.sort(np.abs(theirs.multipliers)), atol=1e-6
+    )
 
 
 def test_neighbours_change_places(rubbing: sym.CompiledSystem, branch: per.Branch) -> None:
@@ -81,7 +85,7 @@ def _own(system: sym.CompiledSystem, switch: int) -> tuple[int, ...]:
 
 
 def test_corresponding_points(branch: per.Branch) -> None:
-    """Assert that an orbit's event nodes correspond to the same ones of another, in whatever order they are."""
+    """Assert that an orbit's event nodes correspond to the same ones of another, in any order."""
     pairs = zip(branch[:-1], branch[1:], strict=True)
     each = [(a.orbit, b.orbit) for a, b in pairs if sorted(_order(a.orbit)) == sorted(_order(b.orbit))]
     assert any(_order(one) != _order(other) for one, other in each)
