@@ -401,17 +401,20 @@ class Continuation:
                 yield from self._met(special)
         elif at.change.last:
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
-        elif (at.change.strict or at.change.final) and self._reread(at.end):
+        elif (at.change.strict or at.change.final) and self._reread(at.end, other=True):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")
         else:
             self.state = replace(self.state, ds=max(self.state.ds, wanted))
 
-    def _reread(self, base: Solution) -> bool:
-        """Go on beyond a change without a rewrite, to an orbit whose word is read from its motion, if any."""
+    def _reread(self, base: Solution, other: bool = False) -> bool:
+        """Go on beyond a change without a rewrite, to an orbit whose word is read from its motion, if any.
+
+        other: whether it must be another word.
+        """
         assert self.state is not None
-        found = reread(self.solver, base, self.control.ds)
+        found = reread(self.solver, base, self.control.ds, other)
         if found is None:
             return False
         self.stop = None
