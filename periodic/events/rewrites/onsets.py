@@ -25,7 +25,7 @@ from periodic.events.rewrites.table import (
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import leading, with_twins
+from periodic.events.rewrites.twins import leading, slipping_together, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
@@ -69,7 +69,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
-    return found
+    return slipping_together(system, orbit, found)
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
