@@ -60,8 +60,8 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
 def reread(solver: Solver, base: Solution, first: float, other: bool = False) -> Crossed | None:
     """Return an orbit a little ahead on a branch, with the word of the motion there; None if there is none.
 
-    first: length of a first step. other: whether its word must not be that of the base, at the end of which it
-    may lie nearer and nearer to a change.
+    first: length of a first step. other: whether its word must not be that of the base, which may lie nearer
+    and nearer to a change.
     """
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:

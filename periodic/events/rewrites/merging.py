@@ -25,8 +25,8 @@ class Meeting:
     """Neighbouring event nodes: where friction sticks or is released, and the stops of two joints.
 
     node: the first of them. friction: the node of friction. stops: the nodes of the stops, two, or one for
-    both. alike: the guards that are the same function where friction holds, with their signs. groups: those of
-    them that stop, in two groups that are each the same function anyway, as of sliders in parallel.
+    both. alike: the guards that are the same function where friction holds, with their signs. groups: those
+    that stop, in two groups that are each the same function anyway, as of sliders in parallel.
     """
 
     node: int
