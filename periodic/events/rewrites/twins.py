@@ -13,9 +13,10 @@ from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING, LIMIT_GRAZING
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
-from periodic.events.twinguards import held_in, twins
+from periodic.events.twinguards import held_at, held_in, twins
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
@@ -40,6 +41,18 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))
     release = replace(site.added[0], phase=float(orbit.phases[turn]))
     return replace(site, added=(release,), replaced=((turn, joined),))
+
+
+def parted(
+    system: System, orbit: Orbit, event: EventNode, node: int, guard: int
+) -> tuple[tuple[int, int], ...]:
+    """Return the modes that change at an event node only because friction at a guard holds there."""
+    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    held = held_at(system, orbit.mesh.events, node, always)
+    own = surface_of(system, event.switch).switch
+    alone = twins(system, own, [k for k in held if k != guard])
+    both = twins(system, own, held)
+    return tuple(pair for pair in event.modes if pair[0] in both and pair[0] not in alone)
 
 
 def slipping_together(system: System, orbit: Orbit, sites: Sequence[Site]) -> list[Site]:
