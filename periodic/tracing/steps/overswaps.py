@@ -1,9 +1,9 @@
 """Steps in which several events change places, taken at once.
 
-Where events of different surfaces meet and pass each other, the branch and its multipliers are smooth, so
-that nothing is to be located. A step along the tangent in which only the order of events changes leads to an
-orbit with the word in its new order, and is judged as any other. Where another row of the table applies, or
-a special point may have been passed, the step is left to those that stop there.
+Where events of different surfaces meet and pass each other nothing touches a level, and the branch goes on
+without a kink unless both act on one motion. A step along the tangent in which only the order of events
+changes leads to an orbit with the word in its new order, and is judged as any other. Where another row of
+the table applies, or a special point may have been passed, the step is left to those that stop there.
 """
 
 from __future__ import annotations
