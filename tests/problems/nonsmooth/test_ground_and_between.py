@@ -41,7 +41,7 @@ def drawn(seed: int, start: float) -> JointCase:
 
 
 @pytest.mark.parametrize("start", BOUNDS)
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [2, 3])
 def test_through_the_range(seed: int, start: float) -> None:
     """Assert that each comes to the other end, and that no point is wrong: orbits and multipliers.
 
