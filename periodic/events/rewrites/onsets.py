@@ -154,7 +154,7 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
 
 def _jumped_at(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum) -> int | None:
     """The event node of another surface just before which an extremum lies, if any: the force jumps there."""
-    if at.theta < 1.0 or surface.kind != Kind.SLIDING:
+    if at.theta < 1.0 or surface.kind != Kind.SLIDING or held_all_along(orbit.mesh, surface):
         return None
     node = next(
         (j for j, start in enumerate(orbit.mesh.starts) if start == (at.interval + 1) % orbit.mesh.ntst), None
@@ -187,7 +187,7 @@ def _before_events(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) 
     for node, event in enumerate(orbit.mesh.events):
         interval = int(orbit.mesh.starts[node]) - 1
         side = int(sides[interval])
-        if side and mode_after(surface, event) is None:
+        if side and mode_after(surface, event) is None and not held_all_along(orbit.mesh, surface):
             at = Limit(node, switch, side).linearise(system, orbit, ())
             yield _before_event(system, orbit, surface, node, switch, side, at.value / most)
 
