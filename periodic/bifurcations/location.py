@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -162,13 +163,24 @@ def _where(within: WithinStep, new: Solution, ds: float, test: TestFunction, cou
         raise RejectedError("the step ends at a special point", SHORTER)
     if ends[0] * ends[1] == 0 or not (test.twice(base, new) or course.returns(test, base, new, ds)):
         return []
-    between = _between(within, new, ds, test)
+    between = sign_between(within, new, ds, test)
     if between is None:
         return []
     return [found for span in ((0.0, between), (between, ds)) for found in _located(within, span, ds, test)]
 
 
-def _between(within: WithinStep, new: Solution, ds: float, test: TestFunction) -> float | None:
+class Way(Protocol):
+    """Solutions at distances from a base."""
+
+    @property
+    def base(self) -> Solution:
+        """The solution at distance 0."""
+
+    def at(self, distance: float) -> Solution:
+        """Return the solution at a distance. Raises RejectedError where there is none."""
+
+
+def sign_between(within: Way, new: Solution, ds: float, test: TestFunction) -> float | None:
     """Return a distance at which a test function has another sign than at both ends of a step, if any."""
     local = test.local or test.value
     sign = np.sign(local(within.base))

@@ -26,6 +26,7 @@ from periodic.events.eventnodes import KinkSettings
 from periodic.events.modes import completed, group, of_held, of_kind, relays
 from periodic.events.relaypassages import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
+from periodic.events.rewrites.permuted import permuted
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
 from periodic.linear.variation import Variations
@@ -139,17 +140,27 @@ class MeshMethod(Discretisation):
     def accepted(self, system: System, correction: Correction) -> Correction:
         """Return it as failed where an event node is not a crossing in its own direction."""
         found = refusals(system, correction.orbit)
-        wrong = next((outcome for breach, outcome in WRONG.items() if self._breached(found, breach)), None)
-        if wrong is not None:
-            return replace(correction, outcome=wrong)
+        wrong = (outcome for breach, outcome in WRONG.items() if found and self._breached(found, breach))
+        if (first := next(wrong, None)) is not None:
+            return replace(correction, outcome=first)
         return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
         """Return where a switch touches its level on the way, or two event nodes meet."""
         return first_change(system, before, after, self.shortest, self.ends_below)
 
+    def reordered(self, system: System, orbit: Orbit, phases: Array) -> tuple[Mesh, Array] | None:
+        """Return the mesh with the event nodes in their new order; None where that is no series of swaps."""
+        nodes = permuted(system, orbit, phases)
+        if nodes is None:
+            return None
+        events, places = tuple(event for event, _ in nodes), np.array([place for _, place in nodes])
+        return redistribute(orbit, orbit.mesh.ntst, events, places, self.shortest), places
+
     def _misheld(self, system: System, orbit: Orbit, error: ErrorEstimate) -> float:
         """Infinite for an orbit that slips where it should stick, or the reverse; else 0."""
+        if not of_held(system):
+            return 0.0
         own = error.orbit if error.curable > self.tolerance else 0.0  # up to this the mesh may be to blame
         if self._creeps(system, orbit):
             return np.inf

@@ -200,6 +200,25 @@ class Discretisation(Protocol):
         """
         return None
 
+    def reordered(self, system: System, orbit: Orbit, phases: Array) -> tuple[Mesh, Array] | None:
+        """Return a mesh for an orbit whose events come in another order, with their phases in order.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            The orbit on a mesh in the old order.
+        phases : ndarray, shape (k,)
+            Where its event nodes go.
+
+        Returns
+        -------
+        Mesh, ndarray or None
+            None where more than the order changes, or nothing.
+        """
+        return None
+
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the events of an orbit's period at which the equations change, in a fixed order.
 

@@ -108,12 +108,12 @@ class Problem:
         """The bound where branches begin by default."""
         return self.bounds[0]
 
-    @property
+    @cached_property
     def low(self) -> float:
         """The lower bound."""
         return min(self.bounds)
 
-    @property
+    @cached_property
     def high(self) -> float:
         """The upper bound."""
         return max(self.bounds)
@@ -138,7 +138,7 @@ class Problem:
         """Indices of all free parameters, the continuation parameter first."""
         return (self.index, *self.others)
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """The unit of arclength in the continuation parameter."""
         return self.high - self.low

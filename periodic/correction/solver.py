@@ -78,10 +78,10 @@ class Solver:
         along = 1.0 if direction is None else kernel.dot(direction, found.orbit, scale, size)
         return kernel.scaled((np.sign(along) or 1.0) / length)
 
-    def at_parameter(self, guess: Orbit, sign: float) -> Solution:
+    def at_parameter(self, guess: Orbit, sign: float, newton: NewtonSettings | None = None) -> Solution:
         """Solve with the parameter fixed at the guess's value; the tangent points to `sign` times it."""
         across = parameter_only(guess, sign * self.problem.scale)
-        found = self.on(guess, self.constraint(guess, across, 0.0))
+        found = self.on(guess, self.constraint(guess, across, 0.0), newton)
         if not found.ok:
             return found
         parameter = found.orbit.parameter.copy()

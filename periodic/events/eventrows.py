@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.events.impacts import arriving_row, tied
-from periodic.events.modes import modes_in
+from periodic.events.modes import modes_at, modes_in
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, guards, guards_gradient
@@ -23,10 +23,11 @@ def event_rows(system: System, orbit: Orbit, free: tuple[int, ...]) -> list[Row]
 
 
 def node_row(system: System, orbit: Orbit, index: int, switch: int, free: tuple[int, ...]) -> Row:
-    """Return a switch s(x, phi, p) at the mesh point of an event node, in the modes before it."""
+    """Return a switch s(x, phi, p) at the mesh point of an event node, in the modes of `modes_at`."""
     node, k = orbit.mesh.starts[index], len(orbit.phases)
     where = (orbit.nodes[node : node + 1], orbit.phases[index : index + 1], orbit.parameter)
-    side = modes_in(system, orbit, node - 1)
+    own = orbit.mesh.events[index].switch == switch
+    side = modes_in(system, orbit, node - 1) if own else modes_at(system, orbit, index, switch)
     d_state, d_phase, d_parameter = guards_gradient(system, *where, side)
     nodes = np.zeros_like(orbit.nodes)
     nodes[node] = d_state[0, switch]

@@ -226,6 +226,23 @@ def _follows(surface: SurfaceLike, event: EventNode, before: int, after: int) ->
     return before != after
 
 
+def modes_at(system: System, orbit: Orbit, node: int, switch: int) -> Array:
+    """Return the modes at an event node in which a switch decides what its surface does there, (1, columns).
+
+    They are those before it. What the node takes along counts as after it where the surface is its own: so
+    a mass that stops and lets go of another at once is held against what is left.
+    """
+    start = int(orbit.mesh.starts[node])
+    found = modes_in(system, orbit, start - 1)
+    own = surface_of(system, switch)
+    here = surface_of(system, orbit.mesh.events[node].switch)
+    if own.column is None or own.switch != here.switch or not found.size:
+        return found
+    after = modes_in(system, orbit, start).copy()
+    after[:, own.column] = found[:, own.column]
+    return after
+
+
 def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
     """Return the modes in one interval, (1, columns), or (1, 0) where guards do not depend on them."""
     if not getattr(system, "guards_depend", False):

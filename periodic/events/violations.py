@@ -15,7 +15,7 @@ import numpy as np
 
 from periodic.events.impactmodes import thrown
 from periodic.events.impacts import slope_before
-from periodic.events.modes import mode_after, modes_in, release, surface_of
+from periodic.events.modes import mode_after, modes_at, modes_in, release, surface_of
 from periodic.events.rates import before
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import RELEASED, TOGETHER
@@ -164,7 +164,7 @@ def _limits(dense: SwitchPolynomials, surface: SurfaceLike) -> list[Violation]:
         at = orbit.nodes[start : start + 1], orbit.phases[j : j + 1], orbit.parameter
         d, held = event.direction, mode_after(surface, event) == STUCK
         onward, side = up if d > 0 else down, -d if held else d
-        value = float(guards(system, *at, modes_in(system, orbit, int(start) - 1))[0, onward])
+        value = float(guards(system, *at, modes_at(system, orbit, j, onward))[0, onward])
         found.append(Violation(Breach.MODE, onward, j, side, -side * value / most))
     return found
 

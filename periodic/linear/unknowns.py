@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
@@ -148,12 +148,16 @@ class Increment:
         """Changes of the further free parameters, shape (q-1,)."""
         return self.parameters[1:]
 
+    @property
+    def _arrays(self) -> tuple[Array, ...]:
+        return self.nodes, self.stages, self.algebraic, self.phases, self.parameters, self.profile
+
     def __add__(self, other: Self) -> Self:
-        return type(self)(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+        return type(self)(*(a + b for a, b in zip(self._arrays, other._arrays, strict=True)))
 
     def scaled(self, factor: float) -> Self:
         """Return the increment times a factor."""
-        return type(self)(*(factor * each for each in self.save().values()))
+        return type(self)(*(factor * array for array in self._arrays))
 
     def dot(self, other: Self, orbit: Orbit, scale: float | Array, size: float = 1.0) -> float:
         """Return the mean over the period of <x, y>/size^2, x and y at fixed tau, plus p q / scale^2.

@@ -31,6 +31,7 @@ from periodic.tracing.ends import ending
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
+from periodic.tracing.steps.overswaps import over_swaps
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
@@ -284,6 +285,9 @@ class Continuation:
         at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
+        over = self._over_swaps(base, ds, sought)
+        if over is not None:
+            return over
         longest = np.inf  # the next step is no longer where a longer one has just failed
         while True:
             try:
@@ -305,6 +309,19 @@ class Continuation:
                 if self._unread or not ds >= least:
                     self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
                     return None
+
+    def _over_swaps(self, base: Solution, ds: float, sought: Sought) -> Step | None:
+        """A step in which events change places and nothing else is to be located, if it is one."""
+        if sought.tests:
+            return None
+        over = over_swaps(self.solver, self.control, base, ds, sought.course)
+        if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
+            return None
+        if self._unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
+            return None
+        further = self.control.next_size(over.ds, over.new.correction.iterations, over.bound_ratio)
+        course = Course(over.ds, margins(base, codim2.along(base)))
+        return Step(over.new, further, [], course)
 
     def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
         """Reject a step of which not every change is accounted for, unless it is short already.
@@ -384,15 +401,20 @@ class Continuation:
                 yield from self._met(special)
         elif at.change.last:
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
-        elif (at.change.strict or at.change.final) and self._reread(at.end):
+        elif (at.change.strict or at.change.final) and self._reread(at.end, other=True):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")
+        else:
+            self.state = replace(self.state, ds=max(self.state.ds, wanted))
 
-    def _reread(self, base: Solution) -> bool:
-        """Go on beyond a change without a rewrite, to an orbit whose word is read from its motion, if any."""
+    def _reread(self, base: Solution, other: bool = False) -> bool:
+        """Go on beyond a change without a rewrite, to an orbit whose word is read from its motion, if any.
+
+        other: whether it must be another word.
+        """
         assert self.state is not None
-        found = reread(self.solver, base, self.control.ds)
+        found = reread(self.solver, base, self.control.ds, other)
         if found is None:
             return False
         self.stop = None

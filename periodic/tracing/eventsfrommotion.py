@@ -57,17 +57,18 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
     return found
 
 
-def reread(solver: Solver, base: Solution, first: float) -> Crossed | None:
+def reread(solver: Solver, base: Solution, first: float, other: bool = False) -> Crossed | None:
     """Return an orbit a little ahead on a branch, with the word of the motion there; None if there is none.
 
-    first: length of a first step.
+    first: length of a first step. other: whether its word must not be that of the base, which may lie nearer
+    and nearer to a change.
     """
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
     if (moved := amid(solver, base, at_limit(solver.problem.system, base.orbit), sign)) is not base:
         return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
-    search, near = _Search(solver, base, sign), _distances(solver.problem.system, base)
+    search, near = _Search(solver, base, sign, other), _distances(solver.problem.system, base)
     each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)
     found = next((crossed for crossed in each if crossed is not None), None)
     return found or search.found(first, search.settled, near[1:4])
@@ -84,6 +85,7 @@ class _Search:
     solver: Solver
     base: Solution
     sign: float
+    other: bool
 
     def found(self, first: float, read: Reading, parts: Sequence[float]) -> Crossed | None:
         """Return an orbit ahead, with the word that is read from a motion near it, if there is one."""
@@ -130,8 +132,17 @@ class _Search:
         if not found.ok or found.error.motion > self.solver.tolerance.orbit:
             return None
         apart = distance(self.solver.problem, base, found.orbit) / size_of(base)
+        if self.other and same_word(base, found.orbit):
+            return None
         onward = found.tangent.parameter * self.sign > 0
         return Crossed(found, apart, touches=False) if onward else None
+
+
+def same_word(one: Orbit, other: Orbit) -> bool:
+    """Whether two orbits have the same event nodes in the same order, from wherever they are counted."""
+    ours, theirs = one.mesh.events, other.mesh.events
+    turned = (theirs[k:] + theirs[:k] for k in range(max(len(theirs), 1)))
+    return one.mesh.modes == other.mesh.modes and ours in turned
 
 
 def _distances(system: System, base: Solution) -> tuple[float, ...]:

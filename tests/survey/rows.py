@@ -56,6 +56,9 @@ SEEDS = {
 }
 """How many models of a kind, from seed 100 on; those with several joints are traced from either end."""
 
+BACK = "turned back"
+"""What a branch says that came back to where it began."""
+
 HELD = "holds all along"
 """What a branch says where friction holds the motion for good: it is at rest, anywhere."""
 
@@ -85,7 +88,7 @@ class Row:
     @property
     def fate(self) -> str:
         """The column of the page that it is counted in."""
-        if self.reason == "BOUND":
+        if self.reason == "BOUND" and BACK not in self.told:
             return "to the end"
         if HELD in self.told:
             return "friction holds"

@@ -99,12 +99,10 @@ def prepared(
     if n > MOST_STATES or orbit.equilibrium or len(free) != 1 or resets_of(system):
         return None
     own = sides(system, orbit)
-    functions = _functions(system, free, bool(own.any()))
-    if functions is None or (n >= LARGE and _full(system, orbit)):
+    compiled = _compiled(system, free, bool(own.any()))
+    if compiled is None or (n >= LARGE and _full(system, orbit)):
         return None
-    library = library_of(system, *_SOURCES)
-    if library is None:
-        return None
+    functions, library, jumping = compiled
     call = Call.from_buffer_copy(_of_mesh(mesh)[0])
     call.n, call.m, call.parameters = n, orbit.algebraic.shape[2], len(orbit.parameter)
     call.switches, call.free = len(system.switches), free[0]
@@ -114,8 +112,10 @@ def prepared(
     call.narrow, call.negligible = settings.short, settings.negligible
     for name, where in functions.items():
         setattr(call, name, where)
-    call.jumping = bool(jumps_of(system))
-    side = plain(np.repeat(own, mesh.ntst // orbit.mesh.ntst * mesh.scheme.ncol, axis=0))
+    call.jumping = jumping
+    side = own
+    if own.size:
+        side = plain(np.repeat(own, mesh.ntst // orbit.mesh.ntst * mesh.scheme.ncol, axis=0))
     call.columns, call.side = side.shape[1], address(side) if side.size else None
     return Prepared(call, library, side)
 
@@ -124,6 +124,22 @@ def _full(system: System, orbit: Orbit) -> bool:
     """Whether the derivatives in the states at the first collocation point are mostly other than 0."""
     at = orbit.knot_rates[0, 1:2], orbit.stages[0, :1], orbit.algebraic[0, :1], orbit.stage_phases[0, :1]
     return full(system.linearise(*at, orbit.parameter).d_state)
+
+
+_Compiled = tuple[dict[str, int], ctypes.CDLL, bool]
+
+_systems: WeakKeyDictionary[System, dict[tuple[tuple[int, ...], bool], _Compiled]] = WeakKeyDictionary()
+
+
+def _compiled(system: System, free: tuple[int, ...], sided: bool) -> _Compiled | None:
+    """Addresses of the kernels, the library, and whether rates jump; once they are compiled from a cache."""
+    known = _systems.setdefault(system, {})
+    if (free, sided) not in known:
+        functions, library = _functions(system, free, sided), library_of(system, *_SOURCES)
+        if functions is None or library is None:
+            return None
+        known[free, sided] = functions, library, bool(jumps_of(system))
+    return known[free, sided]
 
 
 def _functions(system: System, free: tuple[int, ...], sided: bool) -> dict[str, int] | None:

@@ -198,9 +198,12 @@ def _shallow(system: System, orbit: Orbit, begin: int, end: int) -> bool:
 def _about(system: System, orbit: Orbit, begin: int) -> Site:
     """A slip about events at other surfaces, where the joint is pulled most."""
     inner, first = slip_about(system, orbit, begin), orbit.mesh.events[begin]
-    gone = begin, (inner[-1] + 1) % len(orbit.phases)
+    events, end = orbit.mesh.events, (inner[-1] + 1) % len(orbit.phases)
     held = Limit(inner[0], first.switch, -first.direction)
-    return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, removed=gone)
+    others = events[end].modes_beside(surface_of(system, first.switch).switch)
+    event = events[inner[0]]
+    joined = ((inner[0], replace(event, modes=(*event.modes, *others))),) if others else ()
+    return Site(ADDING_ABOUT, first.switch, inner[0], held, 0.0, (), (begin, end), joined)
 
 
 def only_slips(system: System, orbit: Orbit, begin: int) -> list[Excursion]:

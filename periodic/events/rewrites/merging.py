@@ -25,13 +25,15 @@ class Meeting:
     """Neighbouring event nodes: where friction sticks or is released, and the stops of two joints.
 
     node: the first of them. friction: the node of friction. stops: the nodes of the stops, two, or one for
-    both. alike: the guards that are the same function where friction holds, with their signs.
+    both. alike: the guards that are the same function where friction holds, with their signs. groups: those
+    that stop, in two groups that are each the same function anyway, as of sliders in parallel.
     """
 
     node: int
     friction: int
     stops: tuple[int, ...]
     alike: dict[int, int]
+    groups: tuple[tuple[int, ...], ...]
 
     @property
     def segments(self) -> tuple[int, ...]:
@@ -56,12 +58,21 @@ def merging(system: System, orbit: Orbit, node: int) -> Meeting | None:
                 continue
             held = [k for k in held_at(system, events, stops[0], always) if k != own.switch]
             guards = _stopped(events, stops)
-            if len(guards) != 2 or guards[1] in twins(system, guards[0], held):
-                continue
-            alike = twins(system, guards[0], [*held, own.switch])
-            if guards[1] in alike:
-                return Meeting(node, friction, tuple(stops), alike)
+            groups = _groups(system, guards, held)
+            alike = twins(system, guards[0], [*held, own.switch]) if len(groups) == 2 else {}
+            if len(groups) == 2 and set(guards) <= set(alike):
+                return Meeting(node, friction, tuple(stops), alike, groups)
     return None
+
+
+def _groups(system: System, guards: Sequence[int], held: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+    """The guards by what is the same function."""
+    left, found = list(guards), list[tuple[int, ...]]()
+    while left:
+        alike = twins(system, left[0], held)
+        found.append(tuple(k for k in left if k in alike))
+        left = [k for k in left if k not in alike]
+    return tuple(found)
 
 
 def _stopped(events: Sequence[EventNode], stops: Sequence[int]) -> list[int]:
@@ -80,14 +91,14 @@ def merged(system: System, orbit: Orbit, node: int) -> Iterator[Site]:
     events, begin = orbit.mesh.events, float(orbit.phases[node])
     friction, removed = events[found.friction], (found.friction, *found.stops)
     last = found.friction != node
-    for stops in _other(system, [events[j] for j in found.stops], found.alike):
+    for stops in _other(system, [events[j] for j in found.stops], found):
         each = [friction, *stops] if last else [*stops, friction]
         added = tuple(Added(event, begin, float(k)) for k, event in enumerate(each))
         held = Lengths(found.segments, 0.0)
         yield Site(MERGING, friction.switch, node, held, 0.0, added, removed)
 
 
-def _other(system: System, stops: Sequence[EventNode], alike: dict[int, int]) -> Iterator[list[EventNode]]:
+def _other(system: System, stops: Sequence[EventNode], found: Meeting) -> Iterator[list[EventNode]]:
     """Yield one event node for two stops, or two for one of both, in either order."""
     if len(stops) == 2:
         first = next((e for e in stops if surface_of(system, e.switch).kind == Kind.SLIDING), stops[0])
@@ -95,7 +106,13 @@ def _other(system: System, stops: Sequence[EventNode], alike: dict[int, int]) ->
         yield [replace(first, modes=(*first.modes, *(pair for e in others for pair in e.modes)))]
         return
     (event,) = stops
-    own = alike[event.switch] * event.direction
-    each = [EventNode(k, alike[k] * own, modes=((k, STUCK),)) for k, _ in event.modes]
+    way = found.alike[event.switch] * event.direction
+    each = [_stop(system, group, found.alike, way) for group in found.groups]
     yield each
     yield each[::-1]
+
+
+def _stop(system: System, group: Sequence[int], alike: dict[int, int], way: int) -> EventNode:
+    """The event node at which joints of one guard stop: that of friction among them, if there is any."""
+    first = next((k for k in group if surface_of(system, k).kind == Kind.SLIDING), group[0])
+    return EventNode(first, alike[first] * way, modes=tuple((k, STUCK) for k in group))

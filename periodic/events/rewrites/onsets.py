@@ -13,6 +13,7 @@ from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
+    ADDING_ABOUT,
     ADDING_SLIDING,
     CROSSING_SLIDING,
     FIRST_DEPARTURES,
@@ -25,7 +26,7 @@ from periodic.events.rewrites.table import (
     SWITCHING_SLIDING,
     Row,
 )
-from periodic.events.rewrites.twins import leading, with_twins
+from periodic.events.rewrites.twins import leading, parted, slipping_together, with_twins
 from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
@@ -69,7 +70,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
-    return found
+    return slipping_together(system, orbit, found)
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
@@ -79,6 +80,8 @@ def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
         for switch in (surface.switch, *(surface.releases or ())):
             if row_of(orbit, surface, switch) == row:
                 yield from _extrema(dense, surface, switch)
+            if row == ADDING_ABOUT.name and surface.kind == Kind.SLIDING and switch != surface.switch:
+                yield from _before_events(dense, surface, switch)
         if surface.releases is not None:
             each = (_limit(system, orbit, surface, limit) for limit in limits(system, orbit, surface))
             yield from (site for site in each if site is not None and site.row.name == row)
@@ -136,6 +139,8 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
         early, late = (-1 / 3, 2 / 3) if surface.kind == Kind.SLIDER else (-1.0, 0.0)
         new = (EventNode(k, -side, modes=((k, STUCK),)), early), (let_go, late)
         row, left = GRAZING_SLIDING, 0.0
+    elif (node := _jumped_at(system, orbit, surface, at)) is not None:
+        return _before_event(system, orbit, surface, node, k, side, value)
     else:
         early, late = (-1.0, 0.0) if surface.kind == Kind.SLIDER else (-1 / 3, 2 / 3)
         guard = surface.switch
@@ -145,6 +150,46 @@ def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, sid
     added = tuple(Added(event, at.phase, part) for event, part in new)
     held_at = Clearance(k, side, at.phase, left)
     return with_twins(system, orbit, Site(row, k, at, held_at, value, added))
+
+
+def _jumped_at(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum) -> int | None:
+    """The event node of another surface just before which an extremum lies, if any: the force jumps there."""
+    if at.theta < 1.0 or surface.kind != Kind.SLIDING or held_all_along(orbit.mesh, surface):
+        return None
+    node = next(
+        (j for j, start in enumerate(orbit.mesh.starts) if start == (at.interval + 1) % orbit.mesh.ntst), None
+    )
+    return None if node is None or mode_after(surface, orbit.mesh.events[node]) is not None else node
+
+
+def _before_event(
+    system: System, orbit: Orbit, surface: SurfaceLike, node: int, switch: int, side: int, value: float
+) -> Site:
+    """The site of a slip that begins before an event of another surface, at which the force on it jumps back.
+
+    The force grows evenly up to there, the speed as its square, and is stopped by what jumps. Joints that
+    stopped at the event because this one held stop with it then.
+    """
+    event, phase, guard = orbit.mesh.events[node], float(orbit.phases[node]), surface.switch
+    apart_now = parted(system, orbit, event, node, guard)
+    rest = replace(event, modes=tuple(pair for pair in event.modes if pair not in apart_now))
+    stop = EventNode(guard, side, modes=((guard, STUCK), *apart_now))
+    added = Added(EventNode(switch, -side), phase, -1.0), Added(stop, phase, 1.0, 2.0)
+    left = AT_LEVEL * _largest_release(system, orbit, surface)
+    replaced = ((node, rest),) if apart_now else ()
+    return Site(ADDING_ABOUT, switch, node, Limit(node, switch, side, left), value, added, (), replaced)
+
+
+def _before_events(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Iterator[Site]:
+    """The sites of slips that begin before events of other surfaces."""
+    system, orbit, most = dense.system, dense.orbit, largest(dense, switch)
+    sides = dense.expected(switch, dense.side(switch))
+    for node, event in enumerate(orbit.mesh.events):
+        interval = int(orbit.mesh.starts[node]) - 1
+        side = int(sides[interval])
+        if side and mode_after(surface, event) is None and not held_all_along(orbit.mesh, surface):
+            at = Limit(node, switch, side).linearise(system, orbit, ())
+            yield _before_event(system, orbit, surface, node, switch, side, at.value / most)
 
 
 def _grazing(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:

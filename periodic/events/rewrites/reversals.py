@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from periodic.events.modes import group, of_held, returns, sliding, sticks
+from periodic.events.modes import group, of_held, returns, sliding, sticks, surface_of
 from periodic.events.rewrites.sites import apart
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_EXTREMUM, AT_LEVEL
 from periodic.orbit.orbit import Orbit
-from periodic.system import System
+from periodic.system import Kind, System
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,17 @@ def reversals(system: System, orbit: Orbit) -> list[Reversal]:
 
 
 def stuck_until(system: System, orbit: Orbit, node: int) -> int | None:
-    """Return the event node of the release where sticking begins at one."""
+    """Return the event node of the release where sticking of a mass begins at one.
+
+    A slider that sticks is strained: it does not hold the mass.
+    """
     switch = orbit.mesh.events[node].switch
-    return sticks(system, orbit.mesh, switch, node) if switch in of_held(system) else None
+    return sticks(system, orbit.mesh, switch, node) if switch in _holding(system) else None
+
+
+def _holding(system: System) -> list[int]:
+    """The guards of surfaces that hold masses."""
+    return [k for k in of_held(system) if surface_of(system, k).kind != Kind.SLIDER]
 
 
 def _is_stationary(system: System, orbit: Orbit, node: int, switch: int) -> bool:
@@ -65,7 +73,7 @@ def _is_stationary(system: System, orbit: Orbit, node: int, switch: int) -> bool
 
 def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
     """Return where sticking that holds a switch about a phase begins and ends; the phase twice if none."""
-    for jump in of_held(system):
+    for jump in _holding(system):
         for j in group(system, orbit.mesh, jump):
             release = stuck_until(system, orbit, j)
             if release is None:

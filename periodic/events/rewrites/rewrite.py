@@ -20,7 +20,7 @@ from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
 from periodic.events.rewrites.onsets import at_once
-from periodic.events.rewrites.sites import Site, edited, in_order, index_of, ordered
+from periodic.events.rewrites.sites import Site, edited, has, in_order, index_of, ordered
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
 from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed
@@ -86,11 +86,12 @@ class Begins:
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(system, orbit, chosen, size)
-                if inconsistency(system, events):
+                node = chosen[0].begin(orbit, size)
+                if inconsistency(system, events) or not has(events, phases, node, orbit):
                     continue
                 mesh = redistribute(orbit, orbit.mesh.ntst, events, phases, self.shortest)
                 mesh = replace(mesh, modes=still(system, orbit.mesh.modes, events))
-                begin = index_of(events, phases, chosen[0].begin(orbit, size), orbit)
+                begin = index_of(events, phases, node, orbit)
                 held = self._held(system, orbit, begin, size)
                 yield Beyond(mesh, phases, held, touches=False, spare=size in row.spare)
 

@@ -99,6 +99,12 @@ def in_order(both: Iterable[Node], orbit: Orbit) -> list[Node]:
     return sorted(wrapped, key=lambda node: node[1])
 
 
+def has(events: tuple[EventNode, ...], phases: Array, node: Node, orbit: Orbit) -> bool:
+    """Return whether an event node is among others at its own phase: sliders may be released with others."""
+    place = np.mod(node[1], orbit.mesh.period)
+    return any(event == node[0] and phase == place for event, phase in zip(events, phases, strict=True))
+
+
 def index_of(events: tuple[EventNode, ...], phases: Array, node: Node, orbit: Orbit) -> int:
     """Return the index of an event node."""
     place = np.mod(node[1], orbit.mesh.period)

@@ -63,6 +63,14 @@ class Word:
         held = [*held_at(self.system, events, node, self.held), *stopped]
         return holding(self.system, surface.switch, held)
 
+    def freed(self, surface: SurfaceLike, node: int) -> bool:
+        """Whether friction is released at a node that held the strain of a slider before."""
+        events = [event for event, _ in self.nodes]
+        each = ((k.switch, mode_after(k, events[node])) for k in of_kind(self.system, Kind.SLIDING))
+        released = [switch for switch, mode in each if mode not in (None, STUCK)]
+        held = [*held_at(self.system, events, node, self.held), *released]
+        return bool(released and set(holding(self.system, surface.switch, held)) & set(released))
+
 
 @dataclass(frozen=True)
 class Release:
@@ -125,13 +133,16 @@ def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
     for other, _ in word.twins(surface, own.stop):
         if other.kind == Kind.SLIDER and mode_after(other, event) == STUCK:
             for release in _releases(other, word.nodes):
-                if release.stop == own.stop and _one_guard(word, surface, other, own.stop, release.node):
+                with_others = release.stop == own.stop and not word.freed(surface, release.node)
+                if with_others and _one_guard(word, surface, other, own.stop, release.node):
                     return release.node
     return None
 
 
 def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end: int) -> bool:
-    """Whether two surfaces are twins from one node to another."""
+    """Whether two surfaces are twins from one node to another; held friction may keep both guards at 0."""
+    if other.switch in twins(word.system, one.switch):
+        return True
     count = (end - begin) % len(word.nodes)
     between = ((begin + m) % len(word.nodes) for m in range(count + 1))
     return all(other in (k for k, _ in word.twins(one, node)) for node in between)

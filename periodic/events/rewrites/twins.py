@@ -5,16 +5,18 @@ Which of them are released together is decided by `together`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from periodic.events.modes import column, sides, sticks, surface_of
 from periodic.events.rewrites.sites import Added, Site, apart
-from periodic.events.rewrites.table import GRAZING_SLIDING
+from periodic.events.rewrites.table import GRAZING_SLIDING, LIMIT_GRAZING
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
-from periodic.events.twinguards import held_in, twins
+from periodic.events.twinguards import held_at, held_in, twins
+from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import STUCK, Kind, SurfaceLike, System
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
@@ -39,6 +41,54 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))
     release = replace(site.added[0], phase=float(orbit.phases[turn]))
     return replace(site, added=(release,), replaced=((turn, joined),))
+
+
+def parted(
+    system: System, orbit: Orbit, event: EventNode, node: int, guard: int
+) -> tuple[tuple[int, int], ...]:
+    """Return the modes that change at an event node only because friction at a guard holds there."""
+    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    held = held_at(system, orbit.mesh.events, node, always)
+    own = surface_of(system, event.switch).switch
+    alone = twins(system, own, [k for k in held if k != guard])
+    both = twins(system, own, held)
+    return tuple(pair for pair in event.modes if pair[0] in both and pair[0] not in alone)
+
+
+def slipping_together(system: System, orbit: Orbit, sites: Sequence[Site]) -> list[Site]:
+    """Return sites with those as one at which sliders of one guard reach their limits at one phase.
+
+    They were held from one turn of the strain on, so that all of them slip where it comes back to that.
+    """
+    found = list[Site]()
+    for site in sites:
+        each = (k for k, other in enumerate(found) if _one_slip(system, orbit, other, site))
+        k = next(each, None)
+        if k is None:
+            found.append(site)
+        else:
+            found[k] = _both(found[k], site)
+    return found
+
+
+def _one_slip(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
+    if not (one.row is other.row is LIMIT_GRAZING) or len(one.added) != 2 or len(other.added) != 2:
+        return False
+    assert isinstance(one.at, Extremum)
+    assert isinstance(other.at, Extremum)
+    guards = [surface_of(system, site.switch).switch for site in (one, other)]
+    alike = guards[1] in twins(system, guards[0], held_in(system, orbit, one.at.interval))
+    return alike and apart(one.at.phase, other.at.phase, orbit) < BESIDE_EXTREMUM
+
+
+def _both(one: Site, other: Site) -> Site:
+    """The site at which the sliders of two slip and are held again at the same event nodes."""
+    release, stop = one.added
+    slips, held = (added.event for added in other.added)
+    onward = (*release.event.modes, (held.switch, slips.direction), *slips.modes)
+    first = replace(release, event=replace(release.event, modes=onward))
+    last = replace(stop, event=replace(stop.event, modes=(*stop.event.modes, *held.modes)))
+    return replace(one, added=(first, last))
 
 
 def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> int | None:

@@ -9,7 +9,7 @@ import numpy as np
 from periodic.correction.change import Beyond, Change, Held
 from periodic.correction.condition import SideCondition
 from periodic.correction.identity import distance
-from periodic.correction.predictor import tangent
+from periodic.correction.predictor import spaced, tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.linear.unknowns import size_of
@@ -58,7 +58,9 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
     """Return the orbit at a change of pattern within a step, if one is found; `near` is a guess of it."""
     method, system = solver.discretisation, solver.problem.system
     for _ in range(CHANGES_IN_A_STEP):
-        guess = near if near is not None else tangent(solver.problem, base, change.part * ds)
+        guess = (
+            near if near is not None else spaced(base.orbit, tangent(solver.problem, base, change.part * ds))
+        )
         found = _held(solver, guess, Held(base.orbit, change.condition, base.tangent), CHANGE_ITERATIONS)
         if not found.ok and change.otherwise is not None:
             change, near = change.otherwise, None
@@ -66,7 +68,7 @@ def reached(solver: Solver, base: Solution, near: Orbit | None, ds: float, chang
         if not found.ok:
             return None
         along = progress(solver, base, found.orbit)
-        if not 0 < along <= FARTHEST_AHEAD * ds:
+        if not (0.0 if change.strict else CONVERGED * ds) < along <= FARTHEST_AHEAD * ds:
             return None
         if _comes_back(found, change, along <= CONVERGED * ds):
             return None

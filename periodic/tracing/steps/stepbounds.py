@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.bifurcations.twoparameter import codim2
-from periodic.correction.predictor import difference
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.orbit import LEAST_SPAN
@@ -17,6 +16,7 @@ from periodic.stability.multipliers import Stability
 from periodic.stability.winding import Motion, rotated
 from periodic.system import jumps_of, resets_of
 from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.steps.wayacross import way_and_tangent
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,17 @@ class BoundRatio:
 def bound_ratios(
     base: Solution, new: Solution, ds: float, control: ArclengthControl, tolerance: float
 ) -> Iterator[BoundRatio]:
-    """Yield the ratio of a step, between two solutions on one mesh, to each bound, the cheapest first."""
+    """Yield the ratio of a step to each bound, the cheapest first.
+
+    Its ends are on one mesh, or have the same event nodes in another order.
+    """
     metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
-    onward = new.tangent.scaled(1 / np.sqrt(new.tangent.dot(new.tangent, *metric)))
+    way, onward = way_and_tangent(base, new)
+    onward = onward.scaled(1 / np.sqrt(onward.dot(onward, *metric)))
     angle = _angle(base.tangent.dot(onward, *metric), control.turn)
     yield BoundRatio(angle, angle, "the branch turns too sharply for the step")
     noise = control.noise * tolerance * base.orbit.span() / size_of(base.orbit)
-    bend = float(np.sqrt(max(_bend(base, new, onward, ds) - noise, 0.0) / (control.bend * ds)))
+    bend = float(np.sqrt(max(_bend(base, new, way, onward, ds) - noise, 0.0) / (control.bend * ds)))
     yield BoundRatio(bend, bend, "the step does not follow its tangents")
     if new.discretisation.stability is Stability.MULTIPLIERS:
         rotation = rotated(_motion(base, ds), _motion(new, ds), control.winding)
@@ -59,11 +63,10 @@ def _angle(cosine: float, least: float) -> float:
     return math.acos(min(max(cosine, -1.0), 1.0)) / math.acos(least)
 
 
-def _bend(base: Solution, new: Solution, onward: Increment, ds: float) -> float:
+def _bend(base: Solution, new: Solution, way: Increment, onward: Increment, ds: float) -> float:
     """Distance of the step's end from its begin + ds times the mean of the tangents at both."""
     problem = base.problem
     mean = (base.tangent + onward).scaled(-ds / 2)
-    way = difference(problem, base.orbit, new.orbit)
     bend = Increment.of(
         base.orbit,
         way.nodes + mean.nodes,

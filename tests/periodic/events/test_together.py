@@ -101,3 +101,27 @@ def test_friction_takes_a_slider_along(direction: int) -> None:
     else:
         assert (EventNode(up, 1, modes=((z, 1),)), 1.5) in found
         assert len(found) == len(word) - 1
+
+
+def test_sliders_follow_friction_together_after_a_broken_stop() -> None:
+    """Assert that two sliders whose strain turned before friction stopped are let go at one node after it."""
+    system = beside("friction", "sliders")
+    ((friction, up, down),) = guards(system, Kind.SLIDING)
+    (a, up_a, _), (b, up_b, _) = guards(system, Kind.SLIDER)
+    both, held = ((a, STUCK), (b, STUCK)), (friction, STUCK)
+    word = [
+        (EventNode(friction, -1, modes=both), 1.0),
+        (EventNode(friction, 1, modes=(held,)), 1.01),
+        (EventNode(up, 1, modes=((a, 1), (b, 1))), 1.5),
+        (EventNode(friction, -1, modes=(held, *both)), 3.0),
+        (EventNode(down, -1, modes=((a, -1), (b, -1))), 3.5),
+        (EventNode(friction, 1, modes=(held, *both)), 4.5),
+        (EventNode(up, 1, modes=((a, 1), (b, 1))), 5.0),
+    ]
+    found = together(system, word, 0.01)
+    later = [(event, phase) for event, phase in found if 1.5 <= phase < 3]
+    assert [event.switch for event, _ in later] in ([up, up_a], [up, up_b])
+    assert later[0][0].modes == ()
+    assert dict(later[1][0].modes) in ({b: 1}, {a: 1})
+    assert later[1][1] == pytest.approx(1.5 + 0.01 ** (2 / 3))
+    assert together(system, found, 0.01) == found

@@ -6,6 +6,7 @@ Models are those of the survey from somewhere in their ranges, the judge is `tes
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from howto.test_joint import Belt
 from survey.rows import TOL, drawn, verdicts
 
@@ -59,3 +60,52 @@ def test_a_slider_slips_while_its_mass_is_held_on_a_belt() -> None:
     assert np.abs(force).max() < 0.05 + 1e-8
     with_belt = np.abs(motion["x'"] - 0.2) < 1e-9
     assert (force[with_belt] > 0.05 - 1e-8).sum() > 20
+
+
+def test_sliders_held_at_one_turn_reach_their_limits_as_one() -> None:
+    """Assert a branch past where three sliders between masses slip where the strain is back at its turn.
+
+    Before, the search for the way on raised StopIteration.
+    """
+    case = drawn("joints down", 156)
+    branch = per.trace(case.system, "Omega", (0.64, 0.655), start=0.655, tol=TOL)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert len(branch.labelled(per.Label.GRAZING)) == 3
+    found = verdicts(case, branch, 156, 4)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 4)
+
+
+def test_a_stop_is_grazed_where_a_slider_turns() -> None:
+    """Assert that a mass that meets a stop as its slider's strain turns takes the same branch both ways.
+
+    The slider is strained then, and does not hold the mass. Before, the period doubling beside the grazing
+    was put at .85511 from below.
+    """
+    x = sym.coordinate("x", unit="m")
+    model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.Damper(x, 0.06) + sym.HarmonicForce(x, 1.0)
+    system = sym.compile(model + sym.Jenkins(x, 0.5, 0.3) + sym.OneSidedSpring(x, 20.0, 2.5))
+    up, down = (per.trace(system, "Omega", (0.5, 1.6), start=start, tol=TOL) for start in (0.5, 1.6))
+    assert up.stop.reason is down.stop.reason is per.Reason.BOUND
+    for label, count in ((per.Label.GRAZING, 2), (per.Label.DOUBLING, 2), (per.Label.FOLD, 2)):
+        there, back = (sorted(p.parameter for p in branch.labelled(label)) for branch in (up, down))
+        assert len(there) == count
+        assert there == pytest.approx(back, abs=1e-5)
+    grazing = min(up.labelled(per.Label.GRAZING), key=lambda p: p.parameter)
+    times = np.linspace(0, grazing.orbit.period, 20001)
+    assert grazing.orbit["x"](times).max() == pytest.approx(2.5, abs=1e-6)
+
+
+def test_a_slip_begins_before_a_stop_at_which_its_force_jumps() -> None:
+    """Assert that friction that holds is let go just before another stop, and held again just after it.
+
+    The force on it is largest there and jumps, so that nothing is grazed smoothly. Before, the steps shrank
+    to nothing, and the motion had to be read: 609 iterations for 124.
+    """
+    case = drawn("joints", 148)
+    branch = per.trace(case.system, "Omega", (0.4192, 0.4225), start=0.4192, tol=TOL)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert branch.newton_iterations < 200
+    counts = [len(point.orbit.phases) for point in branch]
+    assert (counts[0], counts[-1]) == (46, 48)
+    found = verdicts(case, branch, 148, 2)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 2)
