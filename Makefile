@@ -35,7 +35,8 @@ test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST)
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
-	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) --ignore tests/periodic/collocation/test_kernels.py
+	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) --ignore tests/periodic/collocation/test_kernels.py \
+	  --deselect tests/periodic/condensed/test_friction.py::test_settled
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long

@@ -91,6 +91,7 @@ def test_two_joints() -> None:
     assert any(event.modes for event in branch[0].orbit.mesh.events)
 
 
+@pytest.mark.long
 def test_slider_and_joint() -> None:
     """Assert a branch of an elastic slider without creep, and of a joint that stops as well."""
     joined = Beam(

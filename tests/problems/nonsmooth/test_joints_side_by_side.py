@@ -95,6 +95,7 @@ def test_a_stop_is_grazed_where_a_slider_turns() -> None:
     assert grazing.orbit["x"](times).max() == pytest.approx(2.5, abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_slip_begins_before_a_stop_at_which_its_force_jumps() -> None:
     """Assert that friction that holds is let go just before another stop, and held again just after it.
 

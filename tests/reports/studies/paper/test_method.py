@@ -126,6 +126,7 @@ def test_band_of_the_paper_step() -> None:
     assert band.swing[6] * 1e6 == pytest.approx(3.865414, rel=3e-3)
 
 
+@pytest.mark.long
 def test_band_does_not_close_with_the_step() -> None:
     """Assert that a fifth of the step fails at the same speeds but the lowest."""
     band = stepped_at(Form.THIRD_ORDER, 2e-5)
