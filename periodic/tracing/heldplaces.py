@@ -29,7 +29,7 @@ DIFFERENCE = 1e-3
 MOST_MOVES = 3
 """How often the places are moved."""
 
-MOST_HALVINGS = 4
+MOST_HALVINGS = 8
 """How often a move is halved beyond which other events of the orbit change."""
 
 
