@@ -37,7 +37,7 @@ Measure = Callable[[System, Orbit, list[SurfaceLike]], Array]
 """A number for each joint that is held all along, as it is pulled in an orbit."""
 
 Solve = Callable[[Solver, Orbit, float], Solution]
-"""Returns the orbit near a guess at its parameters, with the sign of the parameter's rate along the branch."""
+"""Returns the orbit near a guess, given the sign with which the parameter changes along the branch."""
 
 
 def unplaced(system: System, orbit: Orbit, guess: Mesh) -> list[SurfaceLike]:
@@ -73,10 +73,10 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
 
 
 def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve) -> Solution:
-    """Return an orbit with the joints that just reach a limit moved away from it: midway, or as far as can be.
+    """Return an orbit with the joints that just reach a limit moved away from it: midway, or less far.
 
-    It is the orbit given where no joint is at a limit, or no such orbit is found. solve: how orbits with other
-    events are solved for.
+    It is the orbit given where no joint is at a limit, or no such orbit is found. solve: finds orbits that
+    may have other events.
     """
     system, loose = solver.problem.system, at_limit(solver.problem.system, found.orbit)
     moved = amid(solver, found, loose, sign)
@@ -84,7 +84,9 @@ def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve) -> So
         return moved
     room, most = _room(system, found.orbit, loose), _room(system, found.orbit, loose, max)
     slopes = _slopes(solver, found, loose, _room, sign)
-    for halvings in range(1, MOST_HALVINGS + 1) if slopes is not None else ():
+    if slopes is None:
+        return found
+    for halvings in range(1, MOST_HALVINGS + 1):
         step = _solved(slopes, most / 2**halvings - room)
         moved = _moved(solver, found, loose, step, sign, solve)
         if _valid(moved) and not at_limit(system, moved.orbit):
