@@ -17,7 +17,7 @@ KERNEL_ROOMS := collocation condensed correction linear
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
-SEED ?= 2028
+SEED ?= 2029
 SINCE ?=
 
 .DEFAULT_GOAL := help

@@ -172,8 +172,9 @@ def orbit_of(
 ) -> Orbit | None:
     """Return the motion of one period from a state as a guess of an orbit.
 
-    None for a system without relays, surfaces that hold, and walls to rest on. begin: the phase of the state;
-    before: the modes of all surfaces before it, which relays and friction that sticks keep.
+    None for a system without relays, surfaces that hold, and walls to rest on, and where the modes at the end
+    do not lead to those at the beginning, so that two events are put at one phase. begin: the phase of the
+    state; before: the modes of all surfaces before it, which relays and friction that sticks keep.
 
     Raises what the integration raises.
     """
@@ -188,6 +189,8 @@ def orbit_of(
     nodes = word_of(system, whole.events, _always(system, whole))
     changed = {k for event, _ in nodes for k in (event.switch, *(k for k, _ in event.modes))}
     mesh, phases = _mesh(system, nodes)
+    if len(np.unique(phases)) < len(phases):
+        return None
     modes, parameter = list[tuple[int, int]](), parameter.copy()
     for index, surface in enumerate(surfaces_of(system)):
         if surface not in followed or changed & {surface.switch, *(surface.releases or ())}:

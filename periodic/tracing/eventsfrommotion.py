@@ -23,7 +23,7 @@ from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
 from periodic.system import System
-from periodic.tracing.heldplaces import amid, at_limit
+from periodic.tracing.heldplaces import off_limits
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
 
@@ -66,7 +66,7 @@ def reread(solver: Solver, base: Solution, first: float, other: bool = False) ->
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
-    if (moved := amid(solver, base, at_limit(solver.problem.system, base.orbit), sign)) is not base:
+    if (moved := off_limits(solver, base, sign, worded)) is not base:
         return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
     search, near = _Search(solver, base, sign, other), _distances(solver.problem.system, base)
     each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)

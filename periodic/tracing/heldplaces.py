@@ -7,6 +7,7 @@ Where the bounds move along a branch one of them is reached first: the joint is 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +28,16 @@ DIFFERENCE = 1e-3
 
 MOST_MOVES = 3
 """How often the places are moved."""
+
+MOST_HALVINGS = 8
+"""How often a move is halved beyond which other events of the orbit change."""
+
+
+Measure = Callable[[System, Orbit, list[SurfaceLike]], Array]
+"""A number for each joint that is held all along, as it is pulled in an orbit."""
+
+Solve = Callable[[Solver, Orbit, float], Solution]
+"""Returns the orbit near a guess, given the sign with which the parameter changes along the branch."""
 
 
 def unplaced(system: System, orbit: Orbit, guess: Mesh) -> list[SurfaceLike]:
@@ -51,14 +62,35 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
         off = _off_centre(system, found.orbit, loose)
         if np.abs(off).max() <= tolerance:
             break
-        slopes = _slopes(solver, found, loose, off, sign)
+        slopes = _slopes(solver, found, loose, _off_centre, sign)
         if slopes is None:
             break
-        step: Array = np.asarray(np.linalg.lstsq(slopes, -off, rcond=DIFFERENCE)[0], dtype=float)
-        moved = _moved(solver, found, loose, step, sign)
+        moved = _moved(solver, found, loose, _solved(slopes, -off), sign)
         if not _better(moved, system, loose, off):
             break
         found = moved
+    return found
+
+
+def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve) -> Solution:
+    """Return an orbit with the joints that just reach a limit moved away from it: midway, or less far.
+
+    It is the orbit given where no joint is at a limit, or no such orbit is found. solve: finds orbits that
+    may have other events.
+    """
+    system, loose = solver.problem.system, at_limit(solver.problem.system, found.orbit)
+    moved = amid(solver, found, loose, sign)
+    if moved is not found or not loose:
+        return moved
+    room, most = _room(system, found.orbit, loose), _room(system, found.orbit, loose, max)
+    slopes = _slopes(solver, found, loose, _room, sign)
+    if slopes is None:
+        return found
+    for halvings in range(1, MOST_HALVINGS + 1):
+        step = _solved(slopes, most / 2**halvings - room)
+        moved = _moved(solver, found, loose, step, sign, solve)
+        if _valid(moved) and not at_limit(system, moved.orbit):
+            return moved
     return found
 
 
@@ -103,32 +135,57 @@ def _off_centre(system: System, orbit: Orbit, held: list[SurfaceLike]) -> Array:
     return np.array([pull.off_centre for pull in _pulls(system, orbit, held)])
 
 
+def _room(system: System, orbit: Orbit, held: list[SurfaceLike], which: Callable[..., float] = min) -> Array:
+    """How far each is pulled short of the nearer of its limits, as a part of the way between both."""
+    return np.array([which(-pull.up, pull.down) for pull in _pulls(system, orbit, held)])
+
+
 def _slopes(
-    solver: Solver, found: Solution, held: list[SurfaceLike], off: Array, sign: float
+    solver: Solver, found: Solution, held: list[SurfaceLike], measure: Measure, sign: float
 ) -> Array | None:
-    """The derivatives of `_off_centre` in the places, by differences; None where an orbit is not found."""
-    step = DIFFERENCE * float(np.max(found.orbit.span()))
-    columns = list[Array]()
+    """The derivatives of a measure in the places, by differences; None where an orbit is not found."""
+    step, system = DIFFERENCE * float(np.max(found.orbit.span())), solver.problem.system
+    columns, here = list[Array](), measure(system, found.orbit, held)
     for k in range(len(held)):
         beside = _moved(solver, found, held, step * np.eye(len(held))[k], sign)
         if not beside.ok:
             return None
-        columns.append((_off_centre(solver.problem.system, beside.orbit, held) - off) / step)
+        columns.append((measure(system, beside.orbit, held) - here) / step)
     return np.array(columns).T
 
 
-def _moved(solver: Solver, found: Solution, held: list[SurfaceLike], step: Array, sign: float) -> Solution:
+def _solved(slopes: Array, wanted: Array) -> Array:
+    """The least step of the places by which a measure changes as wanted."""
+    return np.asarray(np.linalg.lstsq(slopes, wanted, rcond=DIFFERENCE)[0], dtype=float)
+
+
+def _fixed(solver: Solver, guess: Orbit, sign: float) -> Solution:
+    return refined(solver, solver.at_parameter(guess, sign), fixed=True)
+
+
+def _moved(
+    solver: Solver,
+    found: Solution,
+    held: list[SurfaceLike],
+    step: Array,
+    sign: float,
+    solve: Solve = _fixed,
+) -> Solution:
     """The orbit with the places moved."""
     parameter = found.orbit.parameter.copy()
     for surface, way in zip(held, step, strict=True):
         assert surface.place is not None
         parameter[surface.place[0]] += way
-    near = solver.at_parameter(replace(found.orbit, parameter=parameter), sign)
-    return refined(solver, near, fixed=True)
+    return solve(solver, replace(found.orbit, parameter=parameter), sign)
 
 
 def _better(moved: Solution, system: System, held: list[SurfaceLike], off: Array) -> bool:
     """Whether an orbit was found, and has its joints nearer to the middle."""
-    if not moved.ok or not np.isfinite(moved.error.motion):
+    if not _valid(moved):
         return False
     return bool(np.abs(_off_centre(system, moved.orbit, held)).max() < np.abs(off).max())
+
+
+def _valid(moved: Solution) -> bool:
+    """Whether an orbit was found that does not violate its word."""
+    return moved.ok and bool(np.isfinite(moved.error.motion))

@@ -88,3 +88,15 @@ def test_structure_is_a_line() -> None:
         (line,) = sym.compile(model, condense=condense).sketch
         assert line["kind"] == "line" and line["structure"] == "structure"
         assert [k for _, k in line["nodes"]] == [0, 2, 4]  # type: ignore[attr-defined]
+
+
+def test_discs_in_contact_move_with_their_own_coordinates() -> None:
+    """Assert two discs that touch at rest, the upper one moved up by one coordinate, the lower one down."""
+    upper, lower = sym.coordinate("upper"), sym.coordinate("lower")
+    pair = sym.ContactPair(upper, lower)
+    model = sym.Mass(upper, 1.0) + sym.Mass(lower, 1.0) + sym.Preload(pair, 10.0) + sym.Hertz(pair, 1e9)
+    model = model + sym.HarmonicForce(upper, 0.1)
+    below, above = (shape for shape in sym.compile(model).sketch if shape["kind"] == "disc")
+    assert below["y"]["fixed"] == -above["y"]["fixed"] < 0  # type: ignore[index]
+    assert below["size"]["fixed"] == above["size"]["fixed"] == above["y"]["fixed"]  # type: ignore[index]
+    assert below["y"]["moved"] == [["lower", -1.0]] and above["y"]["moved"] == [["upper", 1.0]]  # type: ignore[index]

@@ -13,7 +13,7 @@ from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING, LIMIT_GRAZING
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
-from periodic.events.twinguards import held_at, held_in, twins
+from periodic.events.twinguards import held_at, held_in, holding, twins
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System
@@ -26,16 +26,15 @@ def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
     for a while, all sliders that slip are held together, and released together.
     """
     assert isinstance(site.at, Extremum)
-    guard = surface_of(system, site.switch).switch
-    alike = twins(system, guard, held_in(system, orbit, site.at.interval))
+    guard, held = surface_of(system, site.switch).switch, held_in(system, orbit, site.at.interval)
+    stopping = holding(system, guard, held)  # the strain is greatest from where friction stops the motion
+    alike = twins(system, guard, [k for k in held if k not in stopping])
     both = {k: sign for k, sign in alike.items() if k != guard}
-    if not both:
-        return site
     if site.row is GRAZING_SLIDING:
-        return _grazing(system, orbit, site, guard, both)
+        return _grazing(system, orbit, site, guard, both) if both else site
     if surface_of(system, guard).kind != Kind.SLIDER:
         return site
-    turn = _turn(system, orbit, site.at, both)
+    turn = _turn(system, orbit, site.at, both | stopping)
     if turn is None:
         return site
     joined = replace(orbit.mesh.events[turn], modes=(*orbit.mesh.events[turn].modes, (guard, STUCK)))

@@ -11,7 +11,7 @@ import pytest
 
 from periodic.bifurcations import location, testfunction
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.withinstep import RejectedError, WithinStep, _through, second_change
+from periodic.bifurcations.withinstep import RejectedError, WithinStep, _lowest, _through, second_change
 
 
 class Line:
@@ -69,3 +69,11 @@ def test_parabola_through_three_points() -> None:
     """Assert the values at points that are not evenly spaced, to rounding."""
     at, values = [0.5, 1.0, 2.5], [3.0, -1.0, 0.25]
     assert _through(at, values)(np.array(at)) == pytest.approx(values, rel=1e-14)
+
+
+def test_least_value_at_an_end_is_refined_towards_its_neighbour() -> None:
+    """Assert the next trial midway between the least value and its neighbour, where it lies at an end."""
+    falling = {place: 1.0 - place for place in (0.0, 0.1, 0.2, 0.6, 1.0)}
+    assert _lowest(falling) == (pytest.approx(0.8), pytest.approx(0.2))
+    rising = {place: 1.0 + place for place in (0.0, 0.1, 0.2, 0.6, 1.0)}
+    assert _lowest(rising) == (pytest.approx(0.05), pytest.approx(1.05))

@@ -26,7 +26,8 @@ from support.traces import (
 )
 
 import periodic as per
-from periodic.harmonic.series import FourierOrbit
+import symbolic as sym
+from periodic.harmonic.series import FourierOrbit, tail
 
 HB = per.HarmonicBalance
 DISC = "vitrea79-810N"
@@ -335,3 +336,16 @@ def test_refused_settings(settings: dict[str, float], sentence: str) -> None:
     """Assert that settings that make no sense are refused in one sentence."""
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
         HB(**settings)  # type: ignore[arg-type]
+
+
+def test_tail_of_a_spectrum() -> None:
+    """Assert the peak to peak of the last quarter of the harmonics over that of the orbit, to rounding."""
+    x = sym.coordinate("x")
+    spring = sym.Mass(x, 1.0) + sym.Damper(x, 0.1) + sym.Spring(x, 1.0) + sym.CubicSpring(x, 1.0)
+    system = sym.compile(spring + sym.HarmonicForce(x, 1.0))
+    orbit = per.trace(system, "Omega", (0.3, 0.32), method=HB(harmonics=8), tol=1e-3)[0].orbit
+    assert isinstance(orbit, FourierOrbit)
+    last = np.arange(orbit.harmonics - orbit.harmonics // 4, orbit.harmonics) + 1
+    sampled = np.fft.rfft(orbit.state(2 * np.pi * np.arange(256) / 256), axis=0) / 128
+    wanted = 2 * np.abs(sampled[last]).max() / float(orbit.span())
+    assert tail(orbit, 0.0) == pytest.approx(wanted, rel=1e-9)

@@ -13,6 +13,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 import symbolic as sym
+from periodic.maps.numbers.extremes import _inside
 
 ZETA = 0.05
 SWING = per.PeakToPeak("x")
@@ -175,3 +176,10 @@ def test_refusals(make: Any, said: str) -> None:
     """Assert the sentence for what cannot be read, before anything is traced."""
     with pytest.raises(ValueError, match="^" + re.escape(said)):
         make()
+
+
+def test_extreme_value_beside_a_point_that_does_not_count() -> None:
+    """Assert that a stationary value is looked for only between points that count on both sides."""
+    values = np.array([1.0, 2.0, 3.0, 2.5, -np.inf, 2.0])
+    assert _inside(values, 2)
+    assert not _inside(values, 3) and not _inside(values, 0) and not _inside(values, 5)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
 from support.traces import duffing_system
 
 import periodic as per
+from periodic.results.stop import Stop
 
 
 def test_both_ends_are_told() -> None:
@@ -21,3 +23,13 @@ def test_both_ends_are_told() -> None:
     assert [stop.reason for stop in closed.stops] == [per.Reason.MAX_POINTS, per.Reason.BOUND]
     assert closed.ending.endswith("the other way largest number of points reached: 4 points")
     assert closed.ending in repr(closed)
+
+
+@pytest.mark.parametrize(
+    ("value", "told"), [(0.5, "lower end of the range"), (3.0, "upper end of the range")]
+)
+def test_end_of_the_range(value: float, told: str) -> None:
+    """Assert which end of the range is told, and that a branch is where it began if it is."""
+    assert Stop.bound((0.5, 3.0), value, 1.0) == Stop(per.Reason.BOUND, told)
+    back = Stop.bound((0.5, 3.0), value, value)
+    assert back.detail == f"{told}, where it began: it turned back"

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import sqlite3
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -131,3 +133,17 @@ def test_a_journal_has_both_directions(tmp_path: Path) -> None:
     branch = per.trace(system, "Omega", (0.3, 0.4), start=0.35, watch=per.Watch(journal=path))
     values = per.recovered(path).values
     assert values.tolist() == branch.values.tolist() and (np.diff(values) > 0).all()
+
+
+def test_signal_without_a_handler_ends_the_program_after_the_block() -> None:
+    """Assert that what a signal does by default is done, once the block is finished."""
+    program = (
+        "import os, signal\n"
+        "from periodic.results.signals import deferred\n"
+        "with deferred():\n"
+        "    os.kill(os.getpid(), signal.SIGTERM)\n"
+        "    print('finished', flush=True)\n"
+        "print('goes on')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout) == (-signal.SIGTERM, "finished\n")

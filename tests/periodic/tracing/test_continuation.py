@@ -336,3 +336,13 @@ def test_meshes_that_are_far_too_fine_are_given_up(asked: dict[str, float], kept
     branch = per.trace(SYSTEM, "Omega", (2.4, 1.3), method=per.Collocation(ntst=200), tol=1e-5, control=few)
     first, last = branch[0].orbit.mesh.ntst, branch[5].orbit.mesh.ntst
     assert first == 200 and (last == first if kept else last <= 32)
+
+
+def test_continuation_goes_up_from_within_the_range() -> None:
+    """Assert the direction that is taken where both are possible and none is given."""
+    problem = per.Problem(SYSTEM, "Omega", RANGE)
+    inside = RANGE[0] + 0.1 * (RANGE[1] - RANGE[0])
+    for sign, ahead in ((None, True), (1, True), (-1, False)):
+        run = per.continuation(problem, start=inside, sign=sign)
+        first, second = next(run), next(run)
+        assert (second.parameter > first.parameter) is ahead

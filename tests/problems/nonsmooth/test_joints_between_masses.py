@@ -89,3 +89,13 @@ def test_a_joint_is_held_elsewhere_where_one_limit_is_reached_first() -> None:
     assert branch.stop.reason is per.Reason.BOUND
     found = verdicts(case, branch, 105, 6)
     assert (found.wrong, found.unjudged, found.judged) == ([], [], 6)
+
+
+def test_a_held_joint_reaches_its_limit_where_friction_stops_the_motion() -> None:
+    """Assert that a branch goes on with the joint off its limit, where events keep it from the middle."""
+    case = drawn("joints", 166)
+    bounds = (0.78, 0.88)
+    branch = per.trace(case.system, "Omega", bounds, start=bounds[0], tol=1e-6)
+    assert branch.stop.reason is per.Reason.BOUND
+    found = verdicts(case, branch, 166, 6)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 6)

@@ -124,3 +124,5 @@ def test_sum_of_parts() -> None:
     assert sum(parts) == parts[0] + parts[1] == sum([sym.Model(tuple(parts))])
     with pytest.raises(TypeError):
         1 + parts[0]  # type: ignore[operator]
+    with pytest.raises(TypeError):
+        -1 + sym.Model(tuple(parts))  # type: ignore[operator]

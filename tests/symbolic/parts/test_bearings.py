@@ -90,3 +90,11 @@ def test_film_in_series(approach: float) -> None:
     delta, film = parts(exact)
     assert np.log(found) == pytest.approx(exact, abs=1e-11)
     assert slope * (delta / 1.5 + film / 13.7) == pytest.approx(found, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("surface", "spin", "order"), [("outer", None, "31/10"), ("inner", None, 5), ("ball", "5/2", 12.5)]
+)
+def test_order_of_waves(surface: Any, spin: Any, order: Any) -> None:
+    """Assert the order of the shaft's angle in which the height that an element meets repeats."""
+    assert sym.RaceWave(surface, 5, 1e-6).order("31/10", spin) == order

@@ -456,3 +456,21 @@ def test_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     finally:
         monkeypatch.undo()
         catalogue.cache_clear()
+
+
+@pytest.mark.parametrize("count", [0, 1001])
+def test_count_of_a_vector(count: int, tmp_path: Path) -> None:
+    """Assert the sentence on a number of coordinates that is not allowed."""
+    text = HEAD + f'[[coordinate]]\nname = "x"\ncount = {count}\n[[part]]\nkind = "Mass"\nq = "x1"\nm = 1\n'
+    with pytest.raises(InputError, match=f"count is {count}; it must be a whole number from 1 to 1000"):
+        build(scene(tmp_path, text + RANGE))
+
+
+def test_what_an_inline_table_may_be() -> None:
+    """Assert that the only kind is told by its keys, several kinds by their names."""
+    inline = [
+        key.reader for entry in catalogue().values() for key in entry.keys if hasattr(key.reader, "entries")
+    ]
+    several, one = (next(r for r in inline if (len(r.entries) == 1) is only) for only in (False, True))
+    assert several.allowed.startswith("a table of the kind ") and several.entries[-1].name in several.allowed
+    assert one.allowed.startswith("a table with ") and one.entries[0].keys[0].name in one.allowed
