@@ -384,9 +384,12 @@ class Continuation:
         """
         assert self.state is not None
         found = crossed(self.solver, at)
+        labels = [] if found is None else at_once(at.end, found.solution)
+        if labels and found is not None and not (found.touches or at.change.touches or at.change.final):
+            found = None  # nearer to the change it shows whether they lie at it, or before or after it
         if found is not None:
             at_grazing = found.solution if found.touches else at.end
-            named = [Found(label, 0.0, at_grazing) for label in at_once(at.end, found.solution)]
+            named = [Found(label, 0.0, at_grazing) for label in labels]
             for special in [] if found.touches else named:
                 yield from self._met(special)
             self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)

@@ -23,9 +23,8 @@ and none of accuracy. {judged} points of each, drawn at random, are judged: orbi
 event-exact solution in closed form or by Taylor's series, that shares nothing with the packages
 (`tests/reference/contact.py` with `closer.py` in extended precision, `tests/reference/joints`). A point is
 wrong where an error is more than ten times what the point claims and more than 1e-5, or where its stability
-is not so. `make survey` runs
-them, in some
-20 minutes on two cores.
+is not so. `make survey` runs them: those with several joints in hours, the others in some 20 minutes on two
+cores.
 
 Engine at commit `{commit}`.
 """

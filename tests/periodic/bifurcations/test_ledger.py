@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.drawn.contact import drawn
 from support.equations import growing
 
 import periodic as per
@@ -278,3 +279,20 @@ def test_unknown_multipliers_say_nothing() -> None:
     assert gaps([replace(some[0]), replace(some[1], noise=np.inf), some[2]]) == []
     own = per.Label.register("Q8")
     assert gaps([some[0], replace(some[1], label=own, value=0.5), some[1]]) == []
+
+
+@pytest.mark.long
+def test_torus_beside_events_that_change_places() -> None:
+    """Assert that each torus bifurcation is where a pair of multipliers is on the circle, and none is missed.
+
+    Behind two events that change places the branch goes on at some distance, and a pair may pass in between.
+    """
+    case = drawn("chains", 150)
+    control = per.ArclengthControl(max_points=400, max_newton=4000)
+    branch = per.trace(case.system, "Omega", case.bounds, start=case.start, tol=1e-6, control=control)
+    assert branch.unaccounted == ()
+    points = branch.labelled(per.Label.TORUS)
+    assert len(points) >= 2
+    for point in points:
+        beside = np.sort(np.abs(np.abs(point.multipliers[point.multipliers.imag != 0]) - 1))
+        assert beside[1] < 1e-9
