@@ -283,7 +283,7 @@ def test_unknown_multipliers_say_nothing() -> None:
 
 @pytest.mark.long
 def test_torus_beside_events_that_change_places() -> None:
-    """Assert that each torus bifurcation is where a pair of multipliers is on the circle, and none is missed.
+    """Assert a pair of multipliers on the circle at each torus bifurcation off grazings, and none missed.
 
     Behind two events that change places the branch goes on at some distance, and a pair may pass in between.
     """
@@ -291,8 +291,9 @@ def test_torus_beside_events_that_change_places() -> None:
     control = per.ArclengthControl(max_points=400, max_newton=4000)
     branch = per.trace(case.system, "Omega", case.bounds, start=case.start, tol=1e-6, control=control)
     assert branch.unaccounted == ()
-    points = branch.labelled(per.Label.TORUS)
-    assert len(points) >= 2
+    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}  # there multipliers jump
+    points = [p for p in branch.labelled(per.Label.TORUS) if p.parameter not in touched]
+    assert len(points) >= 30
     for point in points:
         beside = np.sort(np.abs(np.abs(point.multipliers[point.multipliers.imag != 0]) - 1))
         assert beside[1] < 1e-9
