@@ -9,6 +9,10 @@ phase. With w the speed after it and a = -s'' the acceleration onto the wall, th
 and the mean square of their speeds over a period T is 2 w^3 / (3 a T (1 - e^3)); both to the first order in
 w, as a does not change in so short a time. The motion that leaves the wall later does not depend on them.
 
+The rest ends where a = 0, a time L after that impact. Where the bounces last about as long, a falls on the
+way, as a (1 - t/L): they are complete only if the first of them takes less than a part of L (`longest`), else
+the mass leaves the wall amid the last of them and is never at rest.
+
 Inertia couples other coordinates to this one. With u its speed before the first of these impacts, and with
 impulses over the one that changes this speed by 1, all impacts together give (1 + e) u/(1 - e). The force of
 the wall at rest gives 2 e u/(1 - e) in the same time. The difference is u, the impulse that stops this
@@ -79,15 +83,41 @@ def tail(system: System, orbit: Orbit, index: int) -> Tail:
     return Tail(first / (1 - ratio), square, first, ratio, thrown)
 
 
+def longest(ratio: float) -> float:
+    """Return the longest first bounce 2 w/a from which chatter is complete, in parts of the rest, 0 < e < 1.
+
+    With s'' = -a (1 - t/L) a bounce that begins a time r before the rest ends, and takes sigma r, has the
+    speeds w = (a/L) r^2 (sigma/2 - sigma^2/6) and (a/L) r^2 (sigma/2 - sigma^2/3) at its ends; the next one
+    has r (1 - sigma) left. Its sigma is the same where
+
+        (3 - sigma) (1 - sigma)^2 = e (3 - 2 sigma);
+
+    from less it goes to 0, from more it grows. 2 w/a = (sigma - sigma^2/3) r.
+
+    Parameters
+    ----------
+    ratio : float
+        e, the coefficient of restitution.
+
+    Returns
+    -------
+    float
+        2 w/(a L) of that sigma.
+    """
+    roots = np.polynomial.Polynomial([3 * (1 - ratio), 2 * ratio - 7, 5.0, -1.0]).roots()
+    sigma = float(roots.real[np.argmin(np.abs(roots))])
+    return sigma - sigma**2 / 3
+
+
 def neglected(system: System, orbit: Orbit) -> float:
     """Return the error due to the bounces left out, root mean square over peak to peak.
 
-    Infinite where the bounces last longer than the rest: then the motion never comes to rest.
+    Infinite where the bounces do not end before the rest does: then the motion never comes to rest.
     """
     square, lengths = 0.0, orbit.mesh.segment_lengths(orbit.phases)
     for index in settling(system, orbit):
         left = tail(system, orbit, index)
-        square += left.square if left.length < lengths[index] else np.inf
+        square += left.square if left.first < longest(left.ratio) * lengths[index] else np.inf
     return float(np.sqrt(square)) / max(orbit.span(), 1e-300)
 
 

@@ -42,7 +42,7 @@ class Point:
         What kind of special point it is, if one.
     multipliers : ndarray of complex, shape (n,)
         Floquet multipliers, largest first; of an equilibrium the eigenvalues of its Jacobian (1/s), largest
-        real part first.
+        real part first. Where friction holds a joint all along they are those at its given place.
     minimum, maximum : dict
         Extremes of each output over the period (SI), by name.
     error : ErrorEstimate

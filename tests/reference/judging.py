@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import null_space
 
 import periodic as per
 from reference.closer import closer
-from reference.contact import Contact, Period, period, periodic
+from reference.contact import Contact, Friction, Period, period, periodic
 from reference.joints.period import Period as JointsPeriod
+from reference.shooting import in_order
 
 Array = NDArray[np.float64]
 
@@ -61,13 +63,40 @@ def judged(exact: Contact, point: per.Point, names: list[str]) -> Verdict:
         found = again if singular[-1] > BESIDE else found
     else:
         off = float(np.abs(gap).max()) / found.growth
-    theirs, own = np.poly(found.monodromy), np.poly(point.multipliers)
+    true = at_places(exact, found)
+    theirs, own = np.poly(true), np.poly(point.multipliers)
     apart = float(np.abs(theirs - own).max() / np.abs(theirs).max())
-    moduli = np.abs(found.multipliers)
+    moduli = np.abs(true)
     near = np.abs(np.concatenate([moduli, np.abs(point.multipliers)]) - 1).min() < CIRCLE + apart
     near = near or point.label in (per.Label.FOLD, per.Label.DOUBLING, per.Label.TORUS)
     stable = bool(near or point.stable == (moduli < 1).all())
     return Verdict(off / size, apart, stable, found.growth, found)
+
+
+def at_places(exact: Contact, found: Period) -> NDArray[np.complex128]:
+    """Multipliers of a period at the places where joints of friction are held all along.
+
+    Such an orbit is one of a continuum: perturbations that move a place q neither grow nor decay, and those of
+    the speed q' = 0 are gone at once. A joint's multipliers 1 and 0 are 0 and 0 at a given place; the others
+    are those of perturbations with q = q' = 0, which the motion keeps.
+    """
+    held = [e.row[: len(found.start)] for i, e in enumerate(exact.elements) if held_all_along(exact, found, i)]
+    if not held:
+        return found.multipliers
+    half = len(found.start) // 2
+    places = [np.roll(row, -half) for row in held]
+    kept = null_space(np.array([*held, *places]))
+    others = np.linalg.eigvals(kept.T @ found.monodromy @ kept)
+    return in_order(np.append(others, np.zeros(2 * len(held))))
+
+
+def held_all_along(exact: Contact, found: Period, i: int) -> bool:
+    """Whether an element is friction that never lets go; it begins in the mode that rounding gives, and sticks.
+
+    Friction that slips has an even number of events in a period, as each excursion of its mode ends.
+    """
+    own = [k for k, _ in found.events if k == i]
+    return isinstance(exact.elements[i], Friction) and len(own) == 1
 
 
 def quiet(exact: Contact, orbit: per.Orbit, omega: float, names: list[str]) -> tuple[float, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from survey.page import page
 from survey.rows import Row, models, read, row, write
 
@@ -52,3 +53,15 @@ def test_joints_are_judged() -> None:
     found = row("joints down", 123, 3)
     assert (found.judged, found.wrong, found.unjudged) == (3, (), ())
     assert 0 < found.ratio < 1
+
+
+@pytest.mark.parametrize(("kind", "seed", "count"), [("friction", 134, 4), ("impacts", 193, 40)])
+def test_motions_that_stay_where_they_are(kind: str, seed: int, count: int) -> None:
+    """Assert that points are right where friction holds two masses together, and where chatter ends in rest.
+
+    The rest of impacts 193 ends where its bounces are no longer complete: its last points lie 1e-10 before it.
+    """
+    found = row(kind, seed, count)
+    assert (found.wrong, found.unjudged) == ((), ())
+    assert found.judged >= min(count, 15)
+    assert found.ratio < 1

@@ -111,10 +111,11 @@ class Drawn:
         """A rigid stop."""
         values = self.value("gap", gap), self.value("e", restitution)
         self.parts.append(sym.RigidStop(self.coordinates[i], *values, below=below))
-        row = self._row((1 if below else -1) * self.between(i, None), self.count * [0.0], gap)
+        still, away = self.count * [0.0], (1 if below else -1) * self.between(i, None)
+        row, push = self._row(away, still, gap), self._row(still, away / self.mass)
         reset = np.eye(len(row))
         reset[self.count + i, self.count + i] = -restitution
-        self.elements.append(Wall(row, reset))
+        self.elements.append(Wall(row, reset, push))
         self.told.append(f"wall {i} gap {gap:.4g} e {restitution:.3g} {'below' if below else ''}")
 
     def _stop(self, u: Array, k: float, gap: float) -> Stop:
