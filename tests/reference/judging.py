@@ -76,11 +76,12 @@ def judged(exact: Contact, point: per.Point, names: list[str]) -> Verdict:
 def at_places(exact: Contact, found: Period) -> NDArray[np.complex128]:
     """Multipliers of a period at the places where joints of friction are held all along.
 
-    Such an orbit is one of a continuum: perturbations that move a place q neither grow nor decay, and those of
-    the speed q' = 0 are gone at once. A joint's multipliers 1 and 0 are 0 and 0 at a given place; the others
-    are those of perturbations with q = q' = 0, which the motion keeps.
+    Such an orbit is one of a continuum: perturbations that move a place q neither grow nor decay, and those
+    of the speed q' = 0 are gone at once. A joint's multipliers 1 and 0 are 0 and 0 at a given place; the
+    others are those of perturbations with q = q' = 0, which the motion keeps.
     """
-    held = [e.row[: len(found.start)] for i, e in enumerate(exact.elements) if held_all_along(exact, found, i)]
+    joints = (e for i, e in enumerate(exact.elements) if held_all_along(exact, found, i))
+    held = [joint.row[: len(found.start)] for joint in joints]
     if not held:
         return found.multipliers
     half = len(found.start) // 2
@@ -91,7 +92,7 @@ def at_places(exact: Contact, found: Period) -> NDArray[np.complex128]:
 
 
 def held_all_along(exact: Contact, found: Period, i: int) -> bool:
-    """Whether an element is friction that never lets go; it begins in the mode that rounding gives, and sticks.
+    """Whether an element is friction that never lets go: it begins in the mode of its rounding, and sticks.
 
     Friction that slips has an even number of events in a period, as each excursion of its mode ends.
     """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from survey.page import page
 from survey.rows import Row, models, read, row, write
 
@@ -57,9 +58,9 @@ def test_joints_are_judged() -> None:
 
 @pytest.mark.parametrize(("kind", "seed", "count"), [("friction", 134, 4), ("impacts", 193, 40)])
 def test_motions_that_stay_where_they_are(kind: str, seed: int, count: int) -> None:
-    """Assert that points are right where friction holds two masses together, and where chatter ends in rest.
+    """Assert that points are right where friction holds two masses together, or chatter ends in rest.
 
-    The rest of impacts 193 ends where its bounces are no longer complete: its last points lie 1e-10 before it.
+    Of impacts 193 the last points lie 1e-10 before the place where its bounces are no longer complete.
     """
     found = row(kind, seed, count)
     assert (found.wrong, found.unjudged) == ((), ())
