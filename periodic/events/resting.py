@@ -114,8 +114,11 @@ def neglected(system: System, orbit: Orbit) -> float:
 
     Infinite where the bounces do not end before the rest does: then the motion never comes to rest.
     """
+    resting = settling(system, orbit)
+    if not resting:
+        return 0.0
     square, lengths = 0.0, orbit.mesh.segment_lengths(orbit.phases)
-    for index in settling(system, orbit):
+    for index in resting:
         left = tail(system, orbit, index)
         square += left.square if left.first < longest(left.ratio) * lengths[index] else np.inf
     return float(np.sqrt(square)) / max(orbit.span(), 1e-300)

@@ -8,7 +8,8 @@ at the zeros of the derivative into monotone pieces, none of which hides a chang
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import deque
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 
 import numpy as np
@@ -22,6 +23,10 @@ from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
+
+
+KEPT = 4
+"""Orbits whose switches are kept: of a step its base, its guess, its end, and where its pattern changes."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +60,18 @@ class Along:
 
 
 @dataclass(frozen=True)
-class SwitchPolynomials:
-    """The switches of a system along an orbit."""
+class _Evaluated:
+    """What is known of the switches along an orbit: `along` and `directions` by switch, as far as asked."""
 
     system: System
     orbit: Orbit
+    along: dict[tuple[int, bool], Along] = field(default_factory=dict)
+    directions: dict[int, list[int]] = field(default_factory=dict)
+
+    @cached_property
+    def modes(self) -> Array:
+        """The modes of the surfaces in each interval, shape (N, columns)."""
+        return sides(self.system, self.orbit)
 
     @cached_property
     def knots(self) -> Array:
@@ -70,13 +82,47 @@ class SwitchPolynomials:
         side = np.repeat(self.modes, tau.shape[1], axis=0)
         return guards(self.system, flat, tau.ravel(), orbit.parameter, side).reshape(*tau.shape, -1)
 
+
+_LATEST: deque[_Evaluated] = deque(maxlen=KEPT)
+"""Of the orbits last looked at."""
+
+
+@dataclass(frozen=True)
+class SwitchPolynomials:
+    """The switches of a system along an orbit."""
+
+    system: System
+    orbit: Orbit
+
     @cached_property
+    def _known(self) -> _Evaluated:
+        """What is known of them; an orbit is looked at several times in a step."""
+        latest = tuple(_LATEST)
+        known = (each for each in latest if each.orbit is self.orbit and each.system is self.system)
+        found = next(known, None)
+        if found is None:
+            found = _Evaluated(self.system, self.orbit)
+            _LATEST.append(found)
+        return found
+
+    @property
+    def knots(self) -> Array:
+        """Values at the knots, shape (N, ncol+1, switches)."""
+        return self._known.knots
+
+    @property
     def modes(self) -> Array:
         """The modes of the surfaces in each interval, shape (N, columns)."""
-        return sides(self.system, self.orbit)
+        return self._known.modes
 
     def along(self, switch: int, everywhere: bool = False) -> Along:
         """Return a switch around the orbit, with extremes where it may pass its level, or `everywhere`."""
+        known = self._known.along
+        if (switch, everywhere) not in known:
+            known[switch, everywhere] = self._along(switch, everywhere)
+        return known[switch, everywhere]
+
+    def _along(self, switch: int, everywhere: bool) -> Along:
         values, scheme, grid = self.knots[:, :, switch], self.orbit.mesh.scheme, self.orbit.grid
         bounds = values @ _bernstein(scheme).T
         mixed = _changing(bounds) | everywhere
@@ -151,14 +197,10 @@ class SwitchPolynomials:
 
         It also passes at the nodes of other switches that are equal to it.
         """
-        if switch not in self._directed:
-            self._directed[switch] = self._directions_of(switch)
-        return self._directed[switch]
-
-    @cached_property
-    def _directed(self) -> dict[int, list[int]]:
-        """Cache of `_directions`, by switch."""
-        return {}
+        known = self._known.directions
+        if switch not in known:
+            known[switch] = self._directions_of(switch)
+        return known[switch]
 
     def _directions_of(self, switch: int) -> list[int]:
         values, found = self.knots[:, :, switch], []
@@ -229,8 +271,11 @@ class SwitchPolynomials:
         `otherwise` is the side on which a switch without event nodes is taken to be. An excursion that begins
         or ends at an event node is left out: there the node is not yet, or not quite, at the passage.
         """
+        expected = self.expected(switch, otherwise)
+        if self._bounded(switch, expected):
+            return []
         along = self.along(switch)
-        wrong = along.sides * self.expected(switch, otherwise)[along.interval] < 0
+        wrong = along.sides * expected[along.interval] < 0
         if not wrong.any():
             return []
         at_nodes = np.zeros(len(wrong), dtype=bool)
@@ -249,6 +294,13 @@ class SwitchPolynomials:
         found = [along.extremum(switch, int(i)) for i in farthest]
         noise = NOISE * float(np.abs(along.value).max())
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
+
+    def _bounded(self, switch: int, side: NDArray[np.int_]) -> bool:
+        """Whether the Bernstein coefficients of a switch are on a side (N,) in each interval, or within rounding."""
+        values = self.knots[:, :, switch]
+        coefficients = values @ _bernstein(self.orbit.mesh.scheme).T
+        least = (coefficients * side[:, None]).min()
+        return bool(least >= -NOISE * np.abs(values).max())
 
     def _beginning(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
         """Whether an excursion begins or ends at an event node of the switch that is not at its passage."""

@@ -211,7 +211,7 @@ class Assembly(Workbench):
         return found
 
     def slider(self, name: str, state: State, row: ca.SX, elongation: ca.SX, limit: ca.SX) -> None:
-        """Add an elastic slider: z is held while |e - z| < l, and carried along where e - z = l or -l.
+        """Add an elastic slider: z is held while -l < e - z < l, and carried along where e - z = l or -l.
 
         Parameters
         ----------

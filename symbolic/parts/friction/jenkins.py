@@ -27,7 +27,7 @@ LEAK = 1e-4
 class Jenkins(Part):
     """Elastic slider: force -f, f = k (u - z), a spring in series with a slider that gives way at F.
 
-        dz/dtau = 0 while it is held, |f| < F;  f = F or -F while it is carried, until du/dtau turns
+        dz/dtau = 0 while it is held, -F < f < F;  f = F or -F while it is carried, until du/dtau turns
 
     One state z, the place of the slider, and two events in each slip, where it begins and where it ends. A
     slider that never slips may stick anywhere: a parameter "place of z" says where.
