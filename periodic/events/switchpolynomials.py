@@ -24,7 +24,6 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
 
-
 KEPT = 4
 """Orbits whose switches are kept: of a step its base, its guess, its end, and where its pattern changes."""
 
@@ -296,7 +295,7 @@ class SwitchPolynomials:
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
 
     def _bounded(self, switch: int, side: NDArray[np.int_]) -> bool:
-        """Whether the Bernstein coefficients of a switch are on a side (N,) in each interval, or within rounding."""
+        """Whether its Bernstein coefficients show a switch on a side (N,) in each interval, within rounding."""
         values = self.knots[:, :, switch]
         coefficients = values @ _bernstein(self.orbit.mesh.scheme).T
         least = (coefficients * side[:, None]).min()
