@@ -295,7 +295,7 @@ class SwitchPolynomials:
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
 
     def _bounded(self, switch: int, side: NDArray[np.int_]) -> bool:
-        """Whether its Bernstein coefficients show a switch on a side (N,) in each interval, within rounding."""
+        """Whether Bernstein coefficients show a switch on a side (N,) in each interval, within rounding."""
         values = self.knots[:, :, switch]
         coefficients = values @ _bernstein(self.orbit.mesh.scheme).T
         least = (coefficients * side[:, None]).min()
