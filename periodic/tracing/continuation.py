@@ -1,8 +1,7 @@
 """Pseudo-arclength continuation of periodic orbits in one parameter, as a generator of points.
 
-Each step solves on an arclength constraint (`steps`); special points inside it are located on further
-arclength constraints. A step is also rejected where the multipliers pass a resonance unresolved, and where
-not every change within it is accounted for.
+Each step solves on an arclength constraint, and special points inside it are located on further ones
+(`steps/taken.py`). Here its points are collected, and the branch is led on where a pattern of events changes.
 """
 
 from __future__ import annotations
@@ -11,15 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-import numpy as np
-
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
-from periodic.bifurcations.location import Sought, special_points
-from periodic.bifurcations.testfunction import Course, margins
+from periodic.bifurcations.testfunction import Course
 from periodic.bifurcations.turningpoint import Found, at_once
 from periodic.bifurcations.twoparameter import codim2
-from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -31,33 +25,10 @@ from periodic.tracing.ends import ending
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.steps.overswaps import over_swaps
-from periodic.tracing.steps.patternchange import Reached, crossed, standing
-from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
+from periodic.tracing.steps.patternchange import Reached, crossed
 from periodic.tracing.steps.stepsize import ArclengthControl
+from periodic.tracing.steps.taken import NEARLY, Refused, Step, Steps
 from periodic.tracing.watch import Watch
-
-NEARLY = 1e-2
-"""Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
-not resolve, or towards a change that no special point accounts for."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """A step that was taken: its end, the length of the next one, the special points inside it, the course
-    of the test functions, the change of pattern at which it ends, if any, and how long it was to be."""
-
-    end: Solution
-    further: float
-    special: list[Found]
-    course: Course
-    change: Reached | None = None
-    wanted: float = 0.0
-
-    @property
-    def label(self) -> Label:
-        """The label of its end: GRAZING where a switch touches its level there."""
-        return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
 
 
 @dataclass
@@ -102,7 +73,6 @@ class Continuation:
     state: State | None = field(default=None, repr=False)
     ended: Checkpoint | None = field(default=None, repr=False)
     _running: Iterator[Point] | None = field(default=None, init=False, repr=False)
-    _unread: bool = field(default=False, init=False, repr=False)
     _since_remesh: int = field(default=0, init=False, repr=False)
     _count: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
@@ -244,14 +214,15 @@ class Continuation:
         """Take steps from a base, which is the last solution on a mesh for the next one."""
         assert self.state is not None
         while self.state.steps + 1 < self.control.max_points:
-            step = self._taken(base, worded=True)
-            if step is None and self._reread(self.state.last):
+            step = self._steps.take(self.state, base, worded=True)
+            if isinstance(step, Refused) and self._reread(self.state.last):
                 yield self.collected[-1]
                 base = self._prepared(self.state.last)
                 continue
-            if step is None and self._unread:
-                step = self._taken(base, worded=False)
-            if step is None:
+            if isinstance(step, Refused) and step.unread:
+                step = self._steps.take(self.state, base, worded=False)
+            if isinstance(step, Refused):
+                self.stop = step.stop
                 yield self._emitted(base, Label.FAILED)
                 return
             for special in step.special:
@@ -270,75 +241,6 @@ class Continuation:
                 return
             base = self._prepared(self.state.last)
         self.stop = Stop.after(Reason.MAX_POINTS, self.control.max_points)
-
-    def _taken(self, base: Solution, worded: bool) -> Step | None:
-        """Take one step, as long as can be; set `stop` where even the shortest is rejected.
-
-        worded: whether to stop at once at an orbit that violates its word, which may be read from its motion.
-        """
-        assert self.state is not None
-        self.stop, self._unread = None, False
-        ds, begin, origin = self.state.ds, self.state.begun.value, base
-        control = self.control.down_to(self.state.least)
-        tests = self.watch.tests()
-        sought = Sought(self._values(begin), self.state.last.value, tests, self.state.course)
-        at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
-        if at_grazing is not None:
-            return Step(base, ds, [], Course(), at_grazing)
-        over = self._over_swaps(base, ds, sought)
-        if over is not None:
-            return over
-        longest = np.inf  # the next step is no longer where a longer one has just failed
-        while True:
-            try:
-                tried = self._stepper.step(base, ds)
-                base, new, length = tried.base, tried.new, tried.ds
-                final = tried.change is not None and tried.change.change.final
-                found = special_points(self.solver, base, new, length, replace(sought, final=final))
-                self._check_balance(origin, new, found, length)
-                further = min(
-                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
-                )
-                course = Course(length, margins(base, (*codim2.along(base), *tests)))
-                return Step(new, further, found, course, tried.change, ds)
-            except RejectedError as rejected:
-                longest = ds = ds * rejected.shorter
-                beyond = isinstance(rejected, BeyondError)
-                self._unread = worded and isinstance(rejected, WordError)
-                least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
-                if self._unread or not ds >= least:
-                    self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
-                    return None
-
-    def _over_swaps(self, base: Solution, ds: float, sought: Sought) -> Step | None:
-        """A step in which events change places and nothing else is to be located, if it is one."""
-        if sought.tests:
-            return None
-        over = over_swaps(self.solver, self.control, base, ds, sought.course)
-        if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
-            return None
-        if self._unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
-            return None
-        further = self.control.next_size(over.ds, over.new.correction.iterations, over.bound_ratio)
-        course = Course(over.ds, margins(base, codim2.along(base)))
-        return Step(over.new, further, [], course)
-
-    def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
-        """Reject a step of which not every change is accounted for, unless it is short already.
-
-        Changes count from the base as it was, not from the base on the mesh of the step's end.
-        """
-        ends = any(point.label is Label.END or point.shrunk for point in found)
-        if ends or ds <= NEARLY * self.control.ds:
-            return
-        points = [entry(point.solution, point.label) for point in found]
-        unaccounted = self._unaccounted([entry(base, Label.NONE), *points, entry(new, Label.NONE)])
-        if unaccounted:
-            raise RejectedError(unaccounted[0].why)
-
-    def _unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
-        """The changes between points in order along the branch that no labelled point accounts for."""
-        return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""
@@ -452,22 +354,16 @@ class Continuation:
             course=step.course,
         )
 
-    def _values(self, begin: float) -> Sequence[float]:
-        """Values at which the branch gets a point: the user's, and where it may meet its own start."""
-        problem = self.solver.problem
-        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
-
     def _prepared(self, new: Solution) -> Solution:
         """The last solution on a mesh for the next step."""
         self._since_remesh += 1
         if self.collected[-1].label is Label.GRAZING:  # on another mesh it may be past the grazing
             return new
-        better = self._stepper.remeshed(new, self._since_remesh >= self.control.remesh_every)
-        if better is new or self._unaccounted([entry(found, Label.NONE) for found in (new, better)]):
-            return new  # on another mesh it may have passed a special point that lies as near
-        self._since_remesh = 0
+        better = self._steps.prepared(new, self._since_remesh >= self.control.remesh_every)
+        if better is not new:
+            self._since_remesh = 0
         return better
 
     @cached_property
-    def _stepper(self) -> Stepper:
-        return Stepper(self.solver, self.control)
+    def _steps(self) -> Steps:
+        return Steps(self.solver, self.control, self.watch.tests(), self.user)

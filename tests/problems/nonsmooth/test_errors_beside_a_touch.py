@@ -13,7 +13,8 @@ from periodic.correction import error
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.refinement.adaptation import carried
-from periodic.tracing.continuation import Continuation, Step
+from periodic.tracing.continuation import Continuation
+from periodic.tracing.steps.taken import Step
 
 BRIEF = 2e-3
 """Contacts that last so long (rad) at the most are looked at."""

@@ -1,0 +1,177 @@
+"""The step that a branch takes from an orbit: as long as can be, with what lies inside it.
+
+A step that fails a check is shortened and tried again. It is also rejected where not every change of its
+stability is accounted for by a special point inside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from periodic.bifurcations.label import Label
+from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
+from periodic.bifurcations.location import Sought, special_points
+from periodic.bifurcations.testfunction import Course, TestFunction, margins
+from periodic.bifurcations.turningpoint import Found
+from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.withinstep import RejectedError
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.results.stop import Reason, Stop
+from periodic.tracing.state import State
+from periodic.tracing.steps.overswaps import over_swaps
+from periodic.tracing.steps.patternchange import Reached, standing
+from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
+from periodic.tracing.steps.stepsize import ArclengthControl
+
+NEARLY = 1e-2
+"""Least step, in parts of the first one, with which a branch is followed towards orbits that the method does
+not resolve, or towards a change that no special point accounts for."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step that was taken: its end, the length of the next one, the special points inside it, the course
+    of the test functions, the change of pattern at which it ends, if any, and how long it was to be."""
+
+    end: Solution
+    further: float
+    special: list[Found]
+    course: Course
+    change: Reached | None = None
+    wanted: float = 0.0
+
+    @property
+    def label(self) -> Label:
+        """The label of its end: GRAZING where a switch touches its level there."""
+        return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Why even the shortest step was rejected. unread: a word is violated that the motion may tell."""
+
+    stop: Stop
+    unread: bool
+
+
+@dataclass(frozen=True)
+class Steps:
+    """How steps are taken, and their ends prepared for the next one.
+
+    Parameters
+    ----------
+    solver : Solver
+        The problem and how it is solved.
+    control : ArclengthControl
+        Step control.
+    tests : tuple of TestFunction
+        The user's events.
+    user : sequence of float
+        Values of the parameter that get a point (UZ).
+    """
+
+    solver: Solver
+    control: ArclengthControl
+    tests: tuple[TestFunction, ...]
+    user: Sequence[float]
+
+    def take(self, state: State, base: Solution, worded: bool) -> Step | Refused:
+        """Take one step, as long as can be.
+
+        Parameters
+        ----------
+        state : State
+            Where the branch stands.
+        base : Solution
+            Its last solution, on a mesh for the step.
+        worded : bool
+            Whether to stop at once at an orbit that violates its word, which may be read from its motion.
+
+        Returns
+        -------
+        Step or Refused
+            Refused where even the shortest step is rejected.
+        """
+        ds, begin, origin = state.ds, state.begun.value, base
+        control = self.control.down_to(state.least)
+        sought = Sought(self._values(begin), state.last.value, self.tests, state.course)
+        at_grazing = standing(self.solver, base, ds) if state.steps == 0 else None
+        if at_grazing is not None:
+            return Step(base, ds, [], Course(), at_grazing)
+        over = self._over_swaps(base, ds, sought)
+        if over is not None:
+            return over
+        longest = np.inf  # the next step is no longer where a longer one has just failed
+        while True:
+            try:
+                tried = self._stepper.step(base, ds)
+                base, new, length = tried.base, tried.new, tried.ds
+                final = tried.change is not None and tried.change.change.final
+                found = special_points(self.solver, base, new, length, replace(sought, final=final))
+                self._check_balance(origin, new, found, length)
+                further = min(
+                    control.next_size(length, new.correction.iterations, tried.bound_ratio), longest
+                )
+                return Step(new, further, found, self._course(base, length), tried.change, ds)
+            except RejectedError as rejected:
+                longest = ds = ds * rejected.shorter
+                beyond = isinstance(rejected, BeyondError)
+                unread = worded and isinstance(rejected, WordError)
+                least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
+                if unread or not ds >= least:
+                    reason = Reason.INACCURATE if beyond else Reason.SMALL_STEP
+                    return Refused(Stop(reason, str(rejected)), unread)
+
+    def _over_swaps(self, base: Solution, ds: float, sought: Sought) -> Step | None:
+        """A step in which events change places and nothing else is to be located, if it is one."""
+        if sought.tests:
+            return None
+        over = over_swaps(self.solver, self.control, base, ds, sought.course)
+        if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
+            return None
+        if self.unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
+            return None
+        further = self.control.next_size(over.ds, over.new.correction.iterations, over.bound_ratio)
+        return Step(over.new, further, [], self._course(base, over.ds))
+
+    def _course(self, base: Solution, length: float) -> Course:
+        """The course of the test functions over a step."""
+        return Course(length, margins(base, (*codim2.along(base), *self.tests)))
+
+    def _check_balance(self, base: Solution, new: Solution, found: list[Found], ds: float) -> None:
+        """Reject a step of which not every change is accounted for, unless it is short already.
+
+        Changes count from the base as it was, not from the base on the mesh of the step's end.
+        """
+        ends = any(point.label is Label.END or point.shrunk for point in found)
+        if ends or ds <= NEARLY * self.control.ds:
+            return
+        points = [entry(point.solution, point.label) for point in found]
+        unaccounted = self.unaccounted([entry(base, Label.NONE), *points, entry(new, Label.NONE)])
+        if unaccounted:
+            raise RejectedError(unaccounted[0].why)
+
+    def unaccounted(self, ledger: Sequence[Entry]) -> list[Gap]:
+        """Return the changes between points in order along the branch that no labelled point accounts for."""
+        return gaps(ledger, folds=codim2.picked(self.solver.problem) is None)
+
+    def _values(self, begin: float) -> Sequence[float]:
+        """Values at which the branch gets a point: the user's, and where it may meet its own start."""
+        problem = self.solver.problem
+        return sorted({*self.user, begin}) if problem.low < begin < problem.high else self.user
+
+    def prepared(self, new: Solution, due: bool) -> Solution:
+        """Return the last solution on a mesh for the next step, a new one where `due` or where it helps."""
+        better = self._stepper.remeshed(new, due)
+        if better is new or self.unaccounted([entry(found, Label.NONE) for found in (new, better)]):
+            return new  # on another mesh it may have passed a special point that lies as near
+        return better
+
+    @cached_property
+    def _stepper(self) -> Stepper:
+        return Stepper(self.solver, self.control)
