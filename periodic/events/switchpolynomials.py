@@ -8,6 +8,7 @@ at the zeros of the derivative into monotone pieces, none of which hides a chang
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -22,6 +23,11 @@ from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, guards, guards_gradient
+
+_KEPT: weakref.WeakKeyDictionary[Orbit, tuple[weakref.ReferenceType[System], Array]] = (
+    weakref.WeakKeyDictionary()
+)
+"""Values at the knots by orbits, with the system that they belong to: several tests look at one orbit."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,12 @@ class SwitchPolynomials:
     @cached_property
     def knots(self) -> Array:
         """Values at the knots, shape (N, ncol+1, switches)."""
+        kept = _KEPT.get(self.orbit)
+        if kept is None or kept[0]() is not self.system:
+            kept = _KEPT[self.orbit] = weakref.ref(self.system), self._at_knots()
+        return kept[1]
+
+    def _at_knots(self) -> Array:
         orbit = self.orbit
         tau = orbit.grid.left[:, None] + orbit.grid.width[:, None] * orbit.mesh.scheme.knots
         flat = orbit.knots.reshape(tau.size, -1)
@@ -229,8 +241,11 @@ class SwitchPolynomials:
         `otherwise` is the side on which a switch without event nodes is taken to be. An excursion that begins
         or ends at an event node is left out: there the node is not yet, or not quite, at the passage.
         """
+        expected = self.expected(switch, otherwise)
+        if not self._may_pass(switch, expected):
+            return []
         along = self.along(switch)
-        wrong = along.sides * self.expected(switch, otherwise)[along.interval] < 0
+        wrong = along.sides * expected[along.interval] < 0
         if not wrong.any():
             return []
         at_nodes = np.zeros(len(wrong), dtype=bool)
@@ -249,6 +264,16 @@ class SwitchPolynomials:
         found = [along.extremum(switch, int(i)) for i in farthest]
         noise = NOISE * float(np.abs(along.value).max())
         return [e for e in found if np.sign(e.value) * self.value(e) > noise]
+
+    def _may_pass(self, switch: int, expected: NDArray[np.int_]) -> bool:
+        """Whether a switch may be past its level in an interval where it should be on a side of it."""
+        past = float((expected[:, None] * self._bounds[:, :, switch]).min())
+        return not past >= -NOISE * float(np.abs(self.knots[:, :, switch]).max())
+
+    @cached_property
+    def _bounds(self) -> Array:
+        """Bernstein coefficients of the switches, which enclose them, (N, ncol+1, switches)."""
+        return np.einsum("bk,nks->nbs", _bernstein(self.orbit.mesh.scheme), self.knots)
 
     def _beginning(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
         """Whether an excursion begins or ends at an event node of the switch that is not at its passage."""

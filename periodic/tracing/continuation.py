@@ -28,10 +28,11 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.ends import ending
+from periodic.tracing.ends.retraced import retraced
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
-from periodic.tracing.steps.overswaps import over_swaps
+from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
@@ -260,7 +261,7 @@ class Continuation:
                     return
             self._completed(step)
             if self.stop is None:
-                self.stop = ending.reached(self.solver.problem, self.collected)
+                self.stop = self._ended(step.end)
                 if self.stop is not None:
                     self.collected[-1] = replace(self.collected[-1], label=Label.END)
             yield self.collected[-1]
@@ -270,6 +271,11 @@ class Continuation:
                 return
             base = self._prepared(self.state.last)
         self.stop = Stop.after(Reason.MAX_POINTS, self.control.max_points)
+
+    def _ended(self, new: Solution) -> Stop | None:
+        """Why the branch ends at its last point, if it does."""
+        points = self.collected
+        return ending.reached(self.solver.problem, points) or retraced(self.solver, points, new)
 
     def _taken(self, base: Solution, worded: bool) -> Step | None:
         """Take one step, as long as can be; set `stop` where even the shortest is rejected.
@@ -285,7 +291,7 @@ class Continuation:
         at_grazing = standing(self.solver, base, ds) if self.state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
-        over = self._over_swaps(base, ds, sought)
+        over = self._over_changes(base, ds, sought)
         if over is not None:
             return over
         longest = np.inf  # the next step is no longer where a longer one has just failed
@@ -310,11 +316,11 @@ class Continuation:
                     self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
                     return None
 
-    def _over_swaps(self, base: Solution, ds: float, sought: Sought) -> Step | None:
-        """A step in which events change places and nothing else is to be located, if it is one."""
+    def _over_changes(self, base: Solution, ds: float, sought: Sought) -> Step | None:
+        """A step in which the word changes and nothing is to be located, if it is one."""
         if sought.tests:
             return None
-        over = over_swaps(self.solver, self.control, base, ds, sought.course)
+        over = over_changes(self.solver, self.control, base, ds, sought.course)
         if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
             return None
         if self._unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
