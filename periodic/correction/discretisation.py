@@ -219,6 +219,23 @@ class Discretisation(Protocol):
         """
         return None
 
+    def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
+        """Return a mesh with the events of an orbit's own motion, followed in time, with their phases.
+
+        Parameters
+        ----------
+        system : System
+            The equations.
+        orbit : Orbit
+            A guess of an orbit near one with the events that its mesh has.
+
+        Returns
+        -------
+        Mesh, ndarray or None
+            None where the motion cannot be followed, and where a level is touched between both orbits.
+        """
+        return None
+
     def pattern(self, system: System, orbit: Orbit) -> tuple[EventNode, ...] | None:
         """Return the events of an orbit's period at which the equations change, in a fixed order.
 

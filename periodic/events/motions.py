@@ -15,7 +15,7 @@ import numpy as np
 from periodic.events.heldalong import placed
 from periodic.events.modes import of_kind, release, sides
 from periodic.events.relaypassages import mode_at
-from periodic.events.rewrites.sites import Node, ordered
+from periodic.events.rewrites.sites import Node, in_order, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SAME_PHASE
@@ -222,6 +222,22 @@ def followed(system: System, orbit: Orbit, tolerance: float, before: int = 0) ->
         state, algebraic = path.state[-1], path.algebraic[-1]
         modes = list(path.modes)
     return orbit_of(moving, state, algebraic, orbit.parameter, tolerance, begin, modes)
+
+
+def passed(system: System, orbit: Orbit, tolerance: float) -> list[Node] | None:
+    """Return the events of the motion of one period from a state of an orbit; None where there is none.
+
+    It begins as in `followed`. The orbit need not be closed; its event nodes may be those of one nearby.
+
+    Raises what the integration raises.
+    """
+    if not hasattr(system, "motion") or orbit.mesh.period != FORCED:
+        return None
+    at = _begin(system, orbit)[None]
+    state, algebraic, begin = orbit.state(at)[0], orbit.algebraic_guess(at)[0], float(at[0])
+    given = state, algebraic, orbit.parameter, np.array([begin, begin + FORCED]), tolerance
+    whole = motion_from(cast(Moving, system), *given, _modes(system, orbit, at))
+    return in_order(word_of(system, whole.events, _always(system, whole)), orbit)
 
 
 def _modes(system: System, orbit: Orbit, at: Array) -> list[int]:

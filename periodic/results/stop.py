@@ -18,6 +18,7 @@ class Reason(Enum):
     MAX_POINTS = "largest number of points reached"
     MAX_NEWTON = "largest number of Newton iterations reached"
     SMALL_STEP = "step size below its minimum"
+    RETRACED = "branch goes back over itself"
     NO_START = "no orbit found at the start"
     INACCURATE = "tolerance not reached"
     INTERRUPTED = "interrupted"
@@ -29,6 +30,7 @@ class Reason(Enum):
             Reason.MAX_POINTS,
             Reason.MAX_NEWTON,
             Reason.SMALL_STEP,
+            Reason.RETRACED,
             Reason.NO_START,
             Reason.INACCURATE,
         )

@@ -22,6 +22,7 @@ from periodic.results.checkpoint import Checkpoint
 from periodic.results.point import Point, describe
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.ends import ending
+from periodic.tracing.ends.retraced import retraced
 from periodic.tracing.eventsfrommotion import reread
 from periodic.tracing.start import Start
 from periodic.tracing.state import State
@@ -231,7 +232,7 @@ class Continuation:
                     return
             self._completed(step)
             if self.stop is None:
-                self.stop = ending.reached(self.solver.problem, self.collected)
+                self.stop = self._ended(step.end)
                 if self.stop is not None:
                     self.collected[-1] = replace(self.collected[-1], label=Label.END)
             yield self.collected[-1]
@@ -241,6 +242,11 @@ class Continuation:
                 return
             base = self._prepared(self.state.last)
         self.stop = Stop.after(Reason.MAX_POINTS, self.control.max_points)
+
+    def _ended(self, new: Solution) -> Stop | None:
+        """Why the branch ends at its last point, if it does."""
+        points = self.collected
+        return ending.reached(self.solver.problem, points) or retraced(self.solver, points, new)
 
     def _met(self, special: Found) -> Iterator[Point]:
         """Yield a special point, and set `stop` where the branch ends there."""

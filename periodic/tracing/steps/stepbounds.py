@@ -37,7 +37,7 @@ def bound_ratios(
 ) -> Iterator[BoundRatio]:
     """Yield the ratio of a step to each bound, the cheapest first.
 
-    Its ends are on one mesh, or have the same event nodes in another order.
+    Its ends are on one mesh, or as `wayacross.way_and_tangent` takes them.
     """
     metric = base.orbit, base.problem.units(base.orbit), size_of(base.orbit)
     way, onward = way_and_tangent(base, new)

@@ -23,7 +23,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.state import State
-from periodic.tracing.steps.overswaps import over_swaps
+from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
@@ -103,7 +103,7 @@ class Steps:
         at_grazing = standing(self.solver, base, ds) if state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
-        over = self._over_swaps(base, ds, sought)
+        over = self._over_changes(base, ds, sought)
         if over is not None:
             return over
         longest = np.inf  # the next step is no longer where a longer one has just failed
@@ -127,11 +127,11 @@ class Steps:
                     reason = Reason.INACCURATE if beyond else Reason.SMALL_STEP
                     return Refused(Stop(reason, str(rejected)), unread)
 
-    def _over_swaps(self, base: Solution, ds: float, sought: Sought) -> Step | None:
-        """A step in which events change places and nothing else is to be located, if it is one."""
+    def _over_changes(self, base: Solution, ds: float, sought: Sought) -> Step | None:
+        """A step in which the word changes and nothing is to be located, if it is one."""
         if sought.tests:
             return None
-        over = over_swaps(self.solver, self.control, base, ds, sought.course)
+        over = over_changes(self.solver, self.control, base, ds, sought.course)
         if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
             return None
         if self.unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):

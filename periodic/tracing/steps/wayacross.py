@@ -1,9 +1,12 @@
 """The way from one orbit to another, and the tangent there, on the mesh of the first.
 
-Where the second has the same event nodes in another order, points correspond that lie as far between them.
+Where the second has the same event nodes in another order, points correspond that lie as far between them;
+where it has others, points at the same phase.
 """
 
 from __future__ import annotations
+
+from collections import Counter
 
 import numpy as np
 
@@ -21,16 +24,18 @@ def way_and_tangent(base: Solution, new: Solution) -> tuple[Increment, Increment
     Parameters
     ----------
     base, new : Solution
-        On one mesh, or with the same event nodes in another order.
+        On one mesh, or with other event nodes, or these in another order.
 
     Returns
     -------
     way, tangent : Increment
         On the mesh of the first.
     """
-    if new.orbit.mesh.events == base.orbit.mesh.events:
+    if new.orbit.mesh.matches(base.orbit.mesh):
         return difference(base.problem, base.orbit, new.orbit), new.tangent
     orbit, free = base.orbit, list(base.problem.free)
+    if Counter(orbit.mesh.events) != Counter(new.orbit.mesh.events):
+        return _at_fixed_phases(base, new)
     other = matched(orbit, new.orbit)
     shifts = np.array([wrapped(s, orbit.mesh.period) for s in new.orbit.phases[other] - orbit.phases])
     gradient, rates = node_phase_gradient(orbit), new.tangent.phases[other]
@@ -39,6 +44,24 @@ def way_and_tangent(base: Solution, new: Solution) -> tuple[Increment, Increment
     apart = new.orbit.parameter[free] - orbit.parameter[free]
     way = _increment(orbit, new.orbit.state(at) - orbit.nodes, shifts, apart)
     return way, _increment(orbit, moving, rates, new.tangent.parameters)
+
+
+def _at_fixed_phases(base: Solution, new: Solution) -> tuple[Increment, Increment]:
+    """The way to an orbit with other event nodes, and the tangent there, by states at the same phases.
+
+    Event nodes move as the tangent at the base says: which of them correspond is not known.
+    """
+    orbit, free = base.orbit, list(base.problem.free)
+    at, apart = orbit.mesh.nodes(orbit.phases), new.orbit.parameter[free] - orbit.parameter[free]
+    rates = base.tangent.phases / base.tangent.parameter
+
+    def moving(profile: Array, parameters: Array) -> Increment:
+        shifts = rates * parameters[0]
+        nodes = profile + orbit.node_rates * (node_phase_gradient(orbit) @ shifts)[:, None]
+        return _increment(orbit, nodes, shifts, parameters)
+
+    way = moving(new.orbit.state(at) - orbit.nodes, apart)
+    return way, moving(_profile(new, at), new.tangent.parameters)
 
 
 def matched(one: Orbit, other: Orbit) -> list[int]:

@@ -1,0 +1,88 @@
+"""Branches that go back over themselves: beyond a change the orbits are those before it, in reverse.
+
+Where an event that lasts no time begins and ends at one parameter, orbits beyond it may be orbits without it.
+A branch never leads back over its own orbits, not even where it turns: the orbits of both sides of a fold, or
+of a grazing that turns it, part as it goes on. (Passing through an orbit of fewer periods it comes back with
+the same orbits taken a period later, which are others at the same phase.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from periodic.correction.error import AT_WORST
+from periodic.correction.identity import distance
+from periodic.correction.solution import Solution
+from periodic.correction.solver import Solver
+from periodic.orbit.orbit import LEAST_SPAN
+from periodic.results.point import Point
+from periodic.results.stop import Reason, Stop
+
+
+def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | None:
+    """Return that a branch has gone back over itself since it last turned, if it has.
+
+    It is looked at once for each turn of orbits with events: as the parameter comes past that of the point
+    before the turn.
+
+    Parameters
+    ----------
+    solver : Solver
+        The problem and how it is solved.
+    points : sequence of Point
+        The branch so far, the last one of the orbit `new`.
+    new : Solution
+        Its last orbit.
+
+    Returns
+    -------
+    Stop or None
+        None where it goes on to other orbits.
+    """
+    before = _passed(points) if new.orbit.mesh.events else None
+    if before is None or solver.problem.free != (solver.problem.index,) or solver.problem.autonomous:
+        return None
+    guess = solver.problem.restrict(before.orbit)
+    parameter = guess.parameter.copy()
+    parameter[solver.problem.index] = new.value
+    back = solver.at_parameter(replace(guess, parameter=parameter), -float(np.sign(new.tangent.parameter)))
+    if not back.ok or not np.isfinite(back.error.motion):
+        return None
+    allowed = AT_WORST * (back.error.orbit + new.error.orbit) * max(new.orbit.span(), LEAST_SPAN)
+    if distance(solver.problem, new.orbit, back.orbit) > allowed:
+        return None
+    turn = _turn(points)
+    assert turn is not None
+    return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
+
+
+def _turn(points: Sequence[Point]) -> int | None:
+    """The last point at which the parameter turns; None where it goes one way all along."""
+    values = [point.parameter for point in points]
+    way = float(np.sign(values[-1] - values[-2])) if len(values) > 1 else 0.0
+    back = (k for k in range(len(values) - 2, 0, -1) if way * (values[k] - values[k - 1]) < 0)
+    return next(back, None) if way else None
+
+
+def _passed(points: Sequence[Point]) -> Point | None:
+    """The point before the last turn whose parameter the last step has passed for the first time, if any.
+
+    It is farther from the turn than their errors: there the orbits of both sides differ by more than these.
+    """
+    turn = _turn(points)
+    if turn is None:
+        return None
+    at, far = points[turn], (p for p in reversed(points[:turn]))
+    before = next((p for p in far if abs(p.parameter - at.parameter) > _blur(p, at)), None)
+    if before is None:
+        return None
+    left = [abs(p.parameter - at.parameter) for p in points[-2:]]
+    return before if left[0] < abs(before.parameter - at.parameter) <= left[1] else None
+
+
+def _blur(one: Point, other: Point) -> float:
+    """Distance in the parameter at which orbits of two branches differ by far more than their errors."""
+    return AT_WORST**2 * (one.error.motion + other.error.motion) * abs(one.parameter)
