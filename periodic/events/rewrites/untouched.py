@@ -74,7 +74,7 @@ def _alike(stays: Sequence[Stay], others: Sequence[Stay], period: float) -> bool
     if sorted(stay.mode for stay in stays) != sorted(stay.mode for stay in others):
         return False
     both = (stays, others), (others, stays)
-    return all(_overlapped(stay, theirs, (stay.mode,), period) for ours, theirs in both for stay in ours)
+    return all(_overlapped(stay, theirs, {stay.mode}, period) for ours, theirs in both for stay in ours)
 
 
 def _persist(stays: Iterable[Stay], others: Sequence[Stay], period: float) -> bool:
@@ -83,15 +83,12 @@ def _persist(stays: Iterable[Stay], others: Sequence[Stay], period: float) -> bo
     A slip may begin where friction holds, and a stick where it reverses.
     """
     for stay in stays:
-        if stay.mode == STUCK:
-            modes, free = (STUCK,), stay.before == -stay.after
-        else:
-            modes, free = (STUCK, stay.mode), False
-        if not free and not _overlapped(stay, others, modes, period):
+        reverses = stay.mode == STUCK and stay.before == -stay.after
+        if not reverses and not _overlapped(stay, others, {STUCK, stay.mode}, period):
             return False
     return True
 
 
-def _overlapped(stay: Stay, others: Iterable[Stay], modes: tuple[int, ...], period: float) -> bool:
+def _overlapped(stay: Stay, others: Iterable[Stay], modes: set[int], period: float) -> bool:
     """Whether a stretch overlaps one of others that is in one of some modes."""
     return any(other.mode in modes and stay.overlaps(other, period) for other in others)
