@@ -18,6 +18,9 @@ PRIOR = 0.02
 STARTING = 0.02
 """Seconds that a test takes beside its own."""
 
+UNKNOWN = 5.0
+"""CPU seconds that are taken for tests that were stopped as they were measured."""
+
 AGAIN = 0.7
 """How much less likely to notice a test's next case is than the one before, which has not noticed."""
 
@@ -29,7 +32,6 @@ class Executed:
     name: str
     seconds: float
     functions: dict[str, int]
-    modules: int
 
 
 class Covering:
@@ -53,15 +55,16 @@ class Covering:
         alike: dict[str, list[Executed]] = defaultdict(list)
         for name, note in found.get("tests", {}).items():
             own = {place: int(bits, 16) for place, bits in note["executed"].items()}  # type: ignore[attr-defined]
-            if note["outcome"] == "passed":
-                test = Executed(name, float(note.get("seconds", 0)), own, len({_module(f) for f in own}))  # type: ignore[arg-type]
+            if note["outcome"] in ("passed", "stopped"):
+                long = UNKNOWN if note["outcome"] == "stopped" else 0.0
+                test = Executed(name, max(long, float(note.get("seconds", 0))), own)  # type: ignore[arg-type]
                 alike[function(name)].append(test)
                 self.all[name] = test
         # Cases that were not measured are taken to execute what the last of the others does.
         for name, note in found.get("tests", {}).items():
             if note["outcome"] == "alike" and alike[function(name)]:
                 last = alike[function(name)][-1]
-                self.all[name] = Executed(name, last.seconds, last.functions, last.modules)
+                self.all[name] = Executed(name, last.seconds, last.functions)
 
     def seconds(self, test: str) -> float:
         """Return how long a test takes."""

@@ -73,9 +73,7 @@ def run(clone: Path, arguments: Sequence[str], plugin: object, limit: float, sai
     return _forked(lambda: _pytest(clone, [*OPTIONS, *arguments], plugin, limit, said, cache), 5 * limit + 60)
 
 
-def _pytest(
-    clone: Path, arguments: list[str], plugin: object, limit: float, said: Path, cache: Path
-) -> int:
+def _pytest(clone: Path, arguments: list[str], plugin: object, limit: float, said: Path, cache: Path) -> int:
     out = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(out, 1)
     os.dup2(out, 2)

@@ -77,7 +77,9 @@ class Functions:
         """Return the names that a statement outside functions gives a value, a constant's or a field's."""
         match self.statement(line):
             case ast.Assign(targets=targets):
-                return {node.id for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)}
+                return {
+                    node.id for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)
+                }
             case ast.AnnAssign(target=ast.Name(id=name)):
                 return {name}
             case ast.FunctionDef(name=name) | ast.ClassDef(name=name):

@@ -22,23 +22,24 @@ from coverage import Coverage
 from functions import Functions
 
 PACKAGES = ("symbolic", "periodic")
-ROOMS = ("periodic", "symbolic", "problems", "howto", "reports", ".")
+ROOMS = ("periodic", "symbolic", "problems", "howto")
+"""Folders of tests: not those of the command line and of texts, which run the packages from afar."""
 
-LONGEST = 4.0
+
+LONGEST = 0.3
 """CPU seconds after which a test is stopped as it is measured; what it has executed until then counts."""
 
-CASES = 6.0
+CASES = 0.6
 """CPU seconds of a test's cases: those that are left then are taken to execute what the others do."""
+
+WHOLE = 2.0
+"""CPU seconds of a file's tests: those that are left then, but further cases, are asked of no mutant."""
 
 
 def files(clone: Path) -> list[Path]:
     """Return the test files of a clone, relative to it, the rooms of the packages first."""
     tests = clone / "tests"
-    return [
-        path.relative_to(clone)
-        for room in ROOMS
-        for path in sorted((tests / room).glob("test_*.py" if room == "." else "**/test_*.py"))
-    ]
+    return [path.relative_to(clone) for room in ROOMS for path in sorted((tests / room).rglob("test_*.py"))]
 
 
 def stored(clone: Path, folder: Path, test: Path) -> Path:
@@ -84,7 +85,7 @@ class Meter:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
         """Leave out what is known well enough."""
-        if self.used[function(item.nodeid)] < CASES:
+        if self.used[function(item.nodeid)] < CASES and sum(self.used.values()) < WHOLE:
             return None
         self.found[item.nodeid] = {"outcome": "alike"}
         return True
@@ -97,10 +98,11 @@ class Meter:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
-        """Begin to count."""
+        """Begin to count; fixtures may take longer."""
         self.coverage.switch_context(item.nodeid)
         self.began = time.process_time()
-        return (yield)
+        with forks.stopped_after(3 * LONGEST):
+            return (yield)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Note how a test went, the worst of its phases."""
@@ -108,7 +110,7 @@ class Meter:
         if report.outcome != "passed":
             text = str(report.longrepr)
             note["outcome"] = "stopped" if "s of the processor" in text else report.outcome
-        if report.when == "call":
+        if report.when == "call" or report.failed:
             note["seconds"] = round(time.process_time() - self.began, 4)
             self.used[function(report.nodeid)] += time.process_time() - self.began
 

@@ -200,7 +200,9 @@ def test_pairs_that_may_cross_the_axis_and_come_back(before: complex, after: com
     assert stationary._crosses_twice(ends[0], having(-1.0)) is False
 
 
-@pytest.mark.parametrize(("after", "twice"), [(-0.79, False), (-0.7, False), (-0.6, True), (-1.4, False), (-1.6, True)])
+@pytest.mark.parametrize(
+    ("after", "twice"), [(-0.79, False), (-0.7, False), (-0.6, True), (-1.4, False), (-1.6, True)]
+)
 def test_real_eigenvalue_that_may_touch_0(after: float, twice: bool) -> None:
     """Assert it of one at -1 that moves by more than half the smaller distance from 0."""
     assert stationary._touches_twice(having(-1.0), having(after)) is twice
@@ -230,7 +232,9 @@ def test_change_of_the_parameter_less_its_error() -> None:
         ((1e-5, 0.9e-5), 0.1, 1e-8, False),  # 1.25e-8
     ],
 )
-def test_fold_rises_above_the_error(slopes: tuple[float, float], ds: float, error: float, found: bool) -> None:
+def test_fold_rises_above_the_error(
+    slopes: tuple[float, float], ds: float, error: float, found: bool
+) -> None:
     """Assert that a change of sign of the slope is a fold where the arc rises above its chord by the error."""
     base, new = (going(slope, 2.0, error=error) for slope in slopes)
     assert fold.has_fold(base, new, ds) is found
@@ -253,9 +257,7 @@ def test_two_folds_by_the_mean_slope(monkeypatch: pytest.MonkeyPatch) -> None:
             assert fold.has_two_folds(end, end) is twice
 
 
-@pytest.mark.parametrize(
-    ("fold_at", "touches"), [(0.999, True), (0.98, False)]
-)
+@pytest.mark.parametrize(("fold_at", "touches"), [(0.999, True), (0.98, False)])
 def test_conservative_fold_is_touched(fold_at: float, touches: bool) -> None:
     """Assert that prod (1 - mu) falls to a hundredth where a multiplier comes to 1 among conservative ones.
 
@@ -267,7 +269,12 @@ def test_conservative_fold_is_touched(fold_at: float, touches: bool) -> None:
 
 @pytest.mark.parametrize(
     ("base", "new", "touches"),
-    [((0.5,), (0.6,), True), ((0.5,), (1.5,), False), ((0.5, 1 + 1e-4), (0.6, 1.1), False), ((1.5,), (1.6,), True)],
+    [
+        ((0.5,), (0.6,), True),
+        ((0.5,), (1.5,), False),
+        ((0.5, 1 + 1e-4), (0.6, 1.1), False),
+        ((1.5,), (1.6,), True),
+    ],
 )
 def test_fold_is_touched(base: tuple[float, ...], new: tuple[float, ...], touches: bool) -> None:
     """Assert that nothing passes 1, and that no multiplier is within its error of 1 at an end."""
@@ -315,7 +322,9 @@ def test_margins_by_kind_and_name() -> None:
     solution: Any = SimpleNamespace(once=lambda function: function(None))
     tests = [
         testfunction.TestFunction(label=Label.TORUS, value=lambda _: 1.0, local=lambda _: 2.0),
-        testfunction.TestFunction(label=Label.USER, value=lambda _: 3.0, sharp=lambda _: 4.0, name="lift-off"),
+        testfunction.TestFunction(
+            label=Label.USER, value=lambda _: 3.0, sharp=lambda _: 4.0, name="lift-off"
+        ),
     ]
     assert testfunction.margins(solution, tests) == {"NS ": 2.0, "UZ lift-off": 3.0}
     assert tests[0].placed(solution) == 1.0 and tests[1].placed(solution) == 4.0
