@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from functions import Functions
 from measuring import PACKAGES, files, function, stored
@@ -20,6 +21,9 @@ STARTING = 0.02
 
 UNKNOWN = 5.0
 """CPU seconds that are taken for tests that were stopped as they were measured."""
+
+DOUBT = 0.3
+"""How likely a test is to execute a line that is not known to, but may."""
 
 AGAIN = 0.7
 """How much less likely to notice a test's next case is than the one before, which has not noticed."""
@@ -35,54 +39,60 @@ class Executed:
 
 
 class Covering:
-    """The tests that execute each line, as measured in a folder for the test files of a clone."""
+    """The tests that execute each line, as measured in a folder for the test files of a clone.
+
+    A test file that is not measured yet, or could not be, stands for one test of which nothing is known.
+    """
 
     def __init__(self, clone: Path, folder: Path) -> None:
         self.clone = clone
         self.digests: dict[str, set[str]] = defaultdict(set)
         self.all: dict[str, Executed] = {}
-        for place in (stored(clone, folder, test) for test in files(clone)):
+        for test in files(clone):
+            place = stored(clone, folder, test)
             if place.exists():
                 self._read(json.loads(place.read_text("utf-8")))
+            else:
+                self.all[str(test)] = Executed(str(test), UNKNOWN, {})
         self.executing: dict[str, list[Executed]] = defaultdict(list)
-        for test in self.all.values():
-            for name in test.functions:
-                self.executing[name].append(test)
+        for known in self.all.values():
+            for name in known.functions:
+                self.executing[name].append(known)
 
-    def _read(self, found: dict[str, dict[str, dict[str, object]]]) -> None:
+    def _read(self, found: dict[str, Any]) -> None:
         for name, digest in found.get("digests", {}).items():
-            self.digests[name].add(str(digest))
-        alike: dict[str, list[Executed]] = defaultdict(list)
-        for name, note in found.get("tests", {}).items():
-            own = {place: int(bits, 16) for place, bits in note["executed"].items()}  # type: ignore[attr-defined]
+            self.digests[name].add(digest)
+        notes, last = found.get("tests", {}), dict[str, Executed]()
+        for name, note in notes.items():
             if note["outcome"] in ("passed", "stopped"):
-                long = UNKNOWN if note["outcome"] == "stopped" else 0.0
-                test = Executed(name, max(long, float(note.get("seconds", 0))), own)  # type: ignore[arg-type]
-                alike[function(name)].append(test)
-                self.all[name] = test
-        # Cases that were not measured are taken to execute what the last of the others does.
-        for name, note in found.get("tests", {}).items():
-            if note["outcome"] == "alike" and alike[function(name)]:
-                last = alike[function(name)][-1]
-                self.all[name] = Executed(name, last.seconds, last.functions)
+                own = {place: int(bits, 16) for place, bits in note["executed"].items()}
+                seconds = max(note.get("seconds", 0.0), UNKNOWN if note["outcome"] == "stopped" else 0.0)
+                self.all[name] = last[function(name)] = Executed(name, seconds, own)
+        for name, note in notes.items():
+            if note["outcome"] == "alike" and (like := last.get(function(name))):
+                self.all[name] = replace(like, name=name)
 
     def seconds(self, test: str) -> float:
-        """Return how long a test takes."""
-        return self.all[test].seconds
+        """Return how long a test takes, or is taken to take."""
+        return self.all[test].seconds if test in self.all else UNKNOWN
 
     def tests(self, module: Path, line: int) -> list[str]:
-        """Return the tests that execute a line, the most promising first.
+        """Return the tests that execute a line, the most promising first, then those that may.
 
-        Of a line that is executed at import, those that execute a line which uses what it names; where there
-        are none, or the function is new, those that execute anything in the module, or else its room's.
+        Of a line that is executed at import, those that execute a line which uses what it names. Tests that
+        may are those of the module's room of which not all is known, and those that execute anything in the
+        module where none is known to execute the line.
         """
         functions = Functions(self.clone / module)
         if functions.runs(line):
-            executing = self._executing(module, functions, functions.lines(line))
+            sure = self._executing(module, functions, functions.lines(line))
         else:
-            executing = self._using(module, functions, line)
-        chosen = executing or self._beside(module)
-        return self._ordered(module, chosen)
+            sure = self._using(module, functions, line)
+        found = {test.name: _likely(module, test) for test in sure}
+        found |= {
+            t.name: DOUBT * _likely(module, t) for t in self._beside(module, not sure) if t.name not in found
+        }
+        return self._ordered(found)
 
     def _executing(self, module: Path, functions: Functions, lines: Iterable[int]) -> list[Executed]:
         found: dict[str, Executed] = {}
@@ -104,23 +114,28 @@ class Covering:
                 found |= {test.name: test for test in using}
         return list(found.values())
 
-    def _beside(self, module: Path) -> list[Executed]:
-        own = [t for t in self.all.values() if any(_module(name) == str(module) for name in t.functions)]
-        room = str(Path("tests") / module.parent) + "/"
-        return own or [test for test in self.all.values() if test.name.startswith(room)]
+    def _beside(self, module: Path, none: bool) -> Iterator[Executed]:
+        """Yield the tests that may execute a line; none: whether none is known to."""
+        room = Path("tests") / module.parent
+        for test in self.all.values():
+            near = room in Path(test.name.partition("::")[0]).parents
+            partly = test.seconds >= UNKNOWN
+            own = none and any(_module(name) == str(module) for name in test.functions)
+            if (near and (partly or none)) or own:
+                yield test
 
     @cached_property
     def _modules(self) -> dict[Path, Functions]:
         paths = (path for package in PACKAGES for path in (self.clone / package).rglob("*.py"))
         return {path.relative_to(self.clone): Functions(path) for path in paths}
 
-    def _ordered(self, module: Path, tests: Sequence[Executed]) -> list[str]:
+    def _ordered(self, likely: dict[str, float]) -> list[str]:
         """The most likely to notice for a second of time first: the further cases of a test later."""
         cases, scores = defaultdict[str, int](int), dict[str, float]()
-        for test in sorted(tests, key=lambda test: test.seconds):
-            again = AGAIN ** cases[function(test.name)]
-            cases[function(test.name)] += 1
-            scores[test.name] = again * _likely(module, test) / (test.seconds + STARTING)
+        for name in sorted(likely, key=lambda name: (self.seconds(name), name)):
+            again = AGAIN ** cases[function(name)]
+            cases[function(name)] += 1
+            scores[name] = again * likely[name] / (self.seconds(name) + STARTING)
         return sorted(scores, key=lambda name: (-scores[name], name))
 
 

@@ -1,4 +1,4 @@
-"""Runs of pytest in forks of one process, which has imported the libraries: the packages are imported anew."""
+"""Runs of pytest in forks of one process that has imported the libraries; the packages are imported anew."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Which lines of which functions each test executes, measured with coverage.py and kept per test file.
 
-A test file is measured anew when its text has changed. Lines are counted from the first of their function, and
-a function's digest is kept: where the function has changed since, all its lines count as executed.
+A test file is measured anew when its text has changed. Lines are counted from the first of their function,
+and a function's digest is kept: where the function has changed since, all its lines count as executed.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ import json
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import forks
 import pytest
@@ -72,7 +73,7 @@ class Meter:
 
     clone: Path
     place: Path
-    found: dict[str, dict[str, object]] = field(default_factory=dict)
+    found: dict[str, dict[str, Any]] = field(default_factory=dict)
     used: dict[str, float] = field(default_factory=lambda: defaultdict(float))
 
     @pytest.hookimpl(tryfirst=True)
@@ -118,25 +119,18 @@ class Meter:
         """Write all."""
         self.coverage.stop()
         digests: dict[str, str] = {}
-        for test, note in self.found.items():
-            note["executed"] = {}
+        executed: dict[str, dict[str, int]] = defaultdict(lambda: defaultdict(int))
         data = self.coverage.get_data()
         for name in data.measured_files():
             module = str(Path(name).relative_to(self.clone))
             for line, contexts in data.contexts_by_lineno(name).items():
-                if (inside := functions_of(name).at(line)) is None:
-                    continue
-                place, bit = f"{module}::{inside.name}", 1 << (line - inside.first)
-                digests[place] = inside.digest
-                for test in contexts:
-                    if test in self.found:
-                        executed = self.found[test]["executed"]
-                        assert isinstance(executed, dict)
-                        executed[place] = executed.get(place, 0) | bit
-        for note in self.found.values():
-            executed = note["executed"]
-            assert isinstance(executed, dict)
-            note["executed"] = {place: f"{mask:x}" for place, mask in executed.items()}
+                if (inside := functions_of(name).at(line)) is not None:
+                    place = f"{module}::{inside.name}"
+                    digests[place] = inside.digest
+                    for test in contexts:
+                        executed[test][place] |= 1 << (line - inside.first)
+        for test, note in self.found.items():
+            note["executed"] = {place: f"{bits:x}" for place, bits in executed[test].items()}
         text = json.dumps({"digests": digests, "tests": self.found}, separators=(",", ":"))
         part = self.place.with_suffix(".part")
         part.write_text(text, "utf-8")
@@ -152,12 +146,3 @@ def functions_of(name: str) -> Functions:
 def function(test: str) -> str:
     """Return a test's name without its case."""
     return test.partition("[")[0]
-
-
-def summary(folder: Path, tests: Sequence[Path]) -> list[tuple[str, int]]:
-    """Return how many tests had which outcome."""
-    counts: dict[str, int] = defaultdict(int)
-    for place in tests:
-        for note in json.loads((folder / place).read_text("utf-8")).get("tests", {}).values():
-            counts[note["outcome"]] += 1
-    return sorted(counts.items())

@@ -19,7 +19,7 @@ from covering import Covering
 from sample import Mutant
 
 FIRST, GROWTH = 1.0, 4.0
-"""Seconds of tests that are asked first, which notice most mutants, and how many times more are asked next."""
+"""Seconds of tests that are asked first, which notice most mutants, and how many times more next."""
 
 PATIENCE = 5.0
 """CPU seconds more than it takes without the change, by its tenfold, after which a test does not end."""

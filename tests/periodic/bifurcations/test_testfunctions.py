@@ -150,7 +150,7 @@ def test_pair_whose_product_is_nearest_1() -> None:
 
 
 def test_growth_of_the_pair_nearest_the_circle() -> None:
-    """Assert log 1.25 of moduli 1.25 and 0.5, with the sign of the test; the test where no pair is complex."""
+    """Assert log 1.25 of moduli 1.25 and 0.5, with the sign of the test; the test without a complex pair."""
     pairs = [mu for size in (1.25, 0.5) for mu in (size * SQUARE, size * SQUARE.conjugate())]
     solution = having(*pairs)
     sign = np.sign(torus.torus(solution))
@@ -235,7 +235,7 @@ def test_change_of_the_parameter_less_its_error() -> None:
 def test_fold_rises_above_the_error(
     slopes: tuple[float, float], ds: float, error: float, found: bool
 ) -> None:
-    """Assert that a change of sign of the slope is a fold where the arc rises above its chord by the error."""
+    """Assert that a change of sign of the slope is a fold where the arc rises by more than the error."""
     base, new = (going(slope, 2.0, error=error) for slope in slopes)
     assert fold.has_fold(base, new, ds) is found
 

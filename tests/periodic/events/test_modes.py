@@ -330,7 +330,7 @@ def test_middles_of_segments() -> None:
 
 
 def test_a_motion_begins_off_the_wall() -> None:
-    """Assert the middle of the longest segment in front of a wall at x = 0, the segment behind it being longer."""
+    """Assert the middle of the longest segment in front of a wall at x = 0, not of a longer one."""
     system = Surfaces([Surface(Kind.IMPACT, "wall", 0)], [[1.0]], directions=[-1])
     nodes = [(EventNode(0, -1), 1.0), (EventNode(0, -1), 3.0)]
     inside = along(lambda tau: np.where(tau < 3, 1.0, -1.0)[:, None], nodes, intervals=12)

@@ -158,7 +158,7 @@ def test_decades(most: float, least: float, found: tuple[float, ...]) -> None:
 
 
 def test_lengths_of_segments_as_conditions() -> None:
-    """Assert values and gradients of the lengths of segments between three nodes, the last around the period."""
+    """Assert values and gradients of the lengths of segments between three nodes, one around the period."""
     nodes = [(EventNode(0, 1), 1.0), (EventNode(0, -1), 2.0), (EventNode(0, 1), 4.0)]
     system, orbit = events_of(*nodes)
     row = Length(1, 0.5).linearise(system, orbit, (0,))
@@ -299,7 +299,7 @@ def test_swaps_are_of_two_surfaces() -> None:
 
 
 def test_event_that_swaps_with_an_impact_goes_to_its_far_side() -> None:
-    """Assert that the impact keeps its phase: the other goes as far before or behind it as it was behind or before."""
+    """Assert that the impact keeps its phase, and the other is as far on its other side."""
     system, _ = struck()
     before = along(sine, [(EventNode(0, 1), 1.0), (EventNode(3, -1), 1.5)])
     site = swaps.swapped(system, before, 0)

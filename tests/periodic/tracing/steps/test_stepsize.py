@@ -172,7 +172,7 @@ def test_special_points_that_a_step_over_swaps_has_passed(
     passed: bool,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Assert it of a change of sign, and of one that is found between ends of one sign, if it is looked for."""
+    """Assert it of a change of sign, and of two that are looked for and found."""
     monkeypatch.setattr(overswaps, "sign_between", lambda *_: between)
     base, new = (SimpleNamespace(once=lambda _, value=value: value) for value in ends)
     test: Any = SimpleNamespace(value=None, twice=lambda *_: twice)
