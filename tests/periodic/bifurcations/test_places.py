@@ -66,7 +66,7 @@ def test_a_change_of_sign_is_located(located: list[tuple[float, float]]) -> None
 
 
 def test_two_changes_of_sign_are_located_on_either_side(located: list[tuple[float, float]]) -> None:
-    """Assert the spans about a place where (d - 0.4)(d - 0.6) is negative, looked for only if it may be so."""
+    """Assert the spans about a place where (d - 0.4)(d - 0.6) is negative, if it is looked for."""
     dips: Any = Within(lambda d: (d - 0.4) * (d - 0.6))
     assert location._where(dips, dips.new, 1.0, margin(), NEVER) == []
     found = location._where(dips, dips.new, 1.0, margin(twice=lambda *_: True), NEVER)
@@ -247,7 +247,7 @@ def test_point_that_is_the_fold(label: str, distance: float, one: bool) -> None:
 
 
 def test_points_at_which_orbits_shrink() -> None:
-    """Assert a HB on a branch of orbits, and a fold whose autonomous orbit is a twentieth of those beside it."""
+    """Assert a HB on a branch of orbits, and a fold at which an orbit is a twentieth of those beside it."""
     orbit, rest = (at(0.0, orbit=SimpleNamespace(equilibrium=e)) for e in (False, True))
     assert Found(Label.HOPF, 0.0, orbit).shrunk and not Found(Label.HOPF, 0.0, rest).shrunk
     assert not Found(Label.FOLD, 0.0, orbit).shrunk
