@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -25,8 +26,13 @@ UNKNOWN = 5.0
 DOUBT = 0.3
 """How likely a test is to execute a line that is not known to, but may."""
 
+NAMED = 8.0
+"""How much more likely a test file is to execute a function whose name is in its text."""
+
 AGAIN = 0.7
 """How much less likely to notice a test's next case is than the one before, which has not noticed."""
+
+WORD = re.compile(r"\w+")
 
 
 @dataclass(frozen=True)
@@ -48,12 +54,14 @@ class Covering:
         self.clone = clone
         self.digests: dict[str, set[str]] = defaultdict(set)
         self.all: dict[str, Executed] = {}
+        self.unknown: dict[str, set[str]] = {}
         for test in files(clone):
             place = stored(clone, folder, test)
             if place.exists():
                 self._read(json.loads(place.read_text("utf-8")))
             else:
                 self.all[str(test)] = Executed(str(test), UNKNOWN, {})
+                self.unknown[str(test)] = set(WORD.findall((clone / test).read_text("utf-8")))
         self.executing: dict[str, list[Executed]] = defaultdict(list)
         for known in self.all.values():
             for name in known.functions:
@@ -114,15 +122,19 @@ class Covering:
                 found |= {test.name: test for test in using}
         return list(found.values())
 
-    def _beside(self, module: Path, none: bool) -> Iterator[Executed]:
+    def _beside(self, module: Path, none: bool, names: set[str]) -> Iterator[Executed]:
         """Yield the tests that may execute a line; none: whether none is known to."""
         room = Path("tests") / module.parent
         for test in self.all.values():
             near = room in Path(test.name.partition("::")[0]).parents
             partly = test.seconds >= UNKNOWN
             own = none and any(_module(name) == str(module) for name in test.functions)
-            if (near and (partly or none)) or own:
+            if (near and (partly or none)) or own or self._mentions(test.name, names):
                 yield test
+
+    def _mentions(self, name: str, names: set[str]) -> bool:
+        """Whether a test file of which nothing is known has one of some names in its text."""
+        return bool(self.unknown.get(name, set()) & names)
 
     @cached_property
     def _modules(self) -> dict[Path, Functions]:

@@ -23,7 +23,7 @@ class Functions:
     """The functions of a module by their qualified names."""
 
     def __init__(self, path: Path) -> None:
-        self.text = path.read_text("utf-8")
+        self.path, self.text = path, path.read_text("utf-8")
         self.tree = ast.parse(self.text)
         self.all = list(self._of(self.tree, ""))
 
@@ -85,6 +85,17 @@ class Functions:
             case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
                 return {name}
         return set()
+
+    def called(self, line: int) -> set[str]:
+        """Return the names by which a test may call what has a line: function, class, constant and module."""
+        inside = self.at(line)
+        names = {self.path.stem, *self.names(line), *(inside.name.split(".") if inside else ())}
+        names |= {
+            node.name
+            for node in self.tree.body
+            if isinstance(node, ast.ClassDef) and first(node) <= line <= (node.end_lineno or node.lineno)
+        }
+        return {name for name in names if not name.startswith("__")}
 
     def using(self, names: set[str]) -> set[int]:
         """Return the lines that use one of the names."""

@@ -1,6 +1,7 @@
 """Holds the tests against mutants of the code, and prints which of them no test notices.
 
     python tests/mutants/run.py [--count 100] [--seed 0] [--since COMMIT] [--limit SECONDS] [--page FILE]
+        [--measuring SECONDS]
 
 The mutants are made in a clone of the last commit. Each is held against the tests that execute the line that
 it changes, those first that are likely to notice it for their time, as far as the CPU time for a mutant goes.
@@ -12,9 +13,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
+import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -71,11 +74,14 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--since", help="only files that differ from this commit")
     parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds for one mutant")
+    parser.add_argument(
+        "--measuring", type=float, default=math.inf, help="seconds for test files not measured yet"
+    )
     parser.add_argument("--page", type=Path, help="where the table is written")
     asked = parser.parse_args()
     commit = cloned()
     forks.load()
-    measure(CLONE, COVERING)
+    measure(CLONE, COVERING, time.monotonic() + asked.measuring)
     os.chdir(CLONE)
     record = BUILD / f"mutants-{commit}-{asked.seed}.jsonl"
     outcomes = {(o.path, o.operator, o.occurrence): o for o in known(record)}

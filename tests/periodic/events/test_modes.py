@@ -197,22 +197,21 @@ def test_a_relay_that_never_switches(amplitude: float, mean: float, mode: int) -
 
 def test_other_surfaces_keep_their_modes_while_a_relay_is_looked_at() -> None:
     """Assert that two relays with modes all along are told apart, whichever comes first."""
-    system: Any = Surfaces(
-        [Surface(Kind.RELAY, "one", 0, column=0), Surface(Kind.RELAY, "two", 1, column=1)],
-        [[1.0], [1.0]],
-        guards_depend=True,
-    )
+    each = [Surface(Kind.RELAY, "one", 0, column=0), Surface(Kind.RELAY, "two", 1, column=1)]
+    for first, second in ((0, 1), (1, 0)):
+        system: Any = Surfaces(each, [[1.0], [1.0]], guards_depend=True)
 
-    def switch(state: Any, phase: Any, parameter: Any, side: Any = None) -> Any:
-        own = state[:, 0] - np.where(side[:, 0] == PLUS, -0.5, 0.5)
-        # The second relay's thresholds are out of reach where the first is on.
-        other = state[:, 0] - np.where(side[:, 0] == PLUS, 9.0, np.where(side[:, 1] == PLUS, -0.2, 0.2))
-        return np.stack([own, other], axis=1)
+        def switch(state: Any, phase: Any, parameter: Any, side: Any, first: int = first) -> Any:
+            own = state[:, 0] - np.where(side[:, first] == PLUS, -0.5, 0.5)
+            # The thresholds of the second are out of reach where the first is on.
+            far = np.where(side[:, 1 - first] == PLUS, -0.2, 0.2)
+            both = own, state[:, 0] - np.where(side[:, first] == PLUS, 9.0, far)
+            return np.stack(both if first == 0 else both[::-1], axis=1)
 
-    system.switch = switch
-    for given, count in ((((0, PLUS),), 0), (((0, MINUS),), 2)):
-        orbit = along(lambda tau: np.sin(tau)[:, None], modes=given)
-        assert len(switched(system, orbit, 1)) == count
+        system.switch = switch
+        for mode, count in ((PLUS, 0), (MINUS, 2)):
+            orbit = along(lambda tau: np.sin(tau)[:, None], modes=((first, mode),))
+            assert len(switched(system, orbit, second)) == count
 
 
 def test_modes_all_along_that_no_node_changes() -> None:

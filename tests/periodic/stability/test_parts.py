@@ -91,7 +91,7 @@ def test_pairs_of_motions_that_turn_evenly() -> None:
 
 
 def test_left_eigenvectors_measure_a_pairs_part() -> None:
-    """Assert 2 |left x| = 1 for x = (1, 0): the most that the first state's motion becomes, and 0 beside it."""
+    """Assert 2 |left x| = 1 for x = (1, 0), the most that its motion becomes, and 0 beside it."""
     (found, _) = spectrum((0.5, 0.9), (2.0, 0.5)).pairs
     assert found.left is not None
     assert 2 * abs(found.left @ np.array([1.0, 0, 0, 0])) == pytest.approx(1.0, abs=1e-10)
@@ -126,7 +126,7 @@ def test_spectrum_is_known_where_1_is_left(nearest_one: float, trivial: int, kno
 
 
 def test_distance_of_spectra() -> None:
-    """Assert the differences of the sums of powers: |2.1 - 2| and |1.1^2 + 1 - 2| / 2; relative to the largest."""
+    """Assert the larger of |2.1 - 2| and |1.1^2 + 1 - 2| / 2, relative to the largest multiplier."""
     one, two = np.diag([1.0, 1.0]), np.diag([1.1, 1.0])
     assert apart(one, two) == pytest.approx(max(0.1, 0.21 / 2))
     assert apart(np.diag([1.0, -1.0]), np.diag([2.0, -2.0])) == pytest.approx(3.0)
@@ -304,7 +304,7 @@ def test_steps_are_multiplied_up_while_they_are_well_conditioned() -> None:
 
 
 def test_flow_taken_out_of_steps() -> None:
-    """Assert the other multiplier, 0.5, of a flow along (1, 1) that comes back as itself; and the stray part."""
+    """Assert the other multiplier, 0.5, of a flow along (1, 1) that comes back, and what strays."""
     along, across = np.array([1.0, 1.0]) / np.sqrt(2), np.array([1.0, -1.0]) / np.sqrt(2)
     step = np.outer(along, along) + 0.5 * np.outer(across, across)
     flow = np.array([along, along, along])
