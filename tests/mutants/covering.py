@@ -97,9 +97,10 @@ class Covering:
         else:
             sure = self._using(module, functions, line)
         found = {test.name: _likely(module, test) for test in sure}
-        found |= {
-            t.name: DOUBT * _likely(module, t) for t in self._beside(module, not sure) if t.name not in found
-        }
+        names = functions.called(line)
+        for test in self._beside(module, not sure, names):
+            more = NAMED if self._mentions(test.name, names) else 1.0
+            found.setdefault(test.name, DOUBT * more * _likely(module, test))
         return self._ordered(found)
 
     def _executing(self, module: Path, functions: Functions, lines: Iterable[int]) -> list[Executed]:
