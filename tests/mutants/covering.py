@@ -1,112 +1,165 @@
-"""Which tests execute a line, and how long each takes: measured once for a commit, with coverage.py."""
+"""The tests that execute a line, those first that are likely to notice a change of it for their time."""
 
 from __future__ import annotations
 
-import ast
-import os
-import subprocess
-import sys
-from collections.abc import Iterator
-from os.path import commonpath
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import Any
 
-from coverage import CoverageData
+from functions import Functions
+from measuring import PACKAGES, files, function, stored
 
-ROOMS = ("symbolic", "periodic", "problems", "howto", "reports", ".")
-LONGEST = 20
-"""Seconds after which a test is stopped as it is measured; what it has executed until then counts."""
+PRIOR = 0.02
+"""How likely a test is to notice a change of whatever it executes, beside its share of the module changed."""
+
+STARTING = 0.02
+"""Seconds that a test takes beside its own."""
+
+UNKNOWN = 5.0
+"""CPU seconds that are taken for tests that were stopped as they were measured."""
+
+DOUBT = 0.3
+"""How likely a test is to execute a line that is not known to, but may."""
+
+NAMED = 8.0
+"""How much more likely a test file is to execute a function whose name is in its text."""
+
+AGAIN = 0.7
+"""How much less likely to notice a test's next case is than the one before, which has not noticed."""
+
+WORD = re.compile(r"\w+")
 
 
-def measure(clone: Path, folder: Path) -> None:
-    """Run the tests of a clone, room by room, and write what each executes; rooms that are there stay."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for room in [room for top in ROOMS for room in _rooms(clone / "tests" / top)]:
-        name = "-".join(room.relative_to(clone).parts)
-        if (folder / f"{name}.xml").exists():
-            continue
-        options = ["-q", "-n0", "-p", "no:cacheprovider", f"--timeout={LONGEST}", "--cov-context=test"]
-        options += ["--cov=symbolic", "--cov=periodic", "--cov-report=", f"--junitxml={folder}/{name}.xml"]
-        environment = os.environ | {"PYTHONPATH": str(clone), "COVERAGE_FILE": f"{folder}/{name}.cov"}
-        command = [sys.executable, "-m", "pytest", *options, str(room)]
-        print(f"measuring {name}", flush=True)
-        subprocess.run(command, cwd=clone, env=environment, capture_output=True)
+@dataclass(frozen=True)
+class Executed:
+    """A test: its CPU seconds, and of each function that it executes which lines, as the bits of a number."""
 
-
-def _rooms(folder: Path) -> list[Path]:
-    """The test files of a folder, and its folders where it is not the outermost."""
-    inner = [] if folder.name == "tests" else [path for path in folder.iterdir() if path.is_dir()]
-    return sorted([*inner, *folder.glob("test_*.py")])
+    name: str
+    seconds: float
+    functions: dict[str, int]
 
 
 class Covering:
-    """The tests that execute each line, as the files of a folder have them."""
+    """The tests that execute each line, as measured in a folder for the test files of a clone.
 
-    def __init__(self, folder: Path) -> None:
-        self._seconds = dict(entry for file in sorted(folder.glob("*.xml")) for entry in _durations(file))
-        self._data = [CoverageData(str(file)) for file in sorted(folder.glob("*.cov"))]
-        for data in self._data:
-            data.read()
+    A test file that is not measured yet, or could not be, stands for one test of which nothing is known.
+    """
+
+    def __init__(self, clone: Path, folder: Path) -> None:
+        self.clone = clone
+        self.digests: dict[str, set[str]] = defaultdict(set)
+        self.all: dict[str, Executed] = {}
+        self.unknown: dict[str, set[str]] = {}
+        for test in files(clone):
+            place = stored(clone, folder, test)
+            if place.exists():
+                self._read(json.loads(place.read_text("utf-8")))
+            else:
+                self.all[str(test)] = Executed(str(test), UNKNOWN, {})
+                self.unknown[str(test)] = set(WORD.findall((clone / test).read_text("utf-8")))
+        self.executing: dict[str, list[Executed]] = defaultdict(list)
+        for known in self.all.values():
+            for name in known.functions:
+                self.executing[name].append(known)
+
+    def _read(self, found: dict[str, Any]) -> None:
+        for name, digest in found.get("digests", {}).items():
+            self.digests[name].add(digest)
+        notes, last = found.get("tests", {}), dict[str, Executed]()
+        for name, note in notes.items():
+            if note["outcome"] in ("passed", "stopped"):
+                own = {place: int(bits, 16) for place, bits in note["executed"].items()}
+                seconds = max(note.get("seconds", 0.0), UNKNOWN if note["outcome"] == "stopped" else 0.0)
+                self.all[name] = last[function(name)] = Executed(name, seconds, own)
+        for name, note in notes.items():
+            if note["outcome"] == "alike" and (like := last.get(function(name))):
+                self.all[name] = replace(like, name=name)
 
     def seconds(self, test: str) -> float:
-        """Return how long a test takes."""
-        file, _, name = test.partition("::")
-        return self._seconds.get((file.removesuffix(".py").replace("/", "."), name), 1.0)
+        """Return how long a test takes, or is taken to take."""
+        return self.all[test].seconds if test in self.all else UNKNOWN
 
     def tests(self, module: Path, line: int) -> list[str]:
-        """Return the tests that execute a line, nearest folder first, there the quickest first.
+        """Return the tests that execute a line, the most promising first, then those that may.
 
-        Of a line that is executed at import, those that execute its function, or anything in the module; of a
-        module without functions those of its room.
+        Of a line that is executed at import, those that execute a line which uses what it names. Tests that
+        may are those of the module's room of which not all is known, and those that execute anything in the
+        module where none is known to execute the line.
         """
-        found = self._executing(module)
-        together = _together(ast.parse(module.read_text("utf-8")), line)
-        executing = (set().union(*(found.get(k, ()) for k in lines)) for lines in together)
-        chosen = next(filter(None, executing), None) or self._beside(module)
-        return sorted(chosen, key=lambda test: self._rank(module, test))
+        functions = Functions(self.clone / module)
+        if functions.runs(line):
+            sure = self._executing(module, functions, functions.lines(line))
+        else:
+            sure = self._using(module, functions, line)
+        found = {test.name: _likely(module, test) for test in sure}
+        names = functions.called(line)
+        for test in self._beside(module, not sure, names):
+            more = NAMED if self._mentions(test.name, names) else 1.0
+            found.setdefault(test.name, DOUBT * more * _likely(module, test))
+        return self._ordered(found)
 
-    def _beside(self, module: Path) -> set[str]:
+    def _executing(self, module: Path, functions: Functions, lines: Iterable[int]) -> list[Executed]:
+        found: dict[str, Executed] = {}
+        for line in lines:
+            if (inside := functions.at(line)) is None:
+                continue
+            name = f"{module}::{inside.name}"
+            known, bit = self.digests[name] == {inside.digest}, 1 << (line - inside.first)
+            found |= {t.name: t for t in self.executing[name] if not known or t.functions[name] & bit}
+        return list(found.values())
+
+    def _using(self, module: Path, functions: Functions, line: int) -> list[Executed]:
+        if inside := functions.at(line):
+            return self._executing(module, functions, range(inside.first, inside.last + 1))
+        names, found = functions.names(line), dict[str, Executed]()
+        for path, other in self._modules.items():
+            if path == module or any(name in other.text for name in names):
+                using = self._executing(path, other, other.using(names))
+                found |= {test.name: test for test in using}
+        return list(found.values())
+
+    def _beside(self, module: Path, none: bool, names: set[str]) -> Iterator[Executed]:
+        """Yield the tests that may execute a line; none: whether none is known to."""
         room = Path("tests") / module.parent
-        every = (f"{owner.replace('.', '/')}.py::{name}" for owner, name in self._seconds)
-        return {test for test in every if Path(test.partition("::")[0]).parent == room}
+        for test in self.all.values():
+            near = room in Path(test.name.partition("::")[0]).parents
+            partly = test.seconds >= UNKNOWN
+            own = none and any(_module(name) == str(module) for name in test.functions)
+            if (near and (partly or none)) or own or self._mentions(test.name, names):
+                yield test
 
-    def _executing(self, module: Path) -> dict[int, set[str]]:
-        found: dict[int, set[str]] = {}
-        for data in self._data:
-            for file in (name for name in data.measured_files() if name.endswith(f"/{module}")):
-                for line, contexts in data.contexts_by_lineno(file).items():
-                    found.setdefault(line, set()).update(name.rpartition("|")[0] for name in contexts if name)
-        return found
+    def _mentions(self, name: str, names: set[str]) -> bool:
+        """Whether a test file of which nothing is known has one of some names in its text."""
+        return bool(self.unknown.get(name, set()) & names)
 
-    def _rank(self, module: Path, test: str) -> tuple[bool, int, float, str]:
-        file, room = Path(test.partition("::")[0]), Path("tests") / module.parent
-        shared = len(Path(commonpath([room, file.parent])).parts)
-        return file.stem != f"test_{module.stem}", -shared, self.seconds(test), test
+    @cached_property
+    def _modules(self) -> dict[Path, Functions]:
+        paths = (path for package in PACKAGES for path in (self.clone / package).rglob("*.py"))
+        return {path.relative_to(self.clone): Functions(path) for path in paths}
 
-
-def _durations(file: Path) -> Iterator[tuple[tuple[str, str], float]]:
-    for case in ElementTree.parse(file).iter("testcase"):
-        yield (case.get("classname", ""), case.get("name", "")), float(case.get("time", 1.0))
-
-
-def _together(tree: ast.Module, line: int) -> list[set[int]]:
-    """Lines that are executed with a line: its statement; of what is done at import its function, or any."""
-    statements = (node for node in ast.walk(tree) if isinstance(node, ast.stmt))
-    inside = sorted((node for node in statements if _first(node) <= line <= _last(node)), key=_first)
-    if any(isinstance(node, ast.FunctionDef) and line in _body(node) for node in inside):
-        return [{*range(_first(inside[-1]), _last(inside[-1]) + 1)} - _body(inside[-1]) | {line}]
-    own = [_body(node) for node in inside if isinstance(node, ast.FunctionDef)]
-    return [*own, set().union(*(_body(node) for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)))]
+    def _ordered(self, likely: dict[str, float]) -> list[str]:
+        """The most likely to notice for a second of time first: the further cases of a test later."""
+        cases, scores = defaultdict[str, int](int), dict[str, float]()
+        for name in sorted(likely, key=lambda name: (self.seconds(name), name)):
+            again = AGAIN ** cases[function(name)]
+            cases[function(name)] += 1
+            scores[name] = again * likely[name] / (self.seconds(name) + STARTING)
+        return sorted(scores, key=lambda name: (-scores[name], name))
 
 
-def _body(node: ast.stmt) -> set[int]:
-    return {k for inner in getattr(node, "body", []) for k in range(_first(inner), _last(inner) + 1)}
+def _likely(module: Path, test: Executed) -> float:
+    """Return how likely a test is to notice a change of a module, up to a factor."""
+    own = sum(_module(name) == str(module) for name in test.functions)
+    share = own / len(test.functions) if test.functions else 0.0
+    file, room = Path(test.name.partition("::")[0]), Path("tests") / module.parent
+    near = 2 if file.parent == room or room in file.parents else 1
+    return (PRIOR + share) * near * (2 if file.stem == f"test_{module.stem}" else 1)
 
 
-def _first(node: ast.stmt) -> int:
-    decorators = getattr(node, "decorator_list", [])
-    return decorators[0].lineno if decorators else node.lineno
-
-
-def _last(node: ast.stmt) -> int:
-    return node.end_lineno or node.lineno
+def _module(name: str) -> str:
+    return name.partition("::")[0]

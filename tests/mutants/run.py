@@ -1,23 +1,29 @@
 """Holds the tests against mutants of the code, and prints which of them no test notices.
 
     python tests/mutants/run.py [--count 100] [--seed 0] [--since COMMIT] [--limit SECONDS] [--page FILE]
+        [--measuring SECONDS]
 
 The mutants are made in a clone of the last commit. Each is held against the tests that execute the line that
-it changes, nearest and quickest first, as far as the CPU time for a mutant goes; which tests these are is
-measured once for a commit. A run that was stopped goes on where it was.
+it changes, those first that are likely to notice it for their time, as far as the CPU time for a mutant goes.
+Which tests these are is measured once for each text of a test file and kept in build/covering (delete it to
+measure all anew). A run that was stopped goes on where it was.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
+import time
 from dataclasses import asdict
 from pathlib import Path
 
-from covering import Covering, measure
+import forks
+from covering import Covering
+from measuring import PACKAGES, measure
 from page import page, said
 from sample import drawn
 from trial import Outcome, Trial
@@ -25,8 +31,8 @@ from trial import Outcome, Trial
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
 CLONE = BUILD / "mutants"
-PACKAGES = ("symbolic", "periodic")
-LIMIT = 120.0
+COVERING = BUILD / "covering"
+LIMIT = 60.0
 """Seconds of CPU time for the tests of one mutant."""
 
 
@@ -48,6 +54,17 @@ def known(file: Path) -> list[Outcome]:
     )
 
 
+def cloned() -> str:
+    """Clone the last commit, compile it to bytecode, which no mutant is, and return the commit."""
+    subprocess.run(["rm", "-rf", str(CLONE)], check=True)
+    subprocess.run(["git", "clone", "-q", "--shared", str(ROOT), str(CLONE)], check=True)
+    environment = os.environ | {"PYTHONPATH": str(CLONE)}
+    for command in (["compileall", "-q", *PACKAGES], ["pytest", "-q", "-n0", "--collect-only", "tests"]):
+        made = [sys.executable, "-m", *command]
+        subprocess.run(made, cwd=CLONE, env=environment, check=True, stdout=subprocess.DEVNULL)
+    return subprocess.check_output(["git", "rev-parse", "--short", "HEAD"], cwd=CLONE, text=True).strip()
+
+
 def main() -> int:
     """Draw, try and tell; the exit code says whether all that change a result were noticed."""
     parser = argparse.ArgumentParser(
@@ -57,16 +74,19 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--since", help="only files that differ from this commit")
     parser.add_argument("--limit", type=float, default=LIMIT, help="CPU seconds for one mutant")
+    parser.add_argument(
+        "--measuring", type=float, default=math.inf, help="seconds for test files not measured yet"
+    )
     parser.add_argument("--page", type=Path, help="where the table is written")
     asked = parser.parse_args()
-    subprocess.run(["rm", "-rf", str(CLONE)], check=True)
-    subprocess.run(["git", "clone", "-q", "--shared", str(ROOT), str(CLONE)], check=True)
-    commit = subprocess.check_output(["git", "rev-parse", "--short", "HEAD"], cwd=CLONE, text=True).strip()
-    measure(CLONE, BUILD / f"covering-{commit}")
+    commit = cloned()
+    forks.load()
+    measure(CLONE, COVERING, time.monotonic() + asked.measuring)
     os.chdir(CLONE)
     record = BUILD / f"mutants-{commit}-{asked.seed}.jsonl"
     outcomes = {(o.path, o.operator, o.occurrence): o for o in known(record)}
-    trial, found = Trial(CLONE, Covering(BUILD / f"covering-{commit}"), asked.limit), list[Outcome]()
+    trial = Trial(CLONE, Covering(CLONE, COVERING), asked.limit, COVERING / "cache")
+    found: list[Outcome] = []
     for number, mutant in enumerate(drawn(modules(asked.since), asked.count, asked.seed)):
         place = (str(mutant.path), mutant.operator.rpartition("/")[2], mutant.occurrence)
         if place not in outcomes:

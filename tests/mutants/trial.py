@@ -4,28 +4,30 @@ from __future__ import annotations
 
 import os
 import resource
+import shutil
 import signal
-import subprocess
-import sys
 import tempfile
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
+import forks
+import pytest
 from cosmic_ray.mutating import use_mutation
 from cosmic_ray.plugins import get_operator
 from covering import Covering
 from sample import Mutant
 
-FIRST = 5.0
-"""Seconds of tests that are asked before the others: most mutants are noticed by one of these."""
+FIRST, GROWTH = 1.0, 4.0
+"""Seconds of tests that are asked first, which notice most mutants, and how many times more next."""
 
-PATIENCE = 30.0
-"""Seconds more than it takes without the change, by its tenfold, after which a test does not end."""
-
-OPTIONS = ("-x", "-q", "-n0", "--no-header", "--tb=no", "-p", "no:cacheprovider")
+PATIENCE = 5.0
+"""CPU seconds more than it takes without the change, by its tenfold, after which a test does not end."""
 
 LATE = "time is up"
+
+COMPILED = Path("symbolic/kernels")
+"""Whose mutants may make other kernels of the same text, so that none is taken from the cache."""
 
 
 @dataclass(frozen=True)
@@ -43,85 +45,95 @@ class Outcome:
     seconds: float
 
 
+@dataclass(eq=False)
+class Judge:
+    """A plugin of pytest that stops a test that does not end, and writes down the first that fails."""
+
+    covering: Covering
+    place: Path
+    failed: str = field(default="", init=False)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Iterator[None]:
+        """Stop what takes far longer than without the change."""
+        with forks.stopped_after(PATIENCE + 10 * self.covering.seconds(item.nodeid)):
+            return (yield)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note the first failure."""
+        if report.failed and not self.place.exists():
+            self.place.write_text(report.nodeid, "utf-8")
+
+
 class Trial:
     """Holds mutants in a clone against the tests that execute them, each for so many seconds of CPU time."""
 
-    def __init__(self, clone: Path, covering: Covering, limit: float) -> None:
-        self.clone, self.covering, self.limit = clone, covering, limit
-        self.broken: set[str] = set()
+    def __init__(self, clone: Path, covering: Covering, limit: float, cache: Path) -> None:
+        self.clone, self.covering, self.limit, self.cache = clone, covering, limit, cache
+        self.sound, self.broken = set[str](), set[str]()
 
     def of(self, mutant: Mutant) -> Outcome:
         """Try a mutant. A test that fails without the change too says nothing: it is asked no more."""
         tests, spent = self.covering.tests(mutant.path, mutant.position[0]), _spent()
         while True:
             asked = [test for test in tests if test not in self.broken]
-            with use_mutation(
-                self.clone / mutant.path, get_operator(mutant.operator)(), mutant.occurrence
-            ) as texts:
-                before, after = _change(*texts, mutant.position[0])
-                test = self._failing(asked, spent + self.limit)
-            if "::" not in test or not self._run([test], self.limit):
+            test, (before, after) = self._changed(mutant, asked, spent + self.limit)
+            if "::" not in test or self._is_sound(test):
                 break
-            self.broken.add(test)
         place = (str(mutant.path), mutant.position[0], mutant.operator.rpartition("/")[2], mutant.occurrence)
         return Outcome(*place, before, after, test, len(asked), round(_spent() - spent, 1))
 
-    def _failing(self, tests: list[str], ends: float) -> str:
-        total, first = 0.0, 0
-        while first < len(tests) and total < FIRST:
-            total += self.covering.seconds(tests[first])
-            first += 1
-        for batch in filter(None, (tests[:first], tests[first:])):
-            if ends - _spent() < 1.0:
+    def _changed(self, mutant: Mutant, tests: list[str], ends: float) -> tuple[str, tuple[str, str]]:
+        """Return the first test that fails with a mutant, and the lines; the file stays as old as it was."""
+        file = self.clone / mutant.path
+        age = file.stat()
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            use_mutation(file, get_operator(mutant.operator)(), mutant.occurrence) as texts,
+        ):
+            cache = Path(folder, "cache")
+            if self.cache.exists() and COMPILED not in mutant.path.parents:
+                shutil.copytree(self.cache, cache, copy_function=os.link)
+            found = self._failing(tests, ends, Path(folder))
+        os.utime(file, ns=(age.st_atime_ns, age.st_mtime_ns))
+        return found, _change(*texts, mutant.position[0])
+
+    def _is_sound(self, test: str) -> bool:
+        if test not in self.sound:
+            with tempfile.TemporaryDirectory() as folder:
+                sound = not self._run([test], self.limit, Path(folder))
+            (self.sound if sound else self.broken).add(test)
+        return test in self.sound
+
+    def _failing(self, tests: list[str], ends: float, folder: Path) -> str:
+        """Ask the tests, in batches that grow."""
+        first, share = 0, FIRST
+        while first < len(tests):
+            last, total = first, 0.0
+            while last < len(tests) and total < share:
+                total += self.covering.seconds(tests[last])
+                last += 1
+            left = ends - _spent()
+            if left < 1.0:
                 return LATE
-            if found := self._run(batch, ends - _spent()):
+            if found := self._run(tests[first:last], left, folder):
                 return found
+            first, share = last, GROWTH * share
         return ""
 
-    def _run(self, tests: list[str], left: float) -> str:
+    def _run(self, tests: list[str], left: float, folder: Path) -> str:
         """Return the first test that fails, or nothing; LATE where the seconds do not suffice."""
-        patience = PATIENCE + 10 * max(map(self.covering.seconds, tests))
-        with tempfile.TemporaryDirectory() as folder:
-            listed, said = Path(folder, "tests"), Path(folder, "said")
-            listed.write_text("\n".join(tests), "utf-8")
-            command = [sys.executable, "-m", "pytest", *OPTIONS, f"--timeout={patience}", f"@{listed}"]
-            # What is compiled with a mutant is not kept.
-            environment = os.environ | {"PYTHONPATH": str(self.clone), "XDG_CACHE_HOME": folder}
-            with said.open("w") as out:
-                process = subprocess.Popen(
-                    command,
-                    cwd=self.clone,
-                    env=environment | {"PYTHONDONTWRITEBYTECODE": "1"},
-                    stdout=out,
-                    stderr=out,
-                    start_new_session=True,
-                    preexec_fn=lambda: resource.setrlimit(
-                        resource.RLIMIT_CPU, (int(left) + 1, int(left) + 6)
-                    ),
-                )
-                code = _end(process, 5 * left)
-            return _verdict(code, said.read_text("utf-8", "replace"))
-
-
-def _end(process: subprocess.Popen[bytes], seconds: float) -> int:
-    """Return the exit code of the tests, which end by then with all that they have started."""
-    try:
-        return process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        return -signal.SIGXCPU
-    finally:
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-
-
-def _verdict(code: int, said: str) -> str:
-    if code == 0:
-        return ""
-    if code in (-signal.SIGXCPU, -signal.SIGKILL):
-        return LATE
-    failed = [line for line in said.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    return failed[0].split(" - ")[0].split(maxsplit=1)[1] if failed else said.strip()[-200:]
+        listed, said, failed = folder / "tests", folder / "said", folder / "failed"
+        listed.write_text("\n".join(tests), "utf-8")
+        judge = Judge(self.covering, failed)
+        code = forks.run(self.clone, ["-x", f"@{listed}"], judge, left, said, folder / "cache")
+        if code == 0:
+            return ""
+        if failed.exists():
+            return failed.read_text("utf-8")
+        if code in (-signal.SIGXCPU, -signal.SIGKILL):
+            return LATE
+        return said.read_text("utf-8", "replace").strip()[-200:]
 
 
 def _spent() -> float:

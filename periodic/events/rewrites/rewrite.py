@@ -180,7 +180,7 @@ class Ends:
         self, system: System, orbit: Orbit, own: Site, events: tuple[EventNode, ...], phases: Array
     ) -> SideCondition:
         """The side condition where it ends, short of a level so far that rounding does not decide."""
-        held, left = own.held, 0.0
+        held = own.held
         if isinstance(held, Length | Lengths):
             return Length(index_of(events, phases, own.begin(orbit, self.size), orbit), self.size)
         jump = sliding(system, own.switch)

@@ -183,14 +183,26 @@ def test_number_refused(source: str, key: str, text: str) -> None:
     assert "number from " in said and "\n" not in said
 
 
+def given(source: str, **values: float) -> bool:
+    """Tell whether a scene takes these numbers, and has them as the parameters of its system."""
+    system = build(load(source, [(key, str(value)) for key, value in values.items()]))
+    found = {p.name: p.value for p in system.parameters}
+    return all(found[key] == value for key, value in values.items())
+
+
 def test_limits_are_generous() -> None:
-    """Assert that the domain that the numerics are meant for is allowed."""
+    """Assert that the domain that the numerics are meant for is allowed, up to its ends."""
     for preload, viscosity, amplitude, beta in ((1, 1e-4, 1e-9, 1), (1e6, 1e2, 1e-4, 60)):
-        values = {"preload": preload, "viscosity": viscosity, "amplitude": amplitude, "beta": beta}
-        load("vitrea79-810N", [(key, str(value)) for key, value in values.items()])
-    load("dry-810N", [("ratio", "0"), ("exponent", "1"), ("from_rpm", "1"), ("to_rpm", "20000")])
-    load("dry-810N", [("ratio", "1"), ("exponent", "3")])
-    load("vitrea79-810N", [("squeeze", "2.7e5")])
+        assert given("vitrea79-810N", preload=preload, viscosity=viscosity, amplitude=amplitude, beta=beta)
+    assert given("dry-810N", exponent=1) and given("dry-810N", exponent=3)
+    assert given("vitrea79-810N", squeeze=2.7e5)
+    slow = load("dry-810N", [("ratio", "0"), ("from_rpm", "1"), ("to_rpm", "20000")])
+    assert isinstance(slow, DiscScene)
+    assert (slow.trace.from_rpm, slow.trace.to_rpm) == (1, 20000)
+    light, heavy = (load("dry-810N", [("ratio", text)]) for text in ("0", "1"))
+    assert isinstance(light, DiscScene) and isinstance(heavy, DiscScene)
+    assert light.damping is not None and heavy.damping is not None
+    assert (light.damping.ratio, heavy.damping.ratio) == (0, 1)
 
 
 def test_range_sentence() -> None:

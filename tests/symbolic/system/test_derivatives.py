@@ -190,14 +190,19 @@ def test_infinite_argument_gives_no_finite_residual(name: str, value: float) -> 
 
 @pytest.mark.parametrize("film", ["quasistatic", "squeeze", None])
 def test_absurd_numbers_warn_nowhere(film: str | None) -> None:
-    """Assert that negative films, overflow and NaN phases pass through every evaluation without a warning."""
+    """Assert that negative films, overflow and NaN phases pass through every evaluation without a warning.
+
+    Warnings are errors in tests. Both ways to the residual give the same numbers, NaN included.
+    """
     system = Disc(film=film).compile()
     for value in (-1e300, -1.0, 0.0, 1e300, np.nan, np.inf):
         rate, state, xi, phase, p = (np.full_like(a, value) for a in draw(system).arguments)
         for parameter in (system.nominal, p):
-            system.linearise(rate, state, xi, phase, parameter, numbered(system))
-            system.residual(rate, state, xi, phase, parameter)
-            system.output(rate, state, xi, phase, parameter)
-            system.switch(state, phase, parameter)
-            system.switch_gradient(state, phase, parameter)
-            system.move(xi, xi)
+            lines = system.linearise(rate, state, xi, phase, parameter, numbered(system))
+            residual = system.residual(rate, state, xi, phase, parameter)
+            np.testing.assert_array_equal(lines.residual, residual)
+            count = len(phase)
+            assert system.output(rate, state, xi, phase, parameter).shape == (count, len(system.outputs))
+            assert system.switch(state, phase, parameter).shape == (count, len(system.switches))
+            assert system.switch_gradient(state, phase, parameter)[1].shape == (count, len(system.switches))
+            assert system.move(xi, xi).shape == xi.shape

@@ -1,0 +1,223 @@
+"""Lengths and bounds of steps, of solutions that are given: values by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from support.surfaces import along
+
+from periodic.orbit.mesh import EventNode
+from periodic.tracing import collapse
+from periodic.tracing.continuation import NEARLY, Continuation
+from periodic.tracing.steps import leveltest, overswaps, stepbounds
+from periodic.tracing.steps.stepsize import ArclengthControl, rounded
+from periodic.tracing.steps.wayacross import matched
+
+
+@pytest.mark.parametrize(
+    ("ds", "iterations", "ratio", "found"),
+    [
+        (0.02, 3, 0.0, 0.04),
+        (0.02, 4, 0.0, 0.03),
+        (0.02, 5, 0.0, 0.024),
+        (0.02, 6, 0.0, 0.02),
+        (0.02, 7, 0.0, 0.014),
+        (0.15, 2, 0.0, 0.2),  # at most ds_max
+        (0.02, 3, 0.8, 0.02),  # aims at 0.8 of the bounds
+        (0.02, 3, 1.6, 0.01),
+        (0.02, 3, 0.5, 0.032),
+        (0.001, 3, 0.0, 0.004),  # recovers by 4
+        (0.008, 3, 0.0, 0.02),  # up to ds
+        (0.001, 4, 0.0, 0.0015),  # only after few iterations
+        (1e-7, 9, 8.0, 1e-7),  # at least ds_min
+    ],
+)
+def test_next_step(ds: float, iterations: int, ratio: float, found: float) -> None:
+    """Assert the length after so many iterations, and so near the bounds."""
+    assert ArclengthControl().next_size(ds, iterations, ratio) == pytest.approx(found, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "part"), [(1.01, 0.75), (1.6, 0.5), (2.0, 0.4), (3.2, 0.25), (100.0, 0.25)]
+)
+def test_part_of_a_rejected_step(ratio: float, part: float) -> None:
+    """Assert 0.8 over the ratio, from 0.25 to 0.75."""
+    assert ArclengthControl().shorter(ratio) == pytest.approx(part, rel=1e-14)
+
+
+def test_factors_are_whole_hundredths() -> None:
+    """Assert that they are rounded down."""
+    assert rounded(1.239999) == 1.23 and rounded(0.999) == 0.99 and rounded(2.0) == 2.0
+
+
+def test_control_with_another_least_step() -> None:
+    """Assert the least step alone is changed, and that the same one is no change."""
+    control = ArclengthControl()
+    assert control.down_to(1e-9) == replace(control, ds_min=1e-9)
+    assert control.down_to(control.ds_min) is control
+
+
+@pytest.mark.parametrize(
+    ("cosine", "angle"),
+    [(0.8, 1.0), (1.0, 0.0), (1.5, 0.0), (-2.0, np.pi / np.arccos(0.8)), (0.0, 0.5 * np.pi / np.arccos(0.8))],
+)
+def test_angles_in_parts_of_the_largest(cosine: float, angle: float) -> None:
+    """Assert the angle over that whose cosine is 0.8, cosines beyond 1 being rounding."""
+    assert stepbounds._angle(cosine, 0.8) == pytest.approx(angle, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("ends", "rates", "back"),
+    [
+        ((1.0, 1.0), (-4.0, 4.0), True),  # a parabola down to 0
+        ((1.0, 1.0), (-1.9, 1.9), False),  # down to 0.525
+        ((1.0, 1.0), (-2.1, 2.1), True),  # down to 0.475
+        ((-1.0, -1.0), (4.0, -4.0), True),
+        ((1.0, 1.0), (4.0, -4.0), False),
+        ((2.0, 1.0), (-1.0, -1.0), False),  # a line
+        ((1.0, 1.0), (0.0, 8.0), True),  # 1 - 8 t^2 (1 - t): 8 * 4 / 27 below, at 2/3
+        ((1.0, 1.0), (0.0, 3.0), False),  # 0.444 below
+    ],
+)
+def test_cubic_that_comes_near_0(ends: tuple[float, float], rates: tuple[float, float], back: bool) -> None:
+    """Assert whether it falls to half the smaller end value between the ends."""
+    assert leveltest.comes_back(ends, rates) is back
+
+
+@pytest.mark.parametrize(
+    ("span", "alone", "shrunk"), [(0.19, True, True), (0.21, True, False), (0.19, False, False)]
+)
+def test_orbit_that_shrank(span: float, alone: bool, shrunk: bool) -> None:
+    """Assert that an autonomous orbit of less than a tenth of its guess's span 2 is another one."""
+    guess: Any = SimpleNamespace(span=lambda: 2.0)
+    found: Any = SimpleNamespace(
+        problem=SimpleNamespace(autonomous=alone), orbit=SimpleNamespace(span=lambda: span)
+    )
+    assert collapse.collapsed(guess, found) is shrunk
+
+
+def test_event_nodes_correspond_to_the_nearest_alike() -> None:
+    """Assert it around the period, and among other events."""
+
+    def sine(tau: Any) -> Any:
+        return np.sin(tau)[:, None]
+
+    a, b = EventNode(0, 1), EventNode(1, 1)
+    one = along(sine, [(a, 0.1), (b, 2.0), (a, 4.0)])
+    other = along(sine, [(b, 1.0), (a, 3.5), (a, 6.2)])
+    assert matched(one, other) == [2, 0, 1]
+
+
+class Straight(overswaps._Way):
+    """A way on which swaps happen from a distance on, and orbits exist up to another one."""
+
+    swap, end = 0.3, 1.0
+
+    def _swaps(self, distance: float) -> bool:
+        return distance > self.swap
+
+
+def test_steps_over_swaps_are_tried_in_halves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the whole step, its half and its quarter are tried, in turn, each up to the whole."""
+    tried: list[float] = []
+
+    def over(way: Any, ds: float, course: Any) -> Any:
+        tried.append(ds)
+        return "over" if ds < 0.11 else None
+
+    monkeypatch.setattr(overswaps._Way, "over", over)
+    solver: Any = SimpleNamespace(problem=SimpleNamespace(free=(0,), index=0))
+    base: Any = SimpleNamespace(orbit=SimpleNamespace(mesh=SimpleNamespace(events=(1,))))
+    given: Any = None
+    assert overswaps.over_swaps(solver, given, base, 0.4, given) == "over"
+    assert tried == [0.4, 0.2, 0.1]
+    tried.clear()
+    assert overswaps.over_swaps(solver, given, base, 0.2, given) == "over" and tried == [0.2, 0.1]
+    tried.clear()
+    assert overswaps.over_swaps(solver, given, base, 1.0, given) is None and tried == [1.0, 0.5, 0.25]
+    solver.problem.free = (0, 1)
+    assert overswaps.over_swaps(solver, given, base, 0.2, given) is None
+    base.orbit.mesh.events, solver.problem.free = (), (0,)
+    assert overswaps.over_swaps(solver, given, base, 0.2, given) is None
+
+
+def test_swaps_ahead_are_seen_on_the_tangent() -> None:
+    """Assert it where a segment of 1 rad shrinks by 2 rad per arclength: from 0.5 on."""
+    orbit = along(lambda tau: np.sin(tau)[:, None], [(EventNode(0, 1), 1.0), (EventNode(1, 1), 2.0)])
+    tangent = SimpleNamespace(phases=np.array([1.0, -1.0]), parameter=-2.0)
+    given: Any = None
+    way = overswaps._Way(given, given, SimpleNamespace(orbit=orbit, tangent=tangent))  # type: ignore[arg-type]
+    assert [way._swaps(distance) for distance in (0.49, 0.5, 0.51)] == [False, True, True]
+    assert way._sign == -1.0
+
+
+@pytest.mark.parametrize(
+    ("ends", "twice", "between", "passed"),
+    [
+        ((1.0, -1.0), False, None, True),
+        ((1.0, 0.0), True, 0.5, False),
+        ((1.0, 1.0), False, 0.5, False),
+        ((1.0, 1.0), True, 0.5, True),
+        ((1.0, 1.0), True, None, False),
+    ],
+)
+def test_special_points_that_a_step_over_swaps_has_passed(
+    ends: tuple[float, float],
+    twice: bool,
+    between: float | None,
+    passed: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Assert it of a change of sign, and of two that are looked for and found."""
+    monkeypatch.setattr(overswaps, "sign_between", lambda *_: between)
+    base, new = (SimpleNamespace(once=lambda _, value=value: value) for value in ends)
+    test: Any = SimpleNamespace(value=None, twice=lambda *_: twice)
+    course: Any = SimpleNamespace(returns=lambda *_: False)
+    given: Any = None
+    assert overswaps._Way(given, given, base)._passed(test, new, 1.0, course) is passed  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("begin", "values"),
+    [(0.5, [0.1, 0.5, 0.7]), (0.1, [0.1, 0.7]), (0.0, (0.1, 0.7)), (1.0, (0.1, 0.7)), (2.0, (0.1, 0.7))],
+)
+def test_values_with_a_point(begin: float, values: Any) -> None:
+    """Assert the user's, and that of the branch's own start if it lies within the range."""
+    problem = SimpleNamespace(low=0.0, high=1.0)
+    own: Any = SimpleNamespace(solver=SimpleNamespace(problem=problem), user=(0.1, 0.7))
+    assert Continuation._values(own, begin) == values
+
+
+@pytest.mark.parametrize(
+    ("touches", "distance", "wanted", "ds", "least"),
+    [
+        (False, 0.001, 0.05, 0.05, 1e-7),
+        (False, 0.1, 0.05, 0.1, 1e-7),
+        (True, 0.1, 0.05, 0.02, 1e-7),
+        (False, 1e-9, 1e-9, 1e-9, NEARLY * 1e-9),
+    ],
+)
+def test_step_beyond_a_change(
+    touches: bool, distance: float, wanted: float, ds: float, least: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert its length and the least one: as long as before, the first one again after a touch."""
+    from periodic.tracing import continuation
+
+    found = SimpleNamespace(touches=touches, distance=distance, solution=SimpleNamespace(name="beyond"))
+    monkeypatch.setattr(continuation, "crossed", lambda *_: found)
+    monkeypatch.setattr(continuation, "at_once", lambda *_: [])
+    monkeypatch.setattr(continuation, "replace", lambda state, **changed: changed)
+    change = SimpleNamespace(touches=False, final=False, last=False, strict=False)
+    own: Any = SimpleNamespace(
+        state=object(), solver=None, control=ArclengthControl(), collected=["point"], _emitted=lambda *_: None
+    )
+    own._counted = lambda label: None
+    at: Any = SimpleNamespace(end=None, change=change)
+    assert list(Continuation._crossed(own, at, wanted)) == ["point"]
+    assert own.state["ds"] == pytest.approx(ds, rel=1e-14)
+    assert own.state["least"] == pytest.approx(least, rel=1e-14)
+    assert (own.state["last"], own.state["kept"]) == (found.solution, 1)
