@@ -12,9 +12,10 @@ from support.surfaces import along
 
 from periodic.orbit.mesh import EventNode
 from periodic.tracing import collapse
-from periodic.tracing.continuation import NEARLY, Continuation
-from periodic.tracing.steps import leveltest, overswaps, stepbounds
+from periodic.tracing.continuation import Continuation
+from periodic.tracing.steps import leveltest, overchanges, stepbounds
 from periodic.tracing.steps.stepsize import ArclengthControl, rounded
+from periodic.tracing.steps.taken import NEARLY, Steps
 from periodic.tracing.steps.wayacross import matched
 
 
@@ -112,47 +113,31 @@ def test_event_nodes_correspond_to_the_nearest_alike() -> None:
     assert matched(one, other) == [2, 0, 1]
 
 
-class Straight(overswaps._Way):
-    """A way on which swaps happen from a distance on, and orbits exist up to another one."""
-
-    swap, end = 0.3, 1.0
-
-    def _swaps(self, distance: float) -> bool:
-        return distance > self.swap
-
-
-def test_steps_over_swaps_are_tried_in_halves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that the whole step, its half and its quarter are tried, in turn, each up to the whole."""
+def test_steps_over_changes_are_tried_in_halves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the whole step, its half and its quarter are tried in turn, while the word changes."""
     tried: list[float] = []
 
     def over(way: Any, ds: float, course: Any) -> Any:
         tried.append(ds)
         return "over" if ds < 0.11 else None
 
-    monkeypatch.setattr(overswaps._Way, "over", over)
+    monkeypatch.setattr(overchanges._Way, "over", over)
+    monkeypatch.setattr(overchanges._Way, "changes", lambda way, ds: ds > 0.01)
     solver: Any = SimpleNamespace(problem=SimpleNamespace(free=(0,), index=0))
     base: Any = SimpleNamespace(orbit=SimpleNamespace(mesh=SimpleNamespace(events=(1,))))
     given: Any = None
-    assert overswaps.over_swaps(solver, given, base, 0.4, given) == "over"
+    assert overchanges.over_changes(solver, given, base, 0.4, given) == "over"
     assert tried == [0.4, 0.2, 0.1]
     tried.clear()
-    assert overswaps.over_swaps(solver, given, base, 0.2, given) == "over" and tried == [0.2, 0.1]
+    assert overchanges.over_changes(solver, given, base, 0.2, given) == "over" and tried == [0.2, 0.1]
     tried.clear()
-    assert overswaps.over_swaps(solver, given, base, 1.0, given) is None and tried == [1.0, 0.5, 0.25]
+    assert overchanges.over_changes(solver, given, base, 1.0, given) is None and tried == [1.0, 0.5, 0.25]
+    tried.clear()
+    assert overchanges.over_changes(solver, given, base, 0.01, given) is None and not tried
     solver.problem.free = (0, 1)
-    assert overswaps.over_swaps(solver, given, base, 0.2, given) is None
+    assert overchanges.over_changes(solver, given, base, 0.2, given) is None
     base.orbit.mesh.events, solver.problem.free = (), (0,)
-    assert overswaps.over_swaps(solver, given, base, 0.2, given) is None
-
-
-def test_swaps_ahead_are_seen_on_the_tangent() -> None:
-    """Assert it where a segment of 1 rad shrinks by 2 rad per arclength: from 0.5 on."""
-    orbit = along(lambda tau: np.sin(tau)[:, None], [(EventNode(0, 1), 1.0), (EventNode(1, 1), 2.0)])
-    tangent = SimpleNamespace(phases=np.array([1.0, -1.0]), parameter=-2.0)
-    given: Any = None
-    way = overswaps._Way(given, given, SimpleNamespace(orbit=orbit, tangent=tangent))  # type: ignore[arg-type]
-    assert [way._swaps(distance) for distance in (0.49, 0.5, 0.51)] == [False, True, True]
-    assert way._sign == -1.0
+    assert overchanges.over_changes(solver, given, base, 0.2, given) is None
 
 
 @pytest.mark.parametrize(
@@ -165,7 +150,7 @@ def test_swaps_ahead_are_seen_on_the_tangent() -> None:
         ((1.0, 1.0), True, None, False),
     ],
 )
-def test_special_points_that_a_step_over_swaps_has_passed(
+def test_special_points_that_a_step_over_changes_has_passed(
     ends: tuple[float, float],
     twice: bool,
     between: float | None,
@@ -173,12 +158,12 @@ def test_special_points_that_a_step_over_swaps_has_passed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Assert it of a change of sign, and of two that are looked for and found."""
-    monkeypatch.setattr(overswaps, "sign_between", lambda *_: between)
+    monkeypatch.setattr(overchanges, "sign_between", lambda *_: between)
     base, new = (SimpleNamespace(once=lambda _, value=value: value) for value in ends)
     test: Any = SimpleNamespace(value=None, twice=lambda *_: twice)
     course: Any = SimpleNamespace(returns=lambda *_: False)
     given: Any = None
-    assert overswaps._Way(given, given, base)._passed(test, new, 1.0, course) is passed  # type: ignore[arg-type]
+    assert overchanges._Way(given, given, base, {})._passed(test, new, 1.0, course) is passed  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -189,7 +174,7 @@ def test_values_with_a_point(begin: float, values: Any) -> None:
     """Assert the user's, and that of the branch's own start if it lies within the range."""
     problem = SimpleNamespace(low=0.0, high=1.0)
     own: Any = SimpleNamespace(solver=SimpleNamespace(problem=problem), user=(0.1, 0.7))
-    assert Continuation._values(own, begin) == values
+    assert Steps._values(own, begin) == values
 
 
 @pytest.mark.parametrize(
