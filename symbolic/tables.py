@@ -8,6 +8,9 @@ from collections.abc import Iterable, Sequence
 MOST_LISTED = 12
 """Most names that a list gives, and most rows of a table that is not folded up."""
 
+AS_IT_IS = "class='tex2jax_ignore mathjax_ignore'"
+"""Where MathJax, which notebooks run, shall look for no formula: names may have dollars in them."""
+
 
 def listed(names: Iterable[str]) -> str:
     """Return names in one line; of more than MANY the first and their number."""
@@ -25,6 +28,6 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = "
         "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(c)}</td>" for c in row) + "</tr>"
         for row in rows
     )
-    inner = f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    inner = f"<table {AS_IT_IS}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     opened = " open" if len(rows) <= MOST_LISTED else ""
     return f"<details{opened}><summary>{html.escape(title)} ({len(rows)})</summary>{inner}</details>"

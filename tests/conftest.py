@@ -8,8 +8,10 @@ import functools
 import os
 import signal
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
+from support.pages import chromium
 
 if "ORBITRACE_KERNELS" not in os.environ:
     os.environ |= {"ORBITRACE_KERNELS": "numpy", "ORBITRACE_KERNELS_UNASKED": "1"}
@@ -49,6 +51,13 @@ def users_kernels() -> Iterator[None]:
         if "ORBITRACE_KERNELS_UNASKED" in os.environ and native.compiler() is not None:
             patch.setenv("ORBITRACE_KERNELS", "c")
         yield
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Headless Chromium, where there is one."""
+    with chromium() as started:
+        yield started
 
 
 @pytest.fixture(autouse=True)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 
+AS_IT_IS = "class='tex2jax_ignore mathjax_ignore'"
+"""Where MathJax, which notebooks run, shall look for no formula: names may have dollars in them."""
+
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Return a table, texts as they are; nothing where it has no rows."""
@@ -14,7 +17,7 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     body = "".join(
         "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
     )
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f"<table {AS_IT_IS}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def beside(*blocks: str) -> str:
@@ -25,7 +28,7 @@ def beside(*blocks: str) -> str:
 
 def paragraph(text: str) -> str:
     """Return a line of text."""
-    return f"<p>{html.escape(text)}</p>"
+    return f"<p {AS_IT_IS}>{html.escape(text)}</p>"
 
 
 def with_unit(name: str, unit: str) -> str:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.display.htmltables import AS_IT_IS
+
 WIDTH, HEIGHT = 380.0, 210.0
 LEFT, RIGHT, ABOVE, BELOW = 58.0, 14.0, 14.0, 36.0
 """The picture, and the margins of its frame."""
@@ -45,7 +47,7 @@ def sketch(lines: Sequence[Line], marks: Sequence[Mark], xlabel: str, ylabel: st
     frame = Frame(tuple(points.min(axis=0)), tuple(points.max(axis=0)))
     drawn = [frame.box(), *(frame.line(line) for line in lines), *(frame.mark(mark) for mark in marks)]
     return (
-        f"<svg viewBox='0 0 {WIDTH:g} {HEIGHT:g}' width='{WIDTH:g}' role='img' font-size='11' "
+        f"<svg {AS_IT_IS} viewBox='0 0 {WIDTH:g} {HEIGHT:g}' width='{WIDTH:g}' role='img' font-size='11' "
         f"fill='currentColor'>{''.join(drawn)}{frame.labels(xlabel, ylabel)}</svg>"
     )
 

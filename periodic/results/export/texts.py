@@ -10,10 +10,14 @@ import numpy as np
 
 from periodic.results.export.content import Content
 from periodic.results.files import replacing
+from periodic.results.textcell import text_cell
 
 
 def write_csv(path: Path, content: Content) -> list[Path]:
-    """Write FILE.csv, one row a point, and FILE-orbits.csv, one row a sample; units stand in the heads."""
+    """Write FILE.csv, one row a point, and FILE-orbits.csv, one row a sample; units stand in the heads.
+
+    Heads and labels are texts: none begins a formula of a spreadsheet (`text_cell`).
+    """
     written = [_table(path, _points_head(content), _points(content))]
     if content.signals:
         orbits = path.with_name(f"{path.stem}-orbits{path.suffix}")
@@ -30,7 +34,7 @@ def _table(path: Path, head: list[str], rows: Iterable[Iterable[object]]) -> Pat
 
 
 def _named(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit else name
+    return text_cell(f"{name} [{unit}]" if unit else name)
 
 
 def _points_head(content: Content) -> list[str]:
@@ -46,7 +50,7 @@ def _points(content: Content) -> Iterable[list[object]]:
     for k, label in enumerate(content.labels):
         pairs = content.multipliers[k].view(float)
         numbers = [repr(float(value)) for value in (*(c[k] for c in columns), *pairs)]
-        yield [k, label, str(bool(content.stable[k])).lower(), *numbers]
+        yield [k, text_cell(label), str(bool(content.stable[k])).lower(), *numbers]
 
 
 def _orbits_head(content: Content) -> list[str]:

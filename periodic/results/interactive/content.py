@@ -125,7 +125,7 @@ def _said(point: Point, across: Unit, heights: Heights) -> dict[str, Any]:
     still = point.equilibrium
     return {
         "at": point.parameter / across.size,
-        "label": point.label.value or point.event,
+        "label": point.event or point.label.value,
         "stable": point.stable,
         "heights": heights.of(point),
         "period": None if still else _rounded(point.orbit.period),

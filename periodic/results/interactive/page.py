@@ -31,6 +31,9 @@ def page(
     period, the phase plane, the spectrum and the Floquet multipliers beside the unit circle; with its system
     also loads and other outputs, and a drawing of the parts that moves.
 
+    Titles, names, units and labels are shown as they are, whatever is in them. The file runs its own two
+    scripts and no other, and fetches nothing: its content security policy says so.
+
     Parameters
     ----------
     branch : Branch or xarray.Dataset
@@ -54,9 +57,9 @@ def page(
     ------
     ValueError
         For a branch without points or of another system, a map of more parameters, a name that does not end
-        in .html, and units of what the branch has not.
+        in .html, a title that is no text, and units of what the branch has not.
     ModuleNotFoundError
-        Without plotly: ``pip install 'orbitrace[html]'``.
+        Without plotly or jinja2: ``pip install 'orbitrace[html]'``.
     OSError
         Where the file cannot be written.
     """
@@ -64,7 +67,7 @@ def page(
     if not isinstance(branch, Branch):
         if not hasattr(branch, "data_vars"):
             raise ValueError(f"branch is {branch!r}; it must be a Branch, as periodic.trace returns it")
-        return write("map.html", file, title or "Map", map_content(branch))
+        return write("map", file, title or "Map", map_content(branch))
     if system is not None:
         check_system(system)
     if not len(branch):
@@ -72,5 +75,5 @@ def page(
     if system is not None:
         branch[0].orbit.expressed_in(layout_of(system), "branch")
     return write(
-        "page.html", file, title or f"Branch over {branch.parameter}", content(branch, units or {}, system)
+        "page", file, title or f"Branch over {branch.parameter}", content(branch, units or {}, system)
     )

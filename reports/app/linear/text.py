@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from periodic.results.textcell import text_cell
 from reports.app.linear.study import Array, Study
 from reports.app.settings import parameters
 from reports.app.view import MICRO, View, view_of
@@ -32,7 +33,7 @@ def csv_text(found: Study) -> str:
     """Return the response over the range as CSV: peak to peak of every output and its phase.
 
     The phase in degrees is that of the output against sin(tau) for discs (the wave) and cos(tau) for
-    oscillators (the force).
+    oscillators (the force). Headings begin no formula of a spreadsheet.
     """
     view, answer = view_of(found.scene), found.response
     columns = [
@@ -45,7 +46,7 @@ def csv_text(found: Study) -> str:
         headings += [f"{name}_pp_{unit}", f"{name}_phase_deg"]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(headings)
+    writer.writerow(map(text_cell, headings))
     writer.writerows([[f"{cell:.14g}" for cell in row] for row in zip(*columns, strict=True)])
     return text.getvalue()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,9 +13,11 @@ if TYPE_CHECKING:
 
 
 def check_html() -> None:
-    """Raise InputError where the package is missing that draws the page."""
-    if find_spec("plotly") is None:
-        raise InputError("--html", "needs the package plotly", "pip install 'orbitrace[html]' installs it")
+    """Raise InputError where a package is missing that makes the page."""
+    from periodic.results.interactive.library import EXTRA, missing
+
+    if lacking := missing():
+        raise InputError("--html", f"needs the package {lacking[0]}", f"{EXTRA} installs it")
 
 
 def write_page(path: Path, scene: Scene, branch: Branch) -> None:

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from platform import python_version
 from typing import TYPE_CHECKING, Any
 
+from periodic.results.textcell import text_cell
 from reports.app.settings import parameters
 from reports.app.view import Cell, Column, View, view_of
 from symbolic.scenes.schema import Scene
@@ -60,11 +61,11 @@ def _finite(value: Any) -> Any:
 
 
 def csv_text(scene: Scene, branch: Branch) -> str:
-    """Return all points of a branch, one a line, as CSV."""
+    """Return all points of a branch, one a line, as CSV; texts begin no formula of a spreadsheet."""
     columns = view_of(scene).columns
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([column.name for column in columns])
+    writer.writerow([text_cell(column.name) for column in columns])
     writer.writerows([[_csv_cell(column.value(point)) for column in columns] for point in branch])
     return text.getvalue()
 
@@ -74,7 +75,7 @@ def _csv_cell(cell: Cell) -> str:
         return ""
     if isinstance(cell, bool):
         return str(cell).lower()
-    return f"{cell:.14g}" if isinstance(cell, float) else str(cell)
+    return f"{cell:.14g}" if isinstance(cell, float) else text_cell(cell)
 
 
 def special_table(scene: Scene, branch: Branch) -> tuple[list[str], list[list[str]]]:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import base64
-import json
 import math
 import re
-import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from support.pages import held, opened
 
 import periodic as per
 import symbolic as sym
@@ -34,14 +31,6 @@ def file(branch: per.Branch, tmp_path_factory: pytest.TempPathFactory) -> Path:
     units = {"Omega": ("Hz", 2 * math.pi), "x": ("mm", 1e-3)}
     there = tmp_path_factory.mktemp("page") / "duffing.html"
     return per.page(branch, there, system=sym.scene("duffing"), title="A <b> & c", units=units)
-
-
-def held(file: Path) -> dict[str, Any]:
-    """The data in a page."""
-    found = re.search(r'<script id="data" type="application/json">(.*?)</script>', file.read_text("utf-8"))
-    assert found is not None
-    data: dict[str, Any] = json.loads(found[1])
-    return data
 
 
 def test_page_holds_the_branch(branch: per.Branch, file: Path) -> None:
@@ -164,34 +153,6 @@ def test_page_of_a_curve(tmp_path: Path) -> None:
     data = held(per.page(border, tmp_path / "curve.html"))
     assert data["border"] and data["heights"][0] == {"name": "F", "unit": "N", "said": "F"}
     assert [p["heights"][0] for p in data["points"]] == pytest.approx(border.column("F"), rel=1e-5)
-
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Headless Chromium, where there is one."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright to drive a browser")
-    if CHROMIUM is None:
-        pytest.skip("needs Chromium, which is not on this machine's path")
-    with playwright.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
-
-
-@contextmanager
-def opened(browser: Any, file: Path, **options: Any) -> Iterator[Any]:
-    """A page in a context of its own, which must say no error."""
-    context = browser.new_context(viewport={"width": 1200, "height": 900}, **options)
-    page, errors = context.new_page(), []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(file.as_uri())
-    page.wait_for_selector(".js-plotly-plot")
-    yield page
-    assert errors == []
-    context.close()
 
 
 def said(page: Any) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import h5py
@@ -11,8 +12,8 @@ import pytest
 from support.commands import Capture, check_sentence, refusal
 
 import periodic as per
+from periodic.results.interactive import library
 from reports.app.cli import main
-from reports.app.trace import html
 
 
 @pytest.fixture(scope="module")
@@ -68,9 +69,12 @@ def test_page_is_in_the_units_of_the_scene(folder: Path) -> None:
     assert [told["points"][k]["at"] for k in (0, -1)] == pytest.approx([500, 450])
 
 
-def test_page_without_plotly(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("package", ["jinja2", "plotly"])
+def test_page_without_a_package(
+    package: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Assert that a missing package is told before the work starts."""
-    monkeypatch.setattr(html, "find_spec", lambda name: None)
+    monkeypatch.setattr(library, "find_spec", lambda name: None if name == package else find_spec(name))
     said = refusal(capsys, "trace", "duffing", "--html", "--out", str(tmp_path / "out"))
-    assert said == "--html needs the package plotly; pip install 'orbitrace[html]' installs it"
+    assert said == f"--html needs the package {package}; pip install 'orbitrace[html]' installs it"
     assert not (tmp_path / "out").exists()
