@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.condensed.modal.moments import Complex
+from periodic.condensed.native.nativestep import NativeSteps, native_steps
 from periodic.events.modes import linearise
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
@@ -146,6 +147,7 @@ class Motion:
     events: list[Changed] = field(default_factory=list, init=False)
     holding: Holding = field(init=False)
     _known: dict[float, Step] = field(default_factory=dict, init=False)
+    _native: NativeSteps | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         part = linear_of(self.system)
@@ -155,6 +157,10 @@ class Motion:
         self.joints = joints_of(self.system)
         self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
+        self._native = native_steps(
+            *(self.system, self.parameter, self.modes, (self.places, self.forces, self.own)),
+            *(self.joints, self.sliders, (len(self.state), len(self.unknown), len(self.side)), PIVOTS),
+        )
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
@@ -219,6 +225,9 @@ class Motion:
     def _step(self, tau: float, width: float) -> None:
         """Take a step to a phase. Raises FloatingPointError."""
         step = self._over(width)
+        if self._native is not None:
+            self._stepped(self._native, tau, step)
+            return
         for _ in range(PIVOTS):
             x, unknown, parts = self._solved(tau, step)
             wrong = self._wrong(x, parts, tau)
@@ -231,6 +240,15 @@ class Motion:
         self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
         self.state, self.unknown = x, unknown
         self.holding = Holding(width, np.where(np.isin(np.arange(len(parts)), self._stuck[0]), parts, np.nan))
+
+    def _stepped(self, native: NativeSteps, tau: float, step: Step) -> None:
+        """Take a step in C."""
+        begun = {"state": self.state, "unknown": self.unknown, "side": self.side, "z": self.z}
+        for name, value in begun.items():
+            native.moved[name][...] = value
+        native.step(tau, step)
+        self.state, self.unknown, self.side, self.z = (native.moved[name].copy() for name in begun)
+        self.holding = Holding(step.width, native.moved["parts"].copy())
 
     def _over(self, width: float) -> Step:
         """The step of a width, computed once."""

@@ -1,0 +1,160 @@
+"""Time steps of split systems in C (`timestepping.c`), for systems whose kernels are compiled."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from periodic.condensed.modal.moments import Complex
+from periodic.orbit.native.addresses import address, library_of, plain, routine
+from periodic.orbit.scheme import Array
+from periodic.system import ModesLike, System, address_of
+from periodic.system.precision import CONVERGED, MOST_ITERATIONS
+
+_SOURCE = "periodic.condensed.native:timestepping.c"
+
+_SIZES = ("n", "m", "s", "f", "o", "modes", "columns", "switches", "parameters", "joints", "most", "pivots")
+_STATES = ("places", "forces", "own")
+_JOINTS = ("slides", "guard", "up", "down", "column", "row", "place")
+_KERNELS = {
+    "rows": "linearise",
+    "beside": "linearise_beside",
+    "move": "move",
+    "switch_values": "switch",
+    "switch_slopes": "switch_gradient",
+    "guards": "guards",
+    "guard_slopes": "guards_gradient",
+}
+_MOVED = ("state", "unknown", "side", "z", "parts")
+_WIDTH = ("grown", "kicked", "local")
+
+
+class _Motion(ctypes.Structure):
+    """`struct motion` of timestepping.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in _SIZES),
+        *((name, ctypes.c_void_p) for name in (*_STATES, *_JOINTS, *_KERNELS, "parameter", "outputs")),
+        *((name, ctypes.c_void_p) for name in (*_MOVED, *_WIDTH, "work")),
+        ("width", ctypes.c_double),
+        ("converged", ctypes.c_double),
+    )
+
+
+class StepLike(Protocol):
+    """The step of a width: z+ = grown z + kicked f, x+ = Re(output grown z) + local f."""
+
+    @property
+    def width(self) -> float:
+        """Its width (rad)."""
+
+    @property
+    def grown(self) -> Complex:
+        """Factors of the modes, (J,)."""
+
+    @property
+    def kicked(self) -> Complex:
+        """Of the forces, (J, f)."""
+
+    @property
+    def local(self) -> Array:
+        """States by forces, (s, f)."""
+
+
+class JointLike(Protocol):
+    """What C is given of a joint; see `periodic.condensed.timestepping.Joint`."""
+
+    slides: bool
+    switch: int
+    up: int
+    down: int
+    column: int
+
+
+@dataclass
+class NativeSteps:
+    """Steps in C: where they begin is in `moved`, which they overwrite with where they end.
+
+    moved: states (n,), unknowns (m,), modes of the surfaces (columns,), modal coordinates (J,) and fractions
+    of jumps (columns,), NaN where no joint sticks.
+    """
+
+    library: ctypes.CDLL
+    call: _Motion
+    moved: Mapping[str, NDArray[Any]]
+    kept: Sequence[Any]
+    known: dict[float, tuple[Any, ...]] = field(default_factory=dict)
+
+    def step(self, tau: float, step: StepLike) -> None:
+        """Take a step to a phase. Raises FloatingPointError where no modes are consistent."""
+        call = self.call
+        if step.width not in self.known:
+            arrays = np.ascontiguousarray(step.grown), np.ascontiguousarray(step.kicked), plain(step.local)
+            self.known[step.width] = arrays, tuple(map(address, arrays))
+        call.grown, call.kicked, call.local = self.known[step.width][1]
+        call.width = step.width
+        end = ctypes.c_double(tau)
+        if routine(self.library, "step", 2)(ctypes.addressof(call), ctypes.addressof(end)):
+            raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
+
+
+def native_steps(
+    system: System,
+    parameter: Array,
+    modes: ModesLike,
+    states: tuple[Sequence[int], Sequence[int], NDArray[np.int_]],
+    joints: Sequence[JointLike],
+    sliders: Mapping[int, tuple[int, int]],
+    sizes: tuple[int, int, int],
+    pivots: int,
+) -> NativeSteps | None:
+    """Return steps of a system's motion in C; None where NumPy must be used.
+
+    states: the linear part's states, forces among the unknowns, and own states; sliders: row and place of
+    those, by column; sizes: numbers of states, unknowns and surfaces' columns.
+    """
+    library, functions = library_of(system, _SOURCE), _functions(system)
+    if library is None or functions is None:
+        return None
+    (n, m, columns), (places, forces, own), J = sizes, states, len(modes.exponents)
+    switches, parameters, rows = len(system.switches), len(parameter), n + m
+    most = rows + columns
+    room = rows * (3 + 2 * n + m + columns) + columns + switches * (2 + n + parameters) + 3 * n + 2 * m
+    room += len(places) + 2 * most + most * (most + 1)
+    call = _Motion(n, m, len(places), len(forces), len(own), J, columns, switches, parameters, len(joints))
+    call.most, call.pivots, call.converged = MOST_ITERATIONS, pivots, CONVERGED
+    table = [
+        (joint.slides, joint.switch, joint.up, joint.down, joint.column, *sliders.get(joint.column, (0, 0)))
+        for joint in joints
+    ]
+    moved = {
+        "state": np.zeros(n),
+        "unknown": np.zeros(m),
+        "side": np.zeros(columns),
+        "z": np.zeros(J, dtype=np.complex128),
+        "parts": np.zeros(columns),
+    }
+    kept: list[Any] = [np.array(each, dtype=np.intp) for each in (places, forces, own)]
+    kept += [np.array(column, dtype=np.intp) for column in (zip(*table, strict=True) if table else [[]] * 7)]
+    kept += [plain(parameter), np.array(modes.outputs, dtype=np.complex128), np.zeros(room)]
+    names = (*_STATES, *_JOINTS, "parameter", "outputs", "work")
+    for name, array in (*zip(names, kept, strict=True), *moved.items()):
+        setattr(call, name, address(array))
+    for name, where in functions.items():
+        setattr(call, name, where)
+    return NativeSteps(library, call, moved, kept)
+
+
+def _functions(system: System) -> dict[str, int] | None:
+    """Addresses of the kernels that are needed; None where one is not compiled."""
+    depend = getattr(system, "guards_depend", False)
+    needed = ["rows", "beside", *(["move"] if system.algebraics else [])]
+    needed += ("guards", "guard_slopes") if depend else ("switch_values", "switch_slopes")
+    found = {name: address_of(system, _KERNELS[name], ()) for name in needed}
+    functions = {name: where for name, where in found.items() if where is not None}
+    return functions if len(functions) == len(needed) else None
