@@ -3,7 +3,7 @@
 At the end of a step a joint sticks, held by a fraction of its jump between -1 and 1, or slips on the side of
 its speed: a linear complementarity problem. Murty's least-index rule solves it, and terminates where the
 mobility of the joints is a P-matrix (Murty, Linear Complementarity, 1988, 4). An elastic slider that is
-carried along ends the step at its limit.
+carried along ends the step at its limit, also where friction stops the motion: there it counts as held.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.native.nativestep import NativeSteps, native_steps
 from periodic.events.modes import linearise
+from periodic.events.twinguards import holding
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
 from periodic.system import (
@@ -35,6 +36,9 @@ from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 PARTS = 8
 """Number of shorter steps that replace one in which a mode changes."""
+
+MOST_FRICTION = 10
+"""Joints with friction up to which it is tabulated which sets of them stop sliders."""
 
 PIVOTS = 200
 """Most changes of a mode until all are consistent."""
@@ -157,10 +161,12 @@ class Motion:
         self.joints = joints_of(self.system)
         self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
-        self._native = native_steps(
-            *(self.system, self.parameter, self.modes, (self.places, self.forces, self.own)),
-            *(self.joints, self.sliders, (len(self.state), len(self.unknown), len(self.side)), PIVOTS),
-        )
+        if (stopping := self._stopping()) is not None:
+            self._native = native_steps(
+                *(self.system, self.parameter, self.modes, (self.places, self.forces, self.own)),
+                *(self.joints, self.sliders, stopping),
+                *((len(self.state), len(self.unknown), len(self.side)), PIVOTS),
+            )
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
@@ -201,7 +207,7 @@ class Motion:
     def period(self) -> None:
         """Advance the motion by a period, and keep its phases, states, unknowns, modes and events."""
         self.phases, self.events = [self.begin], []
-        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.side]
+        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.shown]
         for k in range(self.steps):
             self._advance(self.begin + FORCED * k / self.steps, self.begin + FORCED * (k + 1) / self.steps)
 
@@ -219,7 +225,7 @@ class Motion:
         self.phases.append(end)
         self.states.append(self.state)
         self.unknowns.append(self.unknown)
-        self.sides.append(self.side)
+        self.sides.append(self.shown)
         self._noted(len(self.states) - 2)
 
     def _step(self, tau: float, width: float) -> None:
@@ -257,12 +263,17 @@ class Motion:
         return self._known[width]
 
     def _wrong(self, x: Array, parts: Array, tau: float) -> tuple[int, int] | None:
-        """The first column whose mode is not that at the end of a step, and the mode that it should have."""
+        """The first column whose mode is not that at the end of a step, and the mode that it should have.
+
+        A slider that friction stops stays in its mode: its strain is the limit, or is not, to rounding.
+        """
         values = self.values(x, tau, self.side)
         for joint in self.joints:
             i, mode = joint.column, self.side[joint.column]
             up, down, ahead = values[joint.up], values[joint.down], values[joint.switch] * mode
             if not joint.slides:
+                if self.stopped(joint, self._stuck[1]):
+                    continue
                 place = self.sliders[i][1]
                 ahead = (x[place] - self.state[place]) * mode
             if mode != STUCK and (ahead < 0 or mode == 0):
@@ -272,6 +283,31 @@ class Motion:
             if mode == STUCK and not joint.slides and not up <= 0 <= down:
                 return i, 1 if up > 0 else -1
         return None
+
+    def stopped(self, joint: Joint, held: list[int]) -> bool:
+        """Whether friction that is held, by its guards, keeps the strain of a slider: it can be at its limit."""
+        return bool(holding(self.system, joint.switch, sorted(held)))
+
+    @property
+    def shown(self) -> Array:
+        """The surfaces' modes, those of sliders that friction stops held."""
+        stuck = self._stuck[1]
+        if not stuck:
+            return self.side
+        stopped = [joint.column for joint in self.joints if not joint.slides and self.stopped(joint, stuck)]
+        return np.where(np.isin(np.arange(len(self.side)), stopped), STUCK, self.side)
+
+    def _stopping(self) -> NDArray[np.int_] | None:
+        """`stopped` of all joints by all sets of friction, shape (joints, 2^f); None for too many."""
+        friction = [joint.switch for joint in self.joints if joint.slides]
+        if len(friction) > MOST_FRICTION:
+            return None
+        sets = [
+            [guard for i, guard in enumerate(friction) if chosen >> i & 1]
+            for chosen in range(2 ** len(friction))
+        ]
+        each = ([not joint.slides and self.stopped(joint, held) for held in sets] for joint in self.joints)
+        return np.array(list(each), dtype=np.intp).reshape(len(self.joints), len(sets))
 
     def values(self, x: Array, tau: float, side: Array) -> Array:
         """Return the guards at a state in given modes."""

@@ -18,9 +18,9 @@ from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 _SOURCE = "periodic.condensed.native:timestepping.c"
 
-_SIZES = ("n", "m", "s", "f", "o", "modes", "columns", "switches", "parameters", "joints", "most", "pivots")
+_SIZES = ("n", "m", "s", "f", "o", "modes", "columns", "switches", "parameters", "joints", "sets", "most", "pivots")
 _STATES = ("places", "forces", "own")
-_JOINTS = ("slides", "guard", "up", "down", "column", "row", "place")
+_JOINTS = ("slides", "guard", "up", "down", "column", "row", "place", "stopping")
 _KERNELS = {
     "rows": "linearise",
     "beside": "linearise_beside",
@@ -110,13 +110,14 @@ def native_steps(
     states: tuple[Sequence[int], Sequence[int], NDArray[np.int_]],
     joints: Sequence[JointLike],
     sliders: Mapping[int, tuple[int, int]],
+    stopping: NDArray[np.int_],
     sizes: tuple[int, int, int],
     pivots: int,
 ) -> NativeSteps | None:
     """Return steps of a system's motion in C; None where NumPy must be used.
 
     states: the linear part's states, forces among the unknowns, and own states; sliders: row and place of
-    those, by column; sizes: numbers of states, unknowns and surfaces' columns.
+    those, by column; stopping (joints, 2^f): whether a set of joints with friction stops them; sizes: numbers of states, unknowns and surfaces' columns.
     """
     library, functions = library_of(system, _SOURCE), _functions(system)
     if library is None or functions is None:
@@ -127,6 +128,7 @@ def native_steps(
     room = rows * (3 + 2 * n + m + columns) + columns + switches * (2 + n + parameters) + 3 * n + 2 * m
     room += len(places) + 2 * most + most * (most + 1)
     call = _Motion(n, m, len(places), len(forces), len(own), J, columns, switches, parameters, len(joints))
+    call.sets = stopping.shape[1]
     call.most, call.pivots, call.converged = MOST_ITERATIONS, pivots, CONVERGED
     table = [
         (joint.slides, joint.switch, joint.up, joint.down, joint.column, *sliders.get(joint.column, (0, 0)))
@@ -141,7 +143,7 @@ def native_steps(
     }
     kept: list[Any] = [np.array(each, dtype=np.intp) for each in (places, forces, own)]
     kept += [np.array(column, dtype=np.intp) for column in (zip(*table, strict=True) if table else [[]] * 7)]
-    kept += [plain(parameter), np.array(modes.outputs, dtype=np.complex128), np.zeros(room)]
+    kept += [stopping, plain(parameter), np.array(modes.outputs, dtype=np.complex128), np.zeros(room)]
     names = (*_STATES, *_JOINTS, "parameter", "outputs", "work")
     for name, array in (*zip(names, kept, strict=True), *moved.items()):
         setattr(call, name, address(array))

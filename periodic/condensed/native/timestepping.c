@@ -21,9 +21,10 @@ typedef void guard_slope_at(whole points, const double *state, const double *pha
                             const double *side, double *d_state, double *d_phase, double *d_parameter);
 
 struct motion {
-    whole n, m, s, f, o, modes, columns, switches, parameters, joints, most, pivots;
+    whole n, m, s, f, o, modes, columns, switches, parameters, joints, sets, most, pivots;
     const whole *places, *forces, *own;                               /* (s), (f) of the unknowns, (o) */
     const whole *slides, *guard, *up, *down, *column, *row, *place;   /* of the joints; row and place of sliders */
+    const whole *stopping;                                            /* (joints, sets): whether friction stops them */
     rows_at *rows;
     rows_beside *beside;
     move_to *move;
@@ -284,11 +285,19 @@ static int solved(const struct motion *p, struct room *r, double tau)
 /* The first joint whose mode is not that at the end of a step; the mode that it should have. */
 static whole wrong(const struct motion *p, struct room *r, double tau, double *mode)
 {
+    whole held = 0;
+    for (whole j = 0, bit = 1; j < p->joints; j++)
+        if (p->slides[j]) {
+            held += stuck(p, j) ? bit : 0;
+            bit *= 2;
+        }
     values(p, r, r->x, tau);
     for (whole j = 0; j < p->joints; j++) {
         const double own = p->side[p->column[j]], up = r->value[p->up[j]], down = r->value[p->down[j]];
         const double part = p->parts[p->column[j]];
         double ahead = r->value[p->guard[j]] * own;
+        if (!p->slides[j] && p->stopping[j * p->sets + held])
+            continue;
         if (!p->slides[j])
             ahead = (r->x[p->place[j]] - p->state[p->place[j]]) * own;
         *mode = 2;
