@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from periodic.condensed.heldjoints import Joint
 from periodic.condensed.linearised import answer
-from periodic.condensed.timestepping import Changed, Joint, Motion
+from periodic.condensed.timestepping import Changed, Motion
 from periodic.correction.outcome import FAILURES
 from periodic.events.eventnodes import exact_crossings
 from periodic.events.modes import sides
@@ -156,7 +157,7 @@ def _lasting(motion: Motion) -> list[Changed]:
 
 
 def _goes_back(motion: Motion, joint: Joint, slip: Changed) -> bool:
-    """Whether friction that stopped the motion across a slider lets it go as the slip begins, the other way."""
+    """Whether friction that stopped a slider lets go as its slip begins, to a motion the other way."""
     before, after = motion.sides[slip.step], motion.sides[slip.step + 1]
     friction = {each.switch: each.column for each in motion.joints if each.slides}
     held = sorted(guard for guard, column in friction.items() if before[column] == STUCK)

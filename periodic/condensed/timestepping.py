@@ -14,15 +14,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.heldjoints import Joint, joints_of, stops
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.native.nativestep import NativeSteps, native_steps
 from periodic.events.modes import linearise
-from periodic.events.twinguards import holding
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
 from periodic.system import (
     STUCK,
-    Kind,
     LinearisationLike,
     ModesLike,
     System,
@@ -30,40 +29,14 @@ from periodic.system import (
     guards_gradient,
     jumps_of,
     linear_of,
-    surfaces_of,
 )
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 PARTS = 8
 """Number of shorter steps that replace one in which a mode changes."""
 
-MOST_FRICTION = 10
-"""Joints with friction up to which it is tabulated which sets of them stop sliders."""
-
 PIVOTS = 200
 """Most changes of a mode until all are consistent."""
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A surface at which motions may be held: its index among all, and what `SurfaceLike` has."""
-
-    index: int
-    slides: bool
-    switch: int
-    up: int
-    down: int
-    column: int
-    place: tuple[int, tuple[float, ...]] | None
-
-
-def joints_of(system: System) -> list[Joint]:
-    """Return the surfaces of a system at which motions may be held."""
-    return [
-        Joint(i, s.kind == Kind.SLIDING, s.switch, *s.releases, s.column, s.place)
-        for i, s in enumerate(surfaces_of(system))
-        if s.releases is not None and s.column is not None
-    ]
 
 
 @dataclass(frozen=True)
@@ -161,12 +134,7 @@ class Motion:
         self.joints = joints_of(self.system)
         self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
-        if (stopping := self._stopping()) is not None:
-            self._native = native_steps(
-                *(self.system, self.parameter, self.modes, (self.places, self.forces, self.own)),
-                *(self.joints, self.sliders, stopping),
-                *((len(self.state), len(self.unknown), len(self.side)), PIVOTS),
-            )
+        self._native = native_steps(self, PIVOTS)
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
@@ -272,7 +240,7 @@ class Motion:
             i, mode = joint.column, self.side[joint.column]
             up, down, ahead = values[joint.up], values[joint.down], values[joint.switch] * mode
             if not joint.slides:
-                if self.stopped(joint, self._stuck[1]):
+                if stops(self.system, joint, self._stuck[1]):
                     continue
                 place = self.sliders[i][1]
                 ahead = (x[place] - self.state[place]) * mode
@@ -284,30 +252,14 @@ class Motion:
                 return i, 1 if up > 0 else -1
         return None
 
-    def stopped(self, joint: Joint, held: list[int]) -> bool:
-        """Whether friction that is held, by its guards, keeps the strain of a slider: it can be at its limit."""
-        return bool(holding(self.system, joint.switch, sorted(held)))
-
     @property
     def shown(self) -> Array:
         """The surfaces' modes, those of sliders that friction stops held."""
         stuck = self._stuck[1]
-        if not stuck:
-            return self.side
-        stopped = [joint.column for joint in self.joints if not joint.slides and self.stopped(joint, stuck)]
-        return np.where(np.isin(np.arange(len(self.side)), stopped), STUCK, self.side)
-
-    def _stopping(self) -> NDArray[np.int_] | None:
-        """`stopped` of all joints by all sets of friction, shape (joints, 2^f); None for too many."""
-        friction = [joint.switch for joint in self.joints if joint.slides]
-        if len(friction) > MOST_FRICTION:
-            return None
-        sets = [
-            [guard for i, guard in enumerate(friction) if chosen >> i & 1]
-            for chosen in range(2 ** len(friction))
-        ]
-        each = ([not joint.slides and self.stopped(joint, held) for held in sets] for joint in self.joints)
-        return np.array(list(each), dtype=np.intp).reshape(len(self.joints), len(sets))
+        stopped = [each.column for each in self.joints if stuck and stops(self.system, each, stuck)]
+        return (
+            np.where(np.isin(np.arange(len(self.side)), stopped), STUCK, self.side) if stopped else self.side
+        )
 
     def values(self, x: Array, tau: float, side: Array) -> Array:
         """Return the guards at a state in given modes."""

@@ -4,10 +4,10 @@ In an interval forces and own states u follow from what it begins with and from 
 
     D u = R (c, 1, dphi, dp),    c+ = T (c, 1, dphi, dp),
 
-c the modes' real coordinates and the own states, dphi the phases of the two event nodes that bound its segment.
-Newton's increment then needs neither the response of the whole period nor columns for event nodes elsewhere
-(transfer matrices: Pestel & Leckie, Matrix Methods in Elastomechanics, 1963). `periodic.condensed.recursion`
-follows the same equations column by column.
+c the modes' real coordinates and the own states, dphi the phases of the two event nodes that bound its
+segment. Newton's increment then needs neither the response of the whole period nor columns for event nodes
+elsewhere (transfer matrices: Pestel & Leckie, Matrix Methods in Elastomechanics, 1963).
+`periodic.condensed.recursion` follows the same equations column by column.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Transfer:
         self.unknowns = self._solved()
 
     def _states(self) -> tuple[Array, Array]:
-        """States of the linear part at the points by active forces, (N, a s, a k), and by the rest, (., w)."""
+        """States at the places and points by active forces, (N, a s, a k), and by the rest, (N, a s, w)."""
         given, system = self.given, self.system
         response, width = given.response, self.orbit.mesh.tie_gradients[1]
         count, points = self.orbit.stages.shape[:2]
@@ -98,11 +98,9 @@ class Transfer:
     def _solved(self) -> Array:
         """Active forces and own states of the intervals by (c, 1, dphi, dp), (N, m, w)."""
         system, given, n = self.system, self.given, self.n
-        rows = given.rows.forces[:, system.active]
+        rows = -given.rows.forces[:, system.active]
         if self.own:
-            rows = np.concatenate([-rows, given.rows.own], axis=1)
-        else:
-            rows = -rows
+            rows = np.concatenate([rows, given.rows.own], axis=1)
         count, points = self.orbit.stages.shape[:2]
         each, forces = rows.shape[1], len(system.active)
         rows = rows.reshape(count, points, each, -1)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.heldjoints import Joint, stopping_sets
 from periodic.condensed.modal.moments import Complex
 from periodic.orbit.native.addresses import address, library_of, plain, routine
 from periodic.orbit.scheme import Array
@@ -18,7 +19,21 @@ from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
 _SOURCE = "periodic.condensed.native:timestepping.c"
 
-_SIZES = ("n", "m", "s", "f", "o", "modes", "columns", "switches", "parameters", "joints", "sets", "most", "pivots")
+_SIZES = (
+    "n",
+    "m",
+    "s",
+    "f",
+    "o",
+    "modes",
+    "columns",
+    "switches",
+    "parameters",
+    "joints",
+    "sets",
+    "most",
+    "pivots",
+)
 _STATES = ("places", "forces", "own")
 _JOINTS = ("slides", "guard", "up", "down", "column", "row", "place", "stopping")
 _KERNELS = {
@@ -66,14 +81,24 @@ class StepLike(Protocol):
         """States by forces, (s, f)."""
 
 
-class JointLike(Protocol):
-    """What C is given of a joint; see `periodic.condensed.timestepping.Joint`."""
+class MotionLike(Protocol):
+    """What C is given of a motion; see `periodic.condensed.timestepping.Motion`.
 
-    slides: bool
-    switch: int
-    up: int
-    down: int
-    column: int
+    places, forces, own: the linear part's states, forces among the unknowns, own states; sliders: row and
+    place of those, by column.
+    """
+
+    system: System
+    parameter: Array
+    state: Array
+    unknown: Array
+    modes: ModesLike
+    side: Array
+    places: list[int]
+    forces: list[int]
+    own: NDArray[np.int_]
+    joints: list[Joint]
+    sliders: dict[int, tuple[int, int]]
 
 
 @dataclass
@@ -103,37 +128,20 @@ class NativeSteps:
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
 
 
-def native_steps(
-    system: System,
-    parameter: Array,
-    modes: ModesLike,
-    states: tuple[Sequence[int], Sequence[int], NDArray[np.int_]],
-    joints: Sequence[JointLike],
-    sliders: Mapping[int, tuple[int, int]],
-    stopping: NDArray[np.int_],
-    sizes: tuple[int, int, int],
-    pivots: int,
-) -> NativeSteps | None:
-    """Return steps of a system's motion in C; None where NumPy must be used.
-
-    states: the linear part's states, forces among the unknowns, and own states; sliders: row and place of
-    those, by column; stopping (joints, 2^f): whether a set of joints with friction stops them; sizes: numbers of states, unknowns and surfaces' columns.
-    """
+def native_steps(motion: MotionLike, pivots: int) -> NativeSteps | None:
+    """Return steps of a motion in C; None where NumPy must be used. pivots: most changes of a mode."""
+    system, joints, modes = motion.system, motion.joints, motion.modes
     library, functions = library_of(system, _SOURCE), _functions(system)
-    if library is None or functions is None:
+    stopping = stopping_sets(system, joints)
+    if library is None or functions is None or stopping is None:
         return None
-    (n, m, columns), (places, forces, own), J = sizes, states, len(modes.exponents)
-    switches, parameters, rows = len(system.switches), len(parameter), n + m
-    most = rows + columns
+    n, m, columns, J = len(motion.state), len(motion.unknown), len(motion.side), len(modes.exponents)
+    states, switches, parameters = motion.places, len(system.switches), len(motion.parameter)
+    sizes = n, m, len(states), len(motion.forces), len(motion.own), J, columns, switches, parameters
+    call = _Motion(*sizes, len(joints), stopping.shape[1], MOST_ITERATIONS, pivots, converged=CONVERGED)
+    rows, most = n + m, n + m + columns
     room = rows * (3 + 2 * n + m + columns) + columns + switches * (2 + n + parameters) + 3 * n + 2 * m
-    room += len(places) + 2 * most + most * (most + 1)
-    call = _Motion(n, m, len(places), len(forces), len(own), J, columns, switches, parameters, len(joints))
-    call.sets = stopping.shape[1]
-    call.most, call.pivots, call.converged = MOST_ITERATIONS, pivots, CONVERGED
-    table = [
-        (joint.slides, joint.switch, joint.up, joint.down, joint.column, *sliders.get(joint.column, (0, 0)))
-        for joint in joints
-    ]
+    room += len(states) + 2 * most + most * (most + 1)
     moved = {
         "state": np.zeros(n),
         "unknown": np.zeros(m),
@@ -141,15 +149,30 @@ def native_steps(
         "z": np.zeros(J, dtype=np.complex128),
         "parts": np.zeros(columns),
     }
-    kept: list[Any] = [np.array(each, dtype=np.intp) for each in (places, forces, own)]
-    kept += [np.array(column, dtype=np.intp) for column in (zip(*table, strict=True) if table else [[]] * 7)]
-    kept += [stopping, plain(parameter), np.array(modes.outputs, dtype=np.complex128), np.zeros(room)]
+    kept: list[Any] = [np.array(each, dtype=np.intp) for each in (states, motion.forces, motion.own)]
+    kept += [
+        *_joints(motion),
+        stopping,
+        plain(motion.parameter),
+        np.array(modes.outputs, dtype=np.complex128),
+        np.zeros(room),
+    ]
     names = (*_STATES, *_JOINTS, "parameter", "outputs", "work")
     for name, array in (*zip(names, kept, strict=True), *moved.items()):
         setattr(call, name, address(array))
     for name, where in functions.items():
         setattr(call, name, where)
     return NativeSteps(library, call, moved, kept)
+
+
+def _joints(motion: MotionLike) -> list[NDArray[np.intp]]:
+    """What C knows of the joints, each column by itself."""
+    rows = [
+        (j.slides, j.switch, j.up, j.down, j.column, *motion.sliders.get(j.column, (0, 0)))
+        for j in motion.joints
+    ]
+    table = np.array(rows, dtype=np.intp).reshape(len(rows), len(_JOINTS) - 1)
+    return [np.ascontiguousarray(column) for column in table.T]
 
 
 def _functions(system: System) -> dict[str, int] | None:
