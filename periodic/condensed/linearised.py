@@ -44,8 +44,10 @@ class Local:
             return self
         k, ties = len(orbit.phases), np.repeat(orbit.mesh.ties, orbit.mesh.scheme.ncol, axis=0)
         first = 1 + 2 * orbit.nodes.shape[1]
-        made = (_spread(rows, first, ties, k) for rows in (self.forces, self.own, self.unknowns))
-        return Local(*made, self.residual, self.rows)
+        forces, own, unknowns = (
+            _spread(rows, first, ties, k) for rows in (self.forces, self.own, self.unknowns)
+        )
+        return Local(forces, own, unknowns, self.residual, self.rows)
 
 
 def _spread(rows: Array, first: int, ties: NDArray[np.int_], k: int) -> Array:

@@ -82,11 +82,6 @@ class Holding:
         return bool((np.abs(self.parts + rate * self.width) > 1).any())
 
 
-def _width(length: float) -> float:
-    """The width of a step, rounded so that steps that differ in the last digits have one."""
-    return float(f"{length:.9e}")
-
-
 @dataclass
 class Motion:
     """A motion in time.
@@ -164,7 +159,7 @@ class Motion:
         return row, int(np.abs(moved[row]).argmax())
 
     def pace(self, steps: int, shortest: float = np.inf) -> None:
-        """Set the number of steps in a period, and the width (rad) to which changes of mode cut them."""
+        """Set the steps in a period, and the width (rad) down to which changes of mode divide them."""
         self.steps, self.shortest = steps, shortest
 
     @property
@@ -173,35 +168,61 @@ class Motion:
         return np.array(self.phases)
 
     def period(self) -> None:
-        """Advance the motion by a period, and keep its phases, states, unknowns, modes and events."""
-        self.phases, self.events = [self.begin], []
-        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.shown]
-        for k in range(self.steps):
-            self._advance(self.begin + FORCED * k / self.steps, self.begin + FORCED * (k + 1) / self.steps)
+        """Advance the motion by a period, and keep its phases, states, unknowns, modes and events.
 
-    def _advance(self, begin: float, end: float) -> None:
+        Raises FloatingPointError.
+        """
+        self.events = []
+        if self._native is not None:
+            self._followed(self._native)
+        else:
+            self.phases, self.states = [self.begin], [self.state]
+            self.unknowns, self.sides = [self.unknown], [self.shown]
+            for k in range(self.steps):
+                ends = (self.begin + FORCED * i / self.steps for i in (k, k + 1))
+                self._advance(*ends, self._levels)
+        sides = np.array(self.sides)
+        for k in np.flatnonzero((sides[1:] != sides[:-1]).any(axis=1)):
+            self._noted(int(k))
+
+    @property
+    def _levels(self) -> list[float]:
+        """Widths of steps: of all of them, then of those that these are divided into where a mode changes."""
+        found = [FORCED / self.steps]
+        while found[-1] > self.shortest:
+            found.append(found[-1] / PARTS)
+        return found
+
+    def _followed(self, native: NativeSteps) -> None:
+        """Advance the motion by a period in C."""
+        begun = {"state": self.state, "unknown": self.unknown, "side": self.side, "z": self.z}
+        for name, value in (*begun.items(), ("parts", self.holding.parts)):
+            native.moved[name][...] = value
+        levels = [self._over(width) for width in self._levels]
+        path = native.period(self.steps, PARTS, levels, self.begin, self.holding.width)
+        self.state, self.unknown, self.side, self.z = (native.moved[name].copy() for name in begun)
+        self.holding = Holding(path.width, native.moved["parts"].copy())
+        self.phases, self.states = path.phases.tolist(), list(path.states)
+        self.unknowns, self.sides = list(path.unknowns), list(path.sides)
+
+    def _advance(self, begin: float, end: float, widths: list[float]) -> None:
         """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
         before = self.z, self.state, self.unknown, self.side, self.holding
-        self._step(end, _width(end - begin))
+        self._step(end, widths[0])
         changes = not np.array_equal(before[3], self.side) or self.holding.gives_way(before[4])
-        if end - begin > self.shortest and changes:
+        if len(widths) > 1 and changes:
             self.z, self.state, self.unknown, self.side, self.holding = before
-            ends = np.linspace(begin, end, PARTS + 1)
-            for first, last in pairwise(ends):
-                self._advance(float(first), float(last))
+            for first, last in pairwise(np.linspace(begin, end, PARTS + 1).tolist()):
+                self._advance(first, last, widths[1:])
             return
         self.phases.append(end)
         self.states.append(self.state)
         self.unknowns.append(self.unknown)
         self.sides.append(self.shown)
-        self._noted(len(self.states) - 2)
 
     def _step(self, tau: float, width: float) -> None:
         """Take a step to a phase. Raises FloatingPointError."""
         step = self._over(width)
-        if self._native is not None:
-            self._stepped(self._native, tau, step)
-            return
         for _ in range(PIVOTS):
             x, unknown, parts = self._solved(tau, step)
             wrong = self._wrong(x, parts, tau)
@@ -214,15 +235,6 @@ class Motion:
         self.z = step.grown * self.z + step.kicked @ unknown[self.forces]
         self.state, self.unknown = x, unknown
         self.holding = Holding(width, np.where(np.isin(np.arange(len(parts)), self._stuck[0]), parts, np.nan))
-
-    def _stepped(self, native: NativeSteps, tau: float, step: Step) -> None:
-        """Take a step in C."""
-        begun = {"state": self.state, "unknown": self.unknown, "side": self.side, "z": self.z}
-        for name, value in begun.items():
-            native.moved[name][...] = value
-        native.step(tau, step)
-        self.state, self.unknown, self.side, self.z = (native.moved[name].copy() for name in begun)
-        self.holding = Holding(step.width, native.moved["parts"].copy())
 
     def _over(self, width: float) -> Step:
         """The step of a width, computed once."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from periodic.condensed.heldjoints import Joint, stopping_sets
 from periodic.condensed.modal.moments import Complex
 from periodic.orbit.native.addresses import address, library_of, plain, routine
+from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
 from periodic.system import ModesLike, System, address_of
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS
@@ -49,6 +50,10 @@ _MOVED = ("state", "unknown", "side", "z", "parts")
 _WIDTH = ("grown", "kicked", "local")
 
 
+_FULL = 4
+"""What `period` answers where its steps are more than there is room for."""
+
+
 class _Motion(ctypes.Structure):
     """`struct motion` of timestepping.c."""
 
@@ -58,6 +63,18 @@ class _Motion(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in (*_MOVED, *_WIDTH, "work")),
         ("width", ctypes.c_double),
         ("converged", ctypes.c_double),
+    )
+
+
+class _Period(ctypes.Structure):
+    """`struct period` of timestepping.c."""
+
+    _fields_ = (
+        *((name, ctypes.c_ssize_t) for name in ("steps", "levels", "divided", "room")),
+        *((name, ctypes.c_void_p) for name in ("widths", *_WIDTH)),
+        *((name, ctypes.c_void_p) for name in ("phases", "states", "unknowns", "sides", "kept")),
+        *((name, ctypes.c_double) for name in ("begin", "length", "before")),
+        ("count", ctypes.c_ssize_t),
     )
 
 
@@ -79,6 +96,17 @@ class StepLike(Protocol):
     @property
     def local(self) -> Array:
         """States by forces, (s, f)."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """A period in K steps: phases (K+1,), states, unknowns and the surfaces' modes; the width of the last."""
+
+    phases: Array
+    states: Array
+    unknowns: Array
+    sides: Array
+    width: float
 
 
 class MotionLike(Protocol):
@@ -113,19 +141,34 @@ class NativeSteps:
     call: _Motion
     moved: Mapping[str, NDArray[Any]]
     kept: Sequence[Any]
-    known: dict[float, tuple[Any, ...]] = field(default_factory=dict)
 
-    def step(self, tau: float, step: StepLike) -> None:
-        """Take a step to a phase. Raises FloatingPointError where no modes are consistent."""
-        call = self.call
-        if step.width not in self.known:
-            arrays = np.ascontiguousarray(step.grown), np.ascontiguousarray(step.kicked), plain(step.local)
-            self.known[step.width] = arrays, tuple(map(address, arrays))
-        call.grown, call.kicked, call.local = self.known[step.width][1]
-        call.width = step.width
-        end = ctypes.c_double(tau)
-        if routine(self.library, "step", 2)(ctypes.addressof(call), ctypes.addressof(end)):
+    def period(
+        self, steps: int, divided: int, levels: Sequence[StepLike], begin: float, before: float
+    ) -> Path:
+        """Take a period of steps from a phase, each into so many of the next level where a mode changes.
+
+        before: width of the step before. Raises FloatingPointError where no modes are consistent.
+        """
+        call, room = self.call, 4 * steps
+        outcome = _FULL
+        begun = {name: value.copy() for name, value in self.moved.items()}
+        while outcome == _FULL:
+            for name, value in begun.items():
+                self.moved[name][...] = value
+            sizes = (), (call.n,), (call.m,), (call.columns,)
+            found = [np.empty((room + 1, *size)) for size in sizes]
+            moving = call.n + call.m + 2 * call.columns + 2 * call.modes
+            each: list[NDArray[Any]] = [np.array([level.width for level in levels])]
+            each += [np.array([level.grown for level in levels], dtype=np.complex128)]
+            each += [np.array([level.kicked for level in levels], dtype=np.complex128)]
+            each += [np.array([level.local for level in levels], dtype=float)]
+            arrays = *each, *found, np.empty((len(levels), moving))
+            own = _Period(steps, len(levels), divided, room, *map(address, arrays), begin, FORCED, before)
+            outcome = routine(self.library, "period", 2)(ctypes.addressof(call), ctypes.addressof(own))
+            room *= 4
+        if outcome:
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
+        return Path(*(each[: own.count + 1] for each in found), width=own.before)
 
 
 def native_steps(motion: MotionLike, pivots: int) -> NativeSteps | None:

@@ -1,7 +1,7 @@
 
-/* A time step of the motion of a split system, as `condensed/timestepping.py` takes it; names are those of Python. */
+/* Time steps of the motion of a split system, as `condensed/timestepping.py` takes it; names are those of Python. */
 
-enum { INCONSISTENT = SINGULAR + 1 };
+enum { INCONSISTENT = SINGULAR + 1, FULL };
 
 typedef void rows_at(whole points, const double *rate, const double *state, const double *algebraic,
                      const double *phase, const double *parameter, double *residual, double *d_rate,
@@ -38,6 +38,15 @@ struct motion {
     const double *grown, *kicked, *local;                             /* of a width: (J), (J, f) complex; (s, f) */
     double *work;
     double width, converged;
+};
+
+/* A period: steps of the first width, divided into so many parts of the next one where a mode changes. */
+struct period {
+    whole steps, levels, divided, room;
+    const double *widths, *grown, *kicked, *local;                    /* by levels (L) */
+    double *phases, *states, *unknowns, *sides, *kept;                /* (room + 1, ...); (L, what a step moves) */
+    double begin, length, before;                                     /* before: width of the step before */
+    whole count;
 };
 
 /* Room for the equations of a step. */
@@ -228,6 +237,18 @@ static whole equations(const struct motion *p, struct room *r, double tau)
     return size;
 }
 
+/* The set of joints with friction that stick. */
+static whole holding(const struct motion *p)
+{
+    whole held = 0;
+    for (whole j = 0, bit = 1; j < p->joints; j++)
+        if (p->slides[j]) {
+            held += stuck(p, j) ? bit : 0;
+            bit *= 2;
+        }
+    return held;
+}
+
 /* States of the linear part at the end of a step. */
 static void show(const struct motion *p, struct room *r)
 {
@@ -285,12 +306,7 @@ static int solved(const struct motion *p, struct room *r, double tau)
 /* The first joint whose mode is not that at the end of a step; the mode that it should have. */
 static whole wrong(const struct motion *p, struct room *r, double tau, double *mode)
 {
-    whole held = 0;
-    for (whole j = 0, bit = 1; j < p->joints; j++)
-        if (p->slides[j]) {
-            held += stuck(p, j) ? bit : 0;
-            bit *= 2;
-        }
+    const whole held = holding(p);
     values(p, r, r->x, tau);
     for (whole j = 0; j < p->joints; j++) {
         const double own = p->side[p->column[j]], up = r->value[p->up[j]], down = r->value[p->down[j]];
@@ -314,21 +330,19 @@ static whole wrong(const struct motion *p, struct room *r, double tau, double *m
 }
 
 /* One step, to a phase. */
-int step(const struct motion *p, const double *tau)
+static int step(const struct motion *p, struct room *r, double tau)
 {
-    struct room r;
-    lay_out(p, &r);
     whole j = 0;
     for (whole pivot = 0; pivot < p->pivots && j >= 0; pivot++) {
         double mode;
-        const int failed = solved(p, &r, *tau);
+        const int failed = solved(p, r, tau);
         if (failed)
             return failed;
-        j = wrong(p, &r, *tau, &mode);
+        j = wrong(p, r, tau, &mode);
         if (j >= 0)
             p->side[p->column[j]] = mode;
     }
-    if (j >= 0 || !finite_all(p->n, r.x))
+    if (j >= 0 || !finite_all(p->n, r->x))
         return INCONSISTENT;
     for (whole k = 0; k < p->modes; k++) {
         const double *g = p->grown + 2 * k;
@@ -336,17 +350,101 @@ int step(const struct motion *p, const double *tau)
         p->z[2 * k] = g[0] * re - g[1] * im;
         p->z[2 * k + 1] = g[0] * im + g[1] * re;
         for (whole l = 0; l < p->f; l++) {
-            p->z[2 * k] += p->kicked[2 * (k * p->f + l)] * r.next[p->forces[l]];
-            p->z[2 * k + 1] += p->kicked[2 * (k * p->f + l) + 1] * r.next[p->forces[l]];
+            p->z[2 * k] += p->kicked[2 * (k * p->f + l)] * r->next[p->forces[l]];
+            p->z[2 * k + 1] += p->kicked[2 * (k * p->f + l) + 1] * r->next[p->forces[l]];
         }
     }
     for (whole c = 0; c < p->columns; c++)
-        r.side[c] = NAN;
+        r->side[c] = NAN;
     for (whole i = 0; i < p->joints; i++)
         if (stuck(p, i))
-            r.side[p->column[i]] = p->parts[p->column[i]];
-    memcpy(p->parts, r.side, p->columns * sizeof(double));
-    memcpy(p->state, r.x, p->n * sizeof(double));
-    memcpy(p->unknown, r.next, p->m * sizeof(double));
+            r->side[p->column[i]] = p->parts[p->column[i]];
+    memcpy(p->parts, r->side, p->columns * sizeof(double));
+    memcpy(p->state, r->x, p->n * sizeof(double));
+    memcpy(p->unknown, r->next, p->m * sizeof(double));
+    return DONE;
+}
+
+/* Copy what a step moves to `kept`, or back. */
+static void keep(const struct motion *p, double *kept, int back)
+{
+    double *const from[] = {p->state, p->unknown, p->side, p->z, p->parts};
+    const whole sizes[] = {p->n, p->m, p->columns, 2 * p->modes, p->columns};
+    for (int k = 0; k < 5; kept += sizes[k++])
+        memcpy(back ? from[k] : kept, back ? kept : from[k], sizes[k] * sizeof(double));
+}
+
+/* Whether modes changed in a step, or a fraction, extrapolated from the step before, exceeds 1 after it. */
+static int changing(const struct motion *p, const struct period *q, const double *kept)
+{
+    const double *side = kept + p->n + p->m, *parts = side + p->columns + 2 * p->modes;
+    int found = 0;
+    for (whole c = 0; c < p->columns; c++) {
+        const double rate = (p->parts[c] - parts[c]) / (p->width + q->before);
+        found |= side[c] != p->side[c] || fabs(p->parts[c] + rate * p->width) > 1;
+    }
+    return found;
+}
+
+/* Keep the end of a step; sliders that friction stops count as held. */
+static void note(const struct motion *p, struct period *q, double tau)
+{
+    const whole k = ++q->count, held = holding(p);
+    q->phases[k] = tau;
+    memcpy(q->states + k * p->n, p->state, p->n * sizeof(double));
+    memcpy(q->unknowns + k * p->m, p->unknown, p->m * sizeof(double));
+    double *side = q->sides + k * p->columns;
+    memcpy(side, p->side, p->columns * sizeof(double));
+    for (whole j = 0; j < p->joints; j++)
+        if (!p->slides[j] && p->stopping[j * p->sets + held])
+            side[p->column[j]] = 2;
+}
+
+/* A step, or several shorter ones where a mode changes. */
+static int advance(struct motion *p, struct period *q, struct room *r, double begin, double end, whole level)
+{
+    const whole size = p->n + p->m + 2 * p->columns + 2 * p->modes;
+    double *kept = q->kept + level * size;
+    const double before = q->before;
+    keep(p, kept, 0);
+    p->width = q->widths[level];
+    p->grown = q->grown + level * 2 * p->modes;
+    p->kicked = q->kicked + level * 2 * p->modes * p->f;
+    p->local = q->local + level * p->s * p->f;
+    const int failed = step(p, r, end);
+    if (failed)
+        return failed;
+    if (level + 1 == q->levels || !changing(p, q, kept)) {
+        q->before = p->width;
+        if (q->count == q->room)
+            return FULL;
+        note(p, q, end);
+        return DONE;
+    }
+    keep(p, kept, 1);
+    q->before = before;
+    for (whole k = 0; k < q->divided; k++) {
+        const double part = (end - begin) / (double)q->divided;
+        const double next = k + 1 < q->divided ? begin + (double)(k + 1) * part : end;
+        const int stopped = advance(p, q, r, begin + (double)k * part, next, level + 1);
+        if (stopped)
+            return stopped;
+    }
+    return DONE;
+}
+
+/* A period of steps from a phase; FULL where there is no room for them. */
+int period(struct motion *p, struct period *q)
+{
+    struct room r;
+    lay_out(p, &r);
+    q->count = -1;
+    note(p, q, q->begin);
+    for (whole k = 0; k < q->steps; k++) {
+        const double first = q->begin + q->length * (double)k / (double)q->steps;
+        const int failed = advance(p, q, &r, first, q->begin + q->length * (double)(k + 1) / (double)q->steps, 0);
+        if (failed)
+            return failed;
+    }
     return DONE;
 }
