@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from periodic.condensed.heldjoints import Joint, joints_of, stops
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.native.nativestep import NativeSteps, native_steps
+from periodic.condensed.timestep import Holding, Step
 from periodic.events.modes import linearise
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
@@ -48,38 +49,6 @@ class Changed:
     after: int
     phase: float
     step: int
-
-
-@dataclass(frozen=True)
-class Step:
-    """A time step of modes z under forces f: z+ = grown z + kicked f, x+ = Re(output grown z) + local f."""
-
-    width: float
-    grown: Complex
-    kicked: Complex
-    local: Array
-
-    @classmethod
-    def over(cls, width: float, modes: ModesLike) -> Step:
-        """Return the step of a width."""
-        turned = modes.exponents * width
-        with np.errstate(all="ignore"):
-            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
-        kicked = (width * mean)[:, None] * modes.inputs
-        return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
-
-
-@dataclass(frozen=True)
-class Holding:
-    """Fractions of their jumps that hold sticking joints, means over a step of a width; NaN for others."""
-
-    width: float
-    parts: Array
-
-    def gives_way(self, before: Holding) -> bool:
-        """Whether a fraction, extrapolated from the step before, exceeds 1 at the end of the step."""
-        rate = (self.parts - before.parts) / (self.width + before.width)
-        return bool((np.abs(self.parts + rate * self.width) > 1).any())
 
 
 @dataclass
@@ -179,11 +148,11 @@ class Motion:
             self.phases, self.states = [self.begin], [self.state]
             self.unknowns, self.sides = [self.unknown], [self.shown]
             for k in range(self.steps):
-                ends = (self.begin + FORCED * i / self.steps for i in (k, k + 1))
-                self._advance(*ends, self._levels)
+                begin, end = (self.begin + FORCED * i / self.steps for i in (k, k + 1))
+                self._advance(begin, end, self._levels)
         sides = np.array(self.sides)
-        for k in np.flatnonzero((sides[1:] != sides[:-1]).any(axis=1)):
-            self._noted(int(k))
+        for k in np.flatnonzero((sides[1:] != sides[:-1]).any(axis=1)).tolist():
+            self._noted(k)
 
     @property
     def _levels(self) -> list[float]:

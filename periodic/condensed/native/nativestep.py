@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from periodic.condensed.heldjoints import Joint, stopping_sets
-from periodic.condensed.modal.moments import Complex
+from periodic.condensed.timestep import Step
 from periodic.orbit.native.addresses import address, library_of, plain, routine
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
@@ -78,26 +78,6 @@ class _Period(ctypes.Structure):
     )
 
 
-class StepLike(Protocol):
-    """The step of a width: z+ = grown z + kicked f, x+ = Re(output grown z) + local f."""
-
-    @property
-    def width(self) -> float:
-        """Its width (rad)."""
-
-    @property
-    def grown(self) -> Complex:
-        """Factors of the modes, (J,)."""
-
-    @property
-    def kicked(self) -> Complex:
-        """Of the forces, (J, f)."""
-
-    @property
-    def local(self) -> Array:
-        """States by forces, (s, f)."""
-
-
 @dataclass(frozen=True)
 class Path:
     """A period in K steps: phases (K+1,), states, unknowns and the surfaces' modes; the width of the last."""
@@ -142,9 +122,7 @@ class NativeSteps:
     moved: Mapping[str, NDArray[Any]]
     kept: Sequence[Any]
 
-    def period(
-        self, steps: int, divided: int, levels: Sequence[StepLike], begin: float, before: float
-    ) -> Path:
+    def period(self, steps: int, divided: int, levels: Sequence[Step], begin: float, before: float) -> Path:
         """Take a period of steps from a phase, each into so many of the next level where a mode changes.
 
         before: width of the step before. Raises FloatingPointError where no modes are consistent.
@@ -168,7 +146,8 @@ class NativeSteps:
             room *= 4
         if outcome:
             raise FloatingPointError("a motion in time is not finite, or no modes are consistent")
-        return Path(*(each[: own.count + 1] for each in found), width=own.before)
+        phases, states, unknowns, sides = (each[: own.count + 1] for each in found)
+        return Path(phases, states, unknowns, sides, own.before)
 
 
 def native_steps(motion: MotionLike, pivots: int) -> NativeSteps | None:
