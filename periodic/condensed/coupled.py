@@ -39,7 +39,7 @@ class Coupled:
     """
 
     def __init__(self, given: SplitLinearisation, flexibility: Flexibility, *, wraps: complex) -> None:
-        orbit, local = given.orbit, given.local
+        orbit, local = given.orbit, given.rows
         self.given, self.flexibility, self.wraps = given, flexibility, wraps
         self.kind = np.result_type(float if flexibility.real else complex, wraps)
         self.n = n = orbit.nodes.shape[1]
@@ -52,7 +52,9 @@ class Coupled:
         self.at = (self.held[:, None] * self.ncol + np.arange(self.ncol)).ravel()
         self.count = len(self.at) * len(self.active)
         self.size = self.count + self.points * len(self.others)
-        self.columns = [0, *range(1 + 2 * n, local.forces.shape[2])]
+        phases = orbit.mesh.ties.shape[1] if local.tied else len(orbit.phases)
+        more = local.forces.shape[2] - phases + len(orbit.phases)
+        self.columns = [0, *range(1 + 2 * n, more)]
 
     @cached_property
     def _own(self) -> bool:

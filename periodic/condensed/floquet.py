@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from periodic.condensed.coupled import Coupled
 from periodic.condensed.linearised import SplitLinearisation
+from periodic.condensed.modalsaltation import ModalSaltation
 from periodic.condensed.recursion import Added, IntervalRecursion, pays
 from periodic.condensed.subspace import invariant
 from periodic.linear.unknowns import Increment
@@ -52,9 +53,12 @@ class ModalFloquet:
     ----------
     given : SplitLinearisation
         The system about its orbit.
+    steps : ndarray, shape (N, c, c), optional
+        Coordinates at the end of an interval by those at its beginning, where they are known.
     """
 
     given: SplitLinearisation
+    steps: Array | None = None
 
     @cached_property
     def kept(self) -> NDArray[np.int_]:
@@ -193,6 +197,8 @@ class ModalFloquet:
 
     def once(self, basis: Array) -> Array:
         """Return M times the columns of a basis, (coordinates, r)."""
+        if self.steps is not None:
+            return self._stepped(self.steps, basis)[-1]
         if self.chain is not None:
             if self.given.saltations:
                 return self.driven(None, basis, {})[1]
@@ -200,6 +206,25 @@ class ModalFloquet:
             return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]
         factor, across, partner = self._grown
         return factor * basis + across * basis[partner] + self._left @ self.answers(basis)
+
+    def _stepped(self, steps: Array, basis: Array) -> Array:
+        """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
+        found = np.empty((len(steps) + 1, *basis.shape))
+        found[0], events = basis, dict(map(self._jump, self.given.saltations))
+        for i, own in enumerate(steps):
+            np.matmul(own, found[i], out=found[i + 1])
+            if i in events:
+                early, more = events[i]
+                found[i + 1] += np.outer(more, early @ found[i + 1])
+        return found
+
+    def _jump(self, each: ModalSaltation) -> tuple[int, tuple[Array, Array]]:
+        """The interval that an event ends; how early it comes by the coordinates, and what that adds."""
+        given = self.given
+        shown = each.row[list(given.part.states)] @ given.response.modes.outputs
+        early = np.concatenate([shown.real, -shown.imag, each.row[given.others]])
+        more = np.concatenate([each.modes.real, each.modes.imag, each.own])
+        return each.interval, (early[self.kept], more[self.kept])
 
     def _begun(self, rates: Array) -> Array:
         """Coefficients of the initial own states in their rows, those of the first interval, (P o, o)."""
@@ -226,6 +251,8 @@ class ModalFloquet:
 
     def motion(self, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""
+        if self.steps is not None:
+            return self._stepped(self.steps, basis)
         growth, own, modes = self.given.response.growth, len(self.given.others), self.modes(basis)
         passed: Added = {}
         answers = self.answers(basis) if self.chain is None else self.driven(None, basis, passed)[0]

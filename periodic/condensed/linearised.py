@@ -13,8 +13,9 @@ from periodic.condensed.modal.flexibility import Flexibility
 from periodic.condensed.modal.modalreduction import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.moments import Complex
 from periodic.condensed.modal.response import Response
-from periodic.condensed.modal.slopes import slopes
+from periodic.condensed.modal.slopes import slopes, slopes_within
 from periodic.condensed.modalsaltation import ModalSaltation, saltations
+from periodic.condensed.native.nativepoints import eliminated
 from periodic.condensed.native.nativeresponse import response_of
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
@@ -27,6 +28,7 @@ class Local:
 
     forces (P, k, w): the increments of the forces; own (P, o, w): rows of the own states; unknowns (P, m, w):
     increments of all unknowns; residual: the largest one; rows (o,): which rows are those of own states.
+    tied: of the event nodes' phases only the columns of those that bound the interval's segment, `Mesh.ties`.
     """
 
     forces: Array
@@ -34,6 +36,28 @@ class Local:
     unknowns: Array
     residual: float
     rows: NDArray[np.int_]
+    tied: bool = False
+
+    def untied(self, orbit: Orbit) -> Local:
+        """Return the rows with columns for all event nodes."""
+        if not self.tied:
+            return self
+        k, ties = len(orbit.phases), np.repeat(orbit.mesh.ties, orbit.mesh.scheme.ncol, axis=0)
+        first = 1 + 2 * orbit.nodes.shape[1]
+        forces, own, unknowns = (
+            _spread(rows, first, ties, k) for rows in (self.forces, self.own, self.unknowns)
+        )
+        return Local(forces, own, unknowns, self.residual, self.rows)
+
+
+def _spread(rows: Array, first: int, ties: NDArray[np.int_], k: int) -> Array:
+    """Rows (P, r, w) whose columns from `first` on are those of `ties` (P, e), with columns for all k."""
+    points, each, width = rows.shape
+    last = first + ties.shape[1]
+    found = np.zeros((points, each, width + k - ties.shape[1]))
+    found[:, :, :first], found[:, :, first + k :] = rows[:, :, :first], rows[:, :, last:]
+    found[np.arange(points)[:, None], :, first + ties] = np.swapaxes(rows[:, :, first:last], 1, 2)
+    return found
 
 
 def exempt(system: System) -> tuple[int, ...]:
@@ -49,14 +73,21 @@ def exempt(system: System) -> tuple[int, ...]:
     return tuple(k for k in part.velocities if not slopes[:, k].any())
 
 
-def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...]) -> Local:
+def local_rows(
+    system: System, part: LinearPart, orbit: Orbit, free: tuple[int, ...], *, tied: bool = False
+) -> Local:
     """Linearise and eliminate the unknowns point by point.
 
     Raises FloatingPointError where the equations are not finite, numpy.linalg.LinAlgError where they do not
     determine the unknowns or rows are missing, and ValueError where forces depend on accelerations.
     """
-    n = orbit.nodes.shape[1]
-    rows = rows_of(orbit, evaluated(system, orbit, free))
+    n, line = orbit.nodes.shape[1], evaluated(system, orbit, free)
+    fast = eliminated(system, part, orbit, line) if tied else None
+    if fast is not None:
+        k, every = list(part.forces), fast.unknowns
+        forces = every if k == list(range(every.shape[1])) else every[:, k]
+        return Local(forces, fast.own, every, fast.residual, fast.filled, tied)
+    rows = rows_of(orbit, line, tied)
     reduced, unknowns = eliminate(rows, n)
     filled = np.abs(reduced).max(axis=0).max(axis=1) > 0
     own = reduced[:, filled]
@@ -69,7 +100,7 @@ def local_rows(system: System, part: LinearPart, orbit: Orbit, free: tuple[int, 
     forces = unknowns[:, list(part.forces)]
     if forces[:, :, rates].any() or own[:, :, rates].any():
         raise ValueError("forces at the places depend on accelerations there; a condensed system has none")
-    return Local(-forces, own, -unknowns, rows.residual, np.flatnonzero(filled))
+    return Local(-forces, own, -unknowns, rows.residual, np.flatnonzero(filled), tied)
 
 
 def answer(
@@ -105,7 +136,7 @@ class SplitLinearisation:
         Its modes on the orbit's mesh.
     changes : list of ModesLike or None
         Their derivatives in the free parameters.
-    local : Local
+    rows : Local
         The system's own rows.
     system : System
         The system.
@@ -115,7 +146,7 @@ class SplitLinearisation:
     part: LinearPart
     response: Response
     changes: list[ModesLike | None]
-    local: Local
+    rows: Local
     system: System
 
     @classmethod
@@ -129,7 +160,13 @@ class SplitLinearisation:
         response, changes = answer(system, orbit, orbit.parameter, free, tolerance)
         part = linear_of(system)
         assert part is not None
-        return cls(orbit, part, response, changes, local_rows(system, part, orbit, free), system)
+        rows = local_rows(system, part, orbit, free, tied=True)
+        return cls(orbit, part, response, changes, rows, system)
+
+    @cached_property
+    def local(self) -> Local:
+        """The system's own rows, with columns for all event nodes."""
+        return self.rows.untied(self.orbit)
 
     @cached_property
     def saltations(self) -> list[ModalSaltation]:
@@ -176,8 +213,19 @@ class SplitLinearisation:
     @cached_property
     def affine(self) -> Array:
         """Increments of the linear part's states as a map of (1, dy), the forces held: (P, s, 1+q)."""
-        stages = self.orbit.stages[:, :, list(self.part.states)]
-        count, points, s = stages.shape
-        return np.concatenate([(self._motion[1] - stages)[..., None], self._slopes[0]], axis=3).reshape(
-            count * points, s, -1
-        )
+        count, points, s = self.missing.shape
+        found = np.concatenate([self.missing[..., None], self._slopes[0]], axis=3)
+        return found.reshape(count * points, s, -1)
+
+    @cached_property
+    def missing(self) -> Array:
+        """The linear part's periodic motion under the forces less its states at the points, (N, a, s)."""
+        return np.asarray(self._motion[1] - self.orbit.stages[:, :, list(self.part.states)])
+
+    @cached_property
+    def within(self) -> tuple[Array, Complex]:
+        """Derivatives of states at the points, (N, a, s, 1+q), and of modes at the ends, (N, J, 1+q).
+
+        In an interval's width and the free parameters, the forces and the modes at its beginning held.
+        """
+        return slopes_within(self.response, self.forces, self.changes, self._motion[0])

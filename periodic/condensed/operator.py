@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from periodic.condensed import transfer as transfers
 from periodic.condensed.coupled import Coupled, folded
 from periodic.condensed.floquet import Leading, ModalFloquet
 from periodic.condensed.linearised import SplitLinearisation
 from periodic.condensed.recursion import pays
+from periodic.condensed.transfer import Transfer
 from periodic.linear import bordered
 from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
@@ -46,7 +48,7 @@ class CondensedOperator:
     @property
     def residual(self) -> float:
         """The largest residual."""
-        return max(self.given.local.residual, float(np.abs(self.given.affine[:, :, 0]).max()))
+        return max(self.given.rows.residual, float(np.abs(self.given.missing).max()))
 
     @property
     def rounding(self) -> float:
@@ -74,11 +76,28 @@ class CondensedOperator:
 
     def solve(self, rows: Sequence[Row], right: Array) -> tuple[Increment, ...]:
         """Return an increment for each column of `right`, shape (1 + len(rows), columns)."""
-        system, k = self.system, len(self.orbit.phases)
+        system = self.system
+        if self.transfer is not None:
+            return self._recovered(right[0], *self._joined(self.transfer, rows, right))
         solved = self._by_interval if pays(system, right.shape[1]) else self._at_once
         inner, outer = solved(rows, right)
-        stages = system.stages(inner, np.concatenate([right[:1], outer]))
-        return self._recovered(right[0], np.moveaxis(stages, 2, 0), outer.T, k)
+        return self._recovered(right[0], system.stages(inner, np.concatenate([right[:1], outer])), outer)
+
+    @cached_property
+    def transfer(self) -> Transfer | None:
+        """The equations joined by transfer matrices, where that is cheapest."""
+        kept, columns = ModalFloquet(self.given).kept, 1 + len(self.orbit.phases)
+        cheaper = pays(self.system, columns) and transfers.pays(self.system, len(kept))
+        return Transfer(self.system, kept) if cheaper else None
+
+    def _joined(self, transfer: Transfer, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
+        """States at the points, (P, n, r), and dy, from equations with c_0 and dy as unknowns."""
+        count, whole = transfer.size, transfer.motion[-1]
+        every = np.concatenate([-whole, transfer.rows((*self.own, *rows))])
+        every[np.arange(count), np.arange(count)] += 1.0
+        order = [count, *range(count), *range(count + 1, every.shape[1])]
+        found = bordered.solve(every[:, order], right)
+        return transfer.states(found[:count], right[0], found[count:]), found[count:]
 
     def _at_once(self, rows: Sequence[Row], right: Array) -> tuple[Array, Array]:
         """Forces and own states, (size, columns), and dy."""
@@ -101,7 +120,7 @@ class CondensedOperator:
     @cached_property
     def _floquet(self) -> ModalFloquet:
         """Free motion beside the orbit."""
-        return ModalFloquet(self.given)
+        return ModalFloquet(self.given, None if self.transfer is None else self.transfer.free)
 
     def _bordered(self, rows: Sequence[Row]) -> Array:
         """The equations with the rows of event nodes and side conditions, constants first."""
@@ -135,25 +154,32 @@ class CondensedOperator:
         nodes = np.concatenate([stages[-1:, -1], stages[:, -1]])
         return Increment.of(orbit, nodes, stages, np.zeros_like(orbit.algebraic), outer[:k], outer[k:])
 
-    def _recovered(self, constant: Array, stages: Array, outer: Array, k: int) -> tuple[Increment, ...]:
-        """The increments of states at the points, (r, P, n), and dy, (r, 1+q)."""
+    def _recovered(self, constant: Array, states: Array, outer: Array) -> tuple[Increment, ...]:
+        """The increments of states at the points, (P, n, r), and dy, (q, r)."""
         orbit, scheme, n = self.orbit, self.orbit.mesh.scheme, self.orbit.nodes.shape[1]
-        stages = stages.reshape(-1, *orbit.stages.shape)
+        stages, k = np.moveaxis(states, 2, 0).reshape(-1, *orbit.stages.shape), len(orbit.phases)
         ends = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:, -1]])
         nodes = constant[:, None, None] * (ends - orbit.nodes)
         nodes[:, 1:] += stages[:, :, -1]
         nodes[:, 0] += stages[:, -1, -1]
         knots = np.concatenate([nodes[:, :-1, None], stages], axis=2)
         rates = scheme.stage_rates @ knots / orbit.grid.width[:, None, None]
-        by_unknown = self.given.local.unknowns
-        columns = np.empty((len(stages), len(by_unknown), by_unknown.shape[2], 1))
-        columns[:, :, 0, 0], columns[:, :, 1 + 2 * n :, 0] = constant[:, None], outer[:, None]
-        columns[:, :, 1 : 1 + n, 0] = rates.reshape(len(stages), -1, n)
-        columns[:, :, 1 + n : 1 + 2 * n, 0] = stages.reshape(len(stages), -1, n)
-        unknowns = (by_unknown @ columns).reshape(-1, *orbit.algebraic.shape)
+        by_unknown, tied = self.given.rows.unknowns, self.given.rows.tied
+        columns = np.empty((len(by_unknown), by_unknown.shape[2], len(stages)))
+        first = 1 + 2 * n
+        columns[:, 0] = constant
+        if tied:
+            ties = np.repeat(orbit.mesh.ties, scheme.ncol, axis=0)
+            columns[:, first : first + ties.shape[1]] = outer[ties]
+            columns[:, first + ties.shape[1] :] = outer[k:]
+        else:
+            columns[:, first:] = outer
+        columns[:, 1 : 1 + n] = np.moveaxis(rates, 0, 3).reshape(len(columns), n, -1)
+        columns[:, 1 + n : 1 + 2 * n] = states
+        unknowns = np.moveaxis(by_unknown @ columns, 2, 0).reshape(-1, *orbit.algebraic.shape)
         return tuple(
             Increment.of(orbit, *moved[:3], moved[3][:k], moved[3][k:])
-            for moved in zip(nodes, stages, unknowns, outer, strict=True)
+            for moved in zip(nodes, stages, unknowns, outer.T, strict=True)
         )
 
     @cached_property

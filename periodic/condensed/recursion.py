@@ -68,11 +68,11 @@ class IntervalRecursion:
         self.intervals = np.arange(system.intervals) if own else np.union1d(system.held, ends)
         self.at = self.intervals[:, None] * system.ncol + np.arange(system.ncol)
         self.forces = system.ncol * len(system.active)
-        blocks, begun, left = self._rows(given.local.forces[self.at][:, :, system.active], -1.0)
+        blocks, begun, left = self._rows(given.rows.forces[self.at][:, :, system.active], -1.0)
         size = self.forces
         blocks[:, np.arange(size), np.arange(size)] += 1.0
         if own:
-            rows = self._rows(given.local.own[self.at], 1.0)
+            rows = self._rows(given.rows.own[self.at], 1.0)
             blocks, begun, left = (
                 np.concatenate(pair, axis=1) for pair in zip((blocks, begun, left), rows, strict=True)
             )

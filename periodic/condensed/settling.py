@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from periodic.condensed.heldjoints import Joint
 from periodic.condensed.linearised import answer
-from periodic.condensed.timestepping import Changed, Joint, Motion
+from periodic.condensed.timestepping import Changed, Motion
 from periodic.correction.outcome import FAILURES
 from periodic.events.eventnodes import exact_crossings
 from periodic.events.modes import sides
 from periodic.events.motions import PERIODS, STILL, word_of
 from periodic.events.rewrites.sites import ordered
-from periodic.events.twinguards import twins
+from periodic.events.twinguards import holding, twins
 from periodic.orbit.construction import transfer
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.sampling import sampled
@@ -136,7 +137,8 @@ def _always(motion: Motion, records: Sequence[Changed]) -> list[int]:
 def _lasting(motion: Motion) -> list[Changed]:
     """The changes of mode without those that are errors of the time steps.
 
-    Errors are slips of one step amid sticking, and stops of one step where the motion should pass through.
+    Errors are slips of one step amid sticking, stops of one step where the motion should pass through, and
+    slips of sliders at their limits, until their strain falls, where friction lets the motion go back.
     """
     found = list(motion.events)
     for joint in motion.joints:
@@ -146,12 +148,22 @@ def _lasting(motion: Motion) -> list[Changed]:
                 continue
             rest = [each for each in found if each not in (first, second)]
             slips = first.before == STUCK and second.after == STUCK
-            if slips and second.step == first.step + 1:
+            if slips and (second.step == first.step + 1 or _goes_back(motion, joint, first)):
                 found = rest
             elif first.after == STUCK and second.before == STUCK and _passes(motion, joint, first, second):
                 passed = replace(first, after=second.after)
                 found = rest if passed.before == passed.after else [*rest, passed]
     return found
+
+
+def _goes_back(motion: Motion, joint: Joint, slip: Changed) -> bool:
+    """Whether friction that stopped a slider lets go as its slip begins, to a motion the other way."""
+    before, after = motion.sides[slip.step], motion.sides[slip.step + 1]
+    friction = {each.switch: each.column for each in motion.joints if each.slides}
+    held = sorted(guard for guard, column in friction.items() if before[column] == STUCK)
+    signs = {} if joint.slides else holding(motion.system, joint.switch, held)
+    gone = [sign * after[friction[guard]] for guard, sign in signs.items() if after[friction[guard]] != STUCK]
+    return bool(gone) and all(way * slip.after < 0 for way in gone)
 
 
 def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bool:

@@ -3,7 +3,7 @@
 At the end of a step a joint sticks, held by a fraction of its jump between -1 and 1, or slips on the side of
 its speed: a linear complementarity problem. Murty's least-index rule solves it, and terminates where the
 mobility of the joints is a P-matrix (Murty, Linear Complementarity, 1988, 4). An elastic slider that is
-carried along ends the step at its limit.
+carried along ends the step at its limit, also where friction stops the motion: there it counts as held.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.heldjoints import Joint, joints_of, stops
 from periodic.condensed.modal.moments import Complex
+from periodic.condensed.native.nativestep import NativeSteps, native_steps
+from periodic.condensed.timestep import Holding, Step
 from periodic.events.modes import linearise
 from periodic.orbit.orbit import FORCED
 from periodic.orbit.scheme import Array
 from periodic.system import (
     STUCK,
-    Kind,
     LinearisationLike,
     ModesLike,
     System,
@@ -28,7 +30,6 @@ from periodic.system import (
     guards_gradient,
     jumps_of,
     linear_of,
-    surfaces_of,
 )
 from periodic.system.precision import CONVERGED, MOST_ITERATIONS
 
@@ -40,28 +41,6 @@ PIVOTS = 200
 
 
 @dataclass(frozen=True)
-class Joint:
-    """A surface at which motions may be held: its index among all, and what `SurfaceLike` has."""
-
-    index: int
-    slides: bool
-    switch: int
-    up: int
-    down: int
-    column: int
-    place: tuple[int, tuple[float, ...]] | None
-
-
-def joints_of(system: System) -> list[Joint]:
-    """Return the surfaces of a system at which motions may be held."""
-    return [
-        Joint(i, s.kind == Kind.SLIDING, s.switch, *s.releases, s.column, s.place)
-        for i, s in enumerate(surfaces_of(system))
-        if s.releases is not None and s.column is not None
-    ]
-
-
-@dataclass(frozen=True)
 class Changed:
     """A change of mode: of which surface, by its index, at about which phase, in which step of a motion."""
 
@@ -70,43 +49,6 @@ class Changed:
     after: int
     phase: float
     step: int
-
-
-@dataclass(frozen=True)
-class Step:
-    """A time step of modes z under forces f: z+ = grown z + kicked f, x+ = Re(output grown z) + local f."""
-
-    width: float
-    grown: Complex
-    kicked: Complex
-    local: Array
-
-    @classmethod
-    def over(cls, width: float, modes: ModesLike) -> Step:
-        """Return the step of a width."""
-        turned = modes.exponents * width
-        with np.errstate(all="ignore"):
-            mean = np.where(turned == 0, 1.0, np.expm1(turned) / turned)
-        kicked = (width * mean)[:, None] * modes.inputs
-        return cls(width, np.exp(turned), kicked, (modes.outputs @ kicked).real + modes.direct)
-
-
-@dataclass(frozen=True)
-class Holding:
-    """Fractions of their jumps that hold sticking joints, means over a step of a width; NaN for others."""
-
-    width: float
-    parts: Array
-
-    def gives_way(self, before: Holding) -> bool:
-        """Whether a fraction, extrapolated from the step before, exceeds 1 at the end of the step."""
-        rate = (self.parts - before.parts) / (self.width + before.width)
-        return bool((np.abs(self.parts + rate * self.width) > 1).any())
-
-
-def _width(length: float) -> float:
-    """The width of a step, rounded so that steps that differ in the last digits have one."""
-    return float(f"{length:.9e}")
 
 
 @dataclass
@@ -146,6 +88,7 @@ class Motion:
     events: list[Changed] = field(default_factory=list, init=False)
     holding: Holding = field(init=False)
     _known: dict[float, Step] = field(default_factory=dict, init=False)
+    _native: NativeSteps | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         part = linear_of(self.system)
@@ -155,6 +98,7 @@ class Motion:
         self.joints = joints_of(self.system)
         self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
+        self._native = native_steps(self, PIVOTS)
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
@@ -184,7 +128,7 @@ class Motion:
         return row, int(np.abs(moved[row]).argmax())
 
     def pace(self, steps: int, shortest: float = np.inf) -> None:
-        """Set the number of steps in a period, and the width (rad) to which changes of mode cut them."""
+        """Set the steps in a period, and the width (rad) down to which changes of mode divide them."""
         self.steps, self.shortest = steps, shortest
 
     @property
@@ -193,28 +137,57 @@ class Motion:
         return np.array(self.phases)
 
     def period(self) -> None:
-        """Advance the motion by a period, and keep its phases, states, unknowns, modes and events."""
-        self.phases, self.events = [self.begin], []
-        self.states, self.unknowns, self.sides = [self.state], [self.unknown], [self.side]
-        for k in range(self.steps):
-            self._advance(self.begin + FORCED * k / self.steps, self.begin + FORCED * (k + 1) / self.steps)
+        """Advance the motion by a period, and keep its phases, states, unknowns, modes and events.
 
-    def _advance(self, begin: float, end: float) -> None:
+        Raises FloatingPointError.
+        """
+        self.events = []
+        if self._native is not None:
+            self._followed(self._native)
+        else:
+            self.phases, self.states = [self.begin], [self.state]
+            self.unknowns, self.sides = [self.unknown], [self.shown]
+            for k in range(self.steps):
+                begin, end = (self.begin + FORCED * i / self.steps for i in (k, k + 1))
+                self._advance(begin, end, self._levels)
+        sides = np.array(self.sides)
+        for k in np.flatnonzero((sides[1:] != sides[:-1]).any(axis=1)).tolist():
+            self._noted(k)
+
+    @property
+    def _levels(self) -> list[float]:
+        """Widths of steps: of all of them, then of those that these are divided into where a mode changes."""
+        found = [FORCED / self.steps]
+        while found[-1] > self.shortest:
+            found.append(found[-1] / PARTS)
+        return found
+
+    def _followed(self, native: NativeSteps) -> None:
+        """Advance the motion by a period in C."""
+        begun = {"state": self.state, "unknown": self.unknown, "side": self.side, "z": self.z}
+        for name, value in (*begun.items(), ("parts", self.holding.parts)):
+            native.moved[name][...] = value
+        levels = [self._over(width) for width in self._levels]
+        path = native.period(self.steps, PARTS, levels, self.begin, self.holding.width)
+        self.state, self.unknown, self.side, self.z = (native.moved[name].copy() for name in begun)
+        self.holding = Holding(path.width, native.moved["parts"].copy())
+        self.phases, self.states = path.phases.tolist(), list(path.states)
+        self.unknowns, self.sides = list(path.unknowns), list(path.sides)
+
+    def _advance(self, begin: float, end: float, widths: list[float]) -> None:
         """Take a step, or several shorter ones where a mode changes. Raises FloatingPointError."""
         before = self.z, self.state, self.unknown, self.side, self.holding
-        self._step(end, _width(end - begin))
+        self._step(end, widths[0])
         changes = not np.array_equal(before[3], self.side) or self.holding.gives_way(before[4])
-        if end - begin > self.shortest and changes:
+        if len(widths) > 1 and changes:
             self.z, self.state, self.unknown, self.side, self.holding = before
-            ends = np.linspace(begin, end, PARTS + 1)
-            for first, last in pairwise(ends):
-                self._advance(float(first), float(last))
+            for first, last in pairwise(np.linspace(begin, end, PARTS + 1).tolist()):
+                self._advance(first, last, widths[1:])
             return
         self.phases.append(end)
         self.states.append(self.state)
         self.unknowns.append(self.unknown)
-        self.sides.append(self.side)
-        self._noted(len(self.states) - 2)
+        self.sides.append(self.shown)
 
     def _step(self, tau: float, width: float) -> None:
         """Take a step to a phase. Raises FloatingPointError."""
@@ -239,12 +212,17 @@ class Motion:
         return self._known[width]
 
     def _wrong(self, x: Array, parts: Array, tau: float) -> tuple[int, int] | None:
-        """The first column whose mode is not that at the end of a step, and the mode that it should have."""
+        """The first column whose mode is not that at the end of a step, and the mode that it should have.
+
+        A slider that friction stops stays in its mode: its strain is the limit, or is not, to rounding.
+        """
         values = self.values(x, tau, self.side)
         for joint in self.joints:
             i, mode = joint.column, self.side[joint.column]
             up, down, ahead = values[joint.up], values[joint.down], values[joint.switch] * mode
             if not joint.slides:
+                if stops(self.system, joint, self._stuck[1]):
+                    continue
                 place = self.sliders[i][1]
                 ahead = (x[place] - self.state[place]) * mode
             if mode != STUCK and (ahead < 0 or mode == 0):
@@ -254,6 +232,15 @@ class Motion:
             if mode == STUCK and not joint.slides and not up <= 0 <= down:
                 return i, 1 if up > 0 else -1
         return None
+
+    @property
+    def shown(self) -> Array:
+        """The surfaces' modes, those of sliders that friction stops held."""
+        stuck = self._stuck[1]
+        stopped = [each.column for each in self.joints if stuck and stops(self.system, each, stuck)]
+        return (
+            np.where(np.isin(np.arange(len(self.side)), stopped), STUCK, self.side) if stopped else self.side
+        )
 
     def values(self, x: Array, tau: float, side: Array) -> Array:
         """Return the guards at a state in given modes."""

@@ -254,6 +254,25 @@ class Response:
         The first directions change the intervals' widths, further ones the modes. States are complex here;
         `slopes` takes their real parts, and allows for modes that do not change and for complex forces.
         """
+        history = self.history(forces, closing) if history is None else history
+        inner = self._inner(forces, widths, changes, history)
+        moved = self.closed(inner[:, :, -1], closing)
+        states = inner + self.table.growth[..., None] * moved[:-1, :, None]
+        return self._sloped_states(states, forces, widths, changes, history), moved[0]
+
+    def sloped_within(
+        self, forces: Array, changes: Sequence[ModesLike], history: Complex
+    ) -> tuple[Array, Complex]:
+        """Return derivatives of states at the points, (N, a, s, q), and of modes at the ends, (N, J, q).
+
+        As in `sloped`, but in the width of the interval alone, in which modes begin as they are.
+        """
+        own = np.ones((len(self.grid.width), 1))
+        inner = self._inner(forces, own, changes, history)
+        return self._sloped_states(inner, forces, own, changes, history).real, inner[:, :, -1]
+
+    def _inner(self, forces: Array, widths: Array, changes: Sequence[ModesLike], history: Complex) -> Complex:
+        """Derivatives of the modes at the points, (N, J, a, q), those at the left ends held."""
         modes, table, width = self.modes, self.table, self.grid.width
         first, q = widths.shape[1], widths.shape[1] + len(changes)
         stretch = np.zeros((len(width), q))
@@ -263,7 +282,6 @@ class Response:
             by_exponent[:, first + i] = change.exponents
         # derivative of lambda h, h the width
         shift = width[:, None, None] * by_exponent + stretch[:, None, :] * modes.exponents[:, None]
-        history = self.history(forces, closing) if history is None else history
         driven = _driving(forces, modes.inputs)
         own, own_slope = _applied(self, table.moment, driven), _applied(self, table.slope, driven)
         inner = stretch[:, None, None, :] * own[..., None]
@@ -273,8 +291,17 @@ class Response:
         for i, change in enumerate(changes):
             other = _driving(forces, change.inputs)
             inner[..., first + i] += width[:, None, None] * _applied(self, table.moment, other)
-        moved = self.closed(inner[:, :, -1], closing)
-        states = inner + table.growth[..., None] * moved[:-1, :, None]
+        return np.asarray(inner)
+
+    def _sloped_states(
+        self, states: Complex, forces: Array, widths: Array, changes: Sequence[ModesLike], history: Complex
+    ) -> NDArray[Any]:
+        """Derivatives of states at the points, (N, a, s, q), from those of the modes, (N, J, a, q)."""
+        modes, table, width = self.modes, self.table, self.grid.width
+        first, q = widths.shape[1], widths.shape[1] + len(changes)
+        stretch = np.zeros((len(width), q))
+        stretch[:, :first] = widths
+        own = _applied(self, table.moment, _driving(forces, modes.inputs))
         count, points = len(width), len(self.scheme.points)
         flat = states.transpose(1, 0, 2, 3).reshape(len(modes.exponents), -1)
         found = (modes.outputs @ flat).reshape(-1, count, points, q).transpose(1, 2, 0, 3).copy()
@@ -285,7 +312,7 @@ class Response:
             found[..., first + i] += forces @ change.direct.T + rates @ change.direct_rate.T
         lost = rates @ modes.direct_rate.T
         found -= lost[..., None] * (stretch / width[:, None])[:, None, None, :]
-        return np.asarray(found), moved[0]
+        return np.asarray(found)
 
     def circulant(self, closing: Complex | None, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Array:
         """Return the map from some forces to some states on a uniform mesh, (N, a, s, N, b, k).

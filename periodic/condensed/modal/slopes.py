@@ -54,3 +54,20 @@ def slopes(
     else:
         found[..., columns] = shown.real
     return found, begun
+
+
+def slopes_within(
+    response: Response, forces: Array, changes: list[ModesLike | None], history: Complex
+) -> tuple[Array, Complex]:
+    """Return the derivatives of an interval's states, (N, a, s, 1+q), and of modes at its end, (N, J, 1+q).
+
+    The first direction changes the interval's own width, further ones the modes; forces (N, b, k) and the
+    modes at the left ends, `history` (N+1, J), are held.
+    """
+    count, points = len(response.grid.width), response.scheme.ncol
+    found = np.zeros((count, points, response.modes.direct.shape[0], 1 + len(changes)))
+    left = np.zeros((count, len(response.modes.exponents), 1 + len(changes)), dtype=complex)
+    given = [change for change in changes if change is not None]
+    columns = [0, *(1 + i for i, change in enumerate(changes) if change is not None)]
+    found[..., columns], left[..., columns] = response.sloped_within(forces, given, history)
+    return found, left

@@ -228,10 +228,30 @@ class NativeResponse(Response):
         """Return derivatives of states and of modes at the beginning, as `Response.sloped`."""
         if np.iscomplexobj(forces):
             return super().sloped(forces, widths, changes, closing, history)
+        history = self.history(forces, closing) if history is None else history
+        found, begun, _ = self._sloped(forces, widths, changes, _complex(closing), history)
+        return found, begun
+
+    def sloped_within(
+        self, forces: Array, changes: Sequence[ModesLike], history: Complex
+    ) -> tuple[Array, Complex]:
+        """Return derivatives in an interval's own width and in the modes, as `Response.sloped_within`."""
+        own = np.ones((len(self.grid.width), 1))
+        found, _, left = self._sloped(forces, own, changes, None, history)
+        return found, left
+
+    def _sloped(
+        self,
+        forces: Array,
+        widths: Array,
+        changes: Sequence[ModesLike],
+        ends: Complex | None,
+        history: Complex,
+    ) -> tuple[Array, Complex, Complex]:
+        """Derivatives of states, of modes at the beginning, and at the ends of intervals from its own."""
         call, size = self._laid[0], len(self.modes.exponents)
         (count, points), columns = forces.shape[:2], widths.shape[1] + len(changes)
-        given, ends = plain(forces), _complex(closing)
-        history = self.history(forces, closing) if history is None else _complex(history)
+        given, history = plain(forces), _complex(history)
         kept: list[NDArray[Any]] = [plain(widths)]
         for name in _OF_MODES:
             kept.append(np.ascontiguousarray([getattr(change, name) for change in changes]))
@@ -243,9 +263,10 @@ class NativeResponse(Response):
         for name, array in zip(_CHANGE, (*kept, begun, found, history, inner, kicks, moved), strict=True):
             setattr(own, name, address(array))
         routine(self.library, "sloped", 5)(
-            ctypes.addressof(call), ctypes.addressof(own), *map(address, (given, ends, stages))
+            *(ctypes.addressof(call), ctypes.addressof(own), address(given)),
+            *(None if ends is None else address(ends), address(stages)),
         )
-        return found, begun
+        return found, begun, kicks
 
 
 def response_of(system: System, modes: ModesLike, scheme: Scheme, grid: Grid, period: float) -> Response:

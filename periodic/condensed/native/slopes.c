@@ -77,7 +77,8 @@ static void at_once(const struct response *r, const struct change *q, whole i, c
         }
 }
 
-/* All of it, for forces (N, b, k) in periodic motion, history of which is given; stages (N, J, a): room. */
+/* All of it, for forces (N, b, k) in periodic motion, history of which is given; stages (N, J, a): room. Without
+   `closing` the modes at the beginning of each interval are held; kicks are then those at its end. */
 int sloped(const struct response *r, const struct change *q, const double *forces, const double *closing,
            double *restrict stages)
 {
@@ -88,14 +89,16 @@ int sloped(const struct response *r, const struct change *q, const double *force
         within(r, q, i, forces + i * each, inner, stages + 2 * i * J * points);
         memcpy(q->kicks + 2 * i * J * all, inner + 2 * (points - 1) * J * all, 2 * J * all * sizeof(double));
     }
-    closed(r, all, q->kicks, closing, NULL, q->moved);
-    memcpy(q->begun, q->moved, 2 * J * all * sizeof(double));
+    if (closing) {
+        closed(r, all, q->kicks, closing, NULL, q->moved);
+        memcpy(q->begun, q->moved, 2 * J * all * sizeof(double));
+    }
     for (whole i = 0; i < r->count; i++) {
         const double *moved = q->moved + 2 * i * J * all;
         const double *growth = r->growth + 2 * r->which[i] * J * points;
         for (whole a = 0; a < points; a++) {
             double *inner = q->inner + 2 * (i * points + a) * J * all;
-            for (whole j = 0; j < J; j++)
+            for (whole j = 0; closing && j < J; j++)
                 for (whole c = 0; c < all; c++) {
                     const complex_ grown = times(at(growth, j * points + a), at(moved, j * all + c));
                     put(inner, j * all + c, plus(at(inner, j * all + c), grown));

@@ -13,7 +13,7 @@ from periodic.condensed.linearised import answer
 from periodic.condensed.modal.flexibility import Flexibility
 from periodic.condensed.modal.modalreduction import Modes
 from periodic.condensed.modal.response import Response
-from periodic.condensed.modal.slopes import slopes
+from periodic.condensed.modal.slopes import slopes, slopes_within
 from periodic.condensed.native.nativeresponse import MANY, NativeResponse, response_of
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.scheme import Array, Family, Scheme
@@ -126,6 +126,31 @@ def test_slopes(both: tuple[Response, Response], multiplier: complex) -> None:
         both_ways = [slopes(given, forces, stretch, changes, multiplier) for given in (fast, plain)]
         for found, expected in zip(*both_ways, strict=True):
             close(found, expected)
+
+
+@pytest.mark.parametrize("changed", [0, 1, 2])
+def test_slopes_within_an_interval(both: tuple[Response, Response], changed: int) -> None:
+    """Assert the change with an interval's own width and with modes, those at its beginning held.
+
+    The slopes of the whole period are the same, joined from interval to interval.
+    """
+    plain, fast = both
+    random, count, points = np.random.default_rng(3), len(plain.grid.width), plain.scheme.ncol
+    forces = random.standard_normal((count, points, 3))
+    change = replace(drawn(points), exponents=random.standard_normal(14).view(complex))
+    changes = [None, change, change][:changed]
+    history = plain.history(forces)
+    found, expected = (slopes_within(given, forces, changes, history) for given in (fast, plain))
+    for ours, theirs in zip(found, expected, strict=True):
+        close(ours, theirs)
+    widths = random.standard_normal((count, 1))
+    whole, begun = slopes(plain, forces, widths, changes)
+    left = np.concatenate([found[1][..., :1] * widths[:, None], found[1][..., 1:]], axis=2)
+    history = plain.closed(left, plain.closing)
+    close(history[0], begun)
+    joined = (plain.stage_outputs @ history[:-1, None]).real
+    joined += np.concatenate([found[0][..., :1] * widths[:, None, None], found[0][..., 1:]], axis=3)
+    close(joined, whole)
 
 
 def test_systems_choose() -> None:
