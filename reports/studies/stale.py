@@ -10,7 +10,7 @@ from reports.app.console import table
 from reports.studies.extremes.page import REPORT as EXTREMES
 from reports.studies.machines.page import REPORT as MACHINES
 from reports.studies.pages.content import Kept
-from reports.studies.pages.engine import ROOT, commit_of, commits_since
+from reports.studies.pages.engine import ROOT, commit_of, commits_since, current, sources
 from reports.studies.pages.page import KEPT, Page
 from reports.studies.paper.page import REPORT as PAPER
 from reports.studies.structures.page import REPORT as STRUCTURES
@@ -27,10 +27,10 @@ Line = tuple[str, str, str, str, str]
 """A row of the list, by HEADINGS."""
 
 
-def of_report(page: Page, root: Path = ROOT) -> Iterator[Line]:
-    """Yield the stale sections of a report."""
+def of_report(page: Page, now: str, root: Path = ROOT) -> Iterator[Line]:
+    """Yield the sections of a report that an engine with these sources has not computed."""
     kept = page.kept(page.folder)
-    for name in page.stale(page.folder):
+    for name in page.stale(page.folder, now):
         found = kept.get(name)
         told = _unrecorded(page, name, root) if found is None or found.engine is None else _by(found, root)
         seconds = "" if found is None or found.seconds is None else f"{found.seconds:.0f}"
@@ -67,13 +67,13 @@ def of_text(folder: str, root: Path = ROOT) -> Iterator[Line]:
 
 def main() -> None:
     """Print the list."""
-    rows = [line for page in REPORTS for line in of_report(page)]
-    rows += [line for folder in TEXTS for line in of_text(folder)]
+    now = sources()
+    rows = [line for page in REPORTS for line in of_report(page, now)]
+    texts = [line for folder in TEXTS for line in of_text(folder)]
+    if rows or texts:
+        table(HEADINGS, rows + texts, "section")
     count = sum(len(page.sections) for page in REPORTS)
-    stale = sum(len(page.stale(page.folder)) for page in REPORTS)
-    if rows:
-        table(HEADINGS, rows, "section")
-    print(f"{stale} of {count} sections are not of the engine that is here")
+    print(f"{len(rows)} of {count} sections of reports are not by the {current()}")
 
 
 if __name__ == "__main__":

@@ -43,8 +43,11 @@ class Kept:
         """What computed it, in a sentence."""
         if self.engine is None:
             return "By an engine that was not recorded."
-        time = "" if self.seconds is None else f", in {self.seconds:.2g} s of processor time"
-        return f"By the {self.engine}{time}."
+        if self.seconds is None:
+            return f"By the {self.engine}."
+        return (
+            f"By the {self.engine}, in {self.seconds:.{0 if self.seconds > 10 else 1}f} s of processor time."
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

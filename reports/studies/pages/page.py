@@ -27,6 +27,9 @@ INTRODUCTION, WHOLE = "introduction.md.j2", "page.md.j2"
 
 DPI = 150
 
+UNFIT = (OSError, ValueError, KeyError, TypeError, AttributeError, UndefinedError)
+"""What the text of a page raises where kept data are not those of its templates."""
+
 Sections = Mapping[str, Kept]
 """What is kept of sections, by name, in the order of the page."""
 
@@ -64,7 +67,7 @@ class Page:
             raise InputError("--out", f'is "{folder}", whose {PAGE} is not a page of this report', allowed)
         try:
             self.text(folder, names)
-        except (OSError, ValueError, KeyError, TypeError, AttributeError, UndefinedError) as error:
+        except UNFIT as error:
             what = f'is "{folder}", whose {KEPT} are damaged ({error})'
             raise InputError("--out", what, "they must be those of this report, or be removed") from error
         return folder
@@ -72,7 +75,8 @@ class Page:
     def make(self, folder: Path, names: Iterable[str], tell: Tell) -> Path:
         """Compute some sections into a folder, each kept as soon as it is done, and write the page.
 
-        Raises InputError if the engine's sources change while a section is computed; that one is not kept.
+        What was kept of the others before stays on the page, if its template can still tell it. Raises
+        InputError if the engine's sources change while a section is computed; that one is not kept.
         """
         names = tuple(names)
         for done, name in enumerate(names, 1):
@@ -88,15 +92,25 @@ class Page:
                     "periodic/ or symbolic/", what, "they must stay as they are until it is done"
                 )
             keep(folder, name, found.kept(engine, round(spent() - begun, 1)), found.figures)
-            self.write(folder, names[done:])
+            self.write(folder, self.unfit(folder, names[done:]))
+        if not names:
+            self.write(folder)
         return folder / PAGE
 
-    def stale(self, folder: Path) -> list[str]:
-        """Return the sections whose engine is not the one that is here, or that are not there.
+    def unfit(self, folder: Path, names: Collection[str]) -> Collection[str]:
+        """Return those of some sections without which alone the page can be told: none or all."""
+        try:
+            self.text(folder)
+        except UNFIT:
+            return names
+        return ()
+
+    def stale(self, folder: Path, now: str = "") -> list[str]:
+        """Return the sections that no engine with these sources, by default those here, has computed.
 
         Quickest first, as far as it is known what they take.
         """
-        kept, now = self.kept(folder), sources()
+        kept, now = self.kept(folder), now or sources()
 
         def cost(name: str) -> float:
             seconds = kept[name].seconds if name in kept else None
