@@ -45,7 +45,7 @@ kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kerne
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
 
-survey: $(VENV)/.installed-dev ## Trace and judge 900 models with contact drawn at random
+survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at random (hours)
 	@mkdir -p build
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
 	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
