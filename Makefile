@@ -20,8 +20,12 @@ COUNT ?= 110
 SEED ?= 2029
 SINCE ?=
 
+# Of a study: which sections, or those whose engine has changed; all, if empty.
+SECTION ?=
+STALE ?=
+
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
+.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -41,7 +45,7 @@ kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kerne
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
 
-survey: $(VENV)/.installed-dev ## Trace and judge 900 models with contact drawn at random
+survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at random (hours)
 	@mkdir -p build
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
 	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
@@ -54,8 +58,11 @@ mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)
 
-report-paper report-trade report-extremes report-machines report-structures: $(VENV)/.installed-dev ## Compute the page of a study anew
-	$(BIN)/python -m reports.studies.$(@:report-%=%)
+report-paper report-trade report-extremes report-machines report-structures: $(VENV)/.installed-dev ## Compute the page of a study anew (SECTION="NAME ...", STALE=1)
+	$(BIN)/python -m reports.studies.$(@:report-%=%) $(if $(SECTION),--only $(SECTION)) $(if $(STALE),--stale)
+
+stale: $(VENV)/.installed-dev ## List sections of pages whose engine has changed since
+	@$(BIN)/python -m reports.studies.stale
 
 docs: $(VENV)/.installed-docs ## Build the site into docs/_build
 	$(ONE_THREAD) $(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build

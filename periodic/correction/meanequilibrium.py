@@ -29,15 +29,15 @@ def resting(system: System, start: Orbit, part: LinearPart | None = None) -> Orb
 
     The load that `start` does not balance at its beginning is added in steps for which Newton's method
     converges: a film, say, has no stiffness where it has no load, and ends at its clearance. None where
-    `start` is in equilibrium already, and where the load cannot be added. `part` is the linear part of a
-    split system, whose rows do not contain it.
+    `start` is in equilibrium already, and where the load overflows or cannot be added. `part` is the linear
+    part of a split system, whose rows do not contain it.
     """
     point = np.concatenate([start.nodes[0], start.algebraic[0, 0]])
     try:
         with np.errstate(divide="raise", invalid="raise"):  # a mode that nothing holds has no rest
             balance = _Balance.of(system, start.parameter, part)
         missing = balance.rows(point)[0]
-        if _balanced(missing, point):
+        if _balanced(missing, point) or not np.isfinite(missing).all():  # a load that overflows is none
             return None
         found = _loaded(balance, point, missing)
     except FAILURES:

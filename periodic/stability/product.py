@@ -79,7 +79,7 @@ def _joined(steps: Array) -> Array:
     """The same product in fewer factors, none of which is conditioned worse than MULTIPLIED_UP for that."""
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = np.linalg.svd(steps, compute_uv=False)
-        conditions = np.nan_to_num(np.log(sizes[:, 0] / sizes[:, -1]), nan=np.inf)
+        conditions = np.nan_to_num(np.log(sizes[:, 0] / sizes[:, -1]), nan=np.inf, posinf=np.inf)
     found: list[Array] = []
     total = np.inf
     for step, condition in zip(steps, conditions, strict=True):

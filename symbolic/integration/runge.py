@@ -45,8 +45,10 @@ class Steps:
         for k, (tau, width) in enumerate(zip(phase[:-1], np.diff(phase), strict=True)):
             at[:] = tau, width
             step()
-            scale = tolerance * (1 + np.maximum(np.abs(y), np.abs(later)))
-            if not _error(fifth / scale, third / scale) <= PART:
+            with np.errstate(over="ignore", invalid="ignore"):  # a step that is not finite is too long
+                scale = tolerance * (1 + np.maximum(np.abs(y), np.abs(later)))
+                error = _error(fifth / scale, third / scale)
+            if not error <= PART:
                 return None
             y[:] = found[k + 1] = later
         return found

@@ -2,8 +2,9 @@
 
 AUTO takes C where the compiled library is in the cache. Else it takes NumPy until C would have saved the
 time that compiling takes. It counts calls and looks at no clock, so that the change comes at the same call
-in every run. Both back ends agree to rounding only: results are the same bit for bit from run to run with
-NUMPY or C, with AUTO where the cache holds the same kernels.
+in every run. One evaluation by either back end agrees with the other's to rounding, so that branches agree
+within the tolerance: steps may end elsewhere. Results are the same bit for bit from run to run with NUMPY or
+C, with AUTO where the cache holds the same kernels.
 """
 
 from __future__ import annotations

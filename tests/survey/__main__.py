@@ -9,7 +9,6 @@ goes on where it was, and several processes, each with a file of its own and a s
 from __future__ import annotations
 
 import argparse
-import subprocess
 from pathlib import Path
 
 from survey.page import page
@@ -40,9 +39,8 @@ def main() -> int:
                 for said in (*found.wrong, *found.gaps):
                     print(f"    {said}", flush=True)
     else:
-        commit = subprocess.check_output(["git", "rev-parse", "--short", "HEAD"], text=True).strip()
         rows = [done[model] for model in models() if model in done]
-        given.page.write_text(page(rows, commit), "utf-8")
+        given.page.write_text(page(rows), "utf-8")
     return int(any(found.wrong for found in done.values()))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from support.drawn.jointcases import DOWN, UP
@@ -12,29 +13,30 @@ FATES = ("to the end", "limit of work", "friction holds", "other")
 
 INTRODUCTION = """# Models with contact drawn at random
 
-{count} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears with backlash
-under load, masses that strike a rigid stop, dry friction beside clearances, chains of 2 to 10 masses, each
-before a stop, and contacts whose force jumps, damped or preloaded (`tests/support/drawn/contact.py`; a seed
-is a model); and two to six masses or a beam with two to eight joints, dry friction, exact sliders, stops,
-some with cubic springs, each from both ends of its range (`tests/support/drawn/joints.py`). Each is traced
-through a resonance at tol {tol:g}, at most {points} points, {newton} Newton iterations and {seconds:g} s of
-CPU; those with several joints at most {many_points}, {many_newton} and {many_seconds:g} s, limits of work
-and none of accuracy. {judged} points of each, drawn at random, are judged: orbit and multipliers by an
-event-exact solution in closed form or by Taylor's series, that shares nothing with the packages
-(`tests/reference/contact.py` with `closer.py` in extended precision, `tests/reference/joints`). A point is
-wrong where an error is more than ten times what the point claims and more than 1e-5, or where its stability
-is not so. `make survey` runs them: those with several joints in hours, the others in some 20 minutes on two
-cores.
+{count} of {all} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears
+with backlash under load, masses that strike a rigid stop, dry friction beside clearances, chains of 2
+to 10 masses, each before a stop, and contacts whose force jumps, damped or preloaded
+(`tests/support/drawn/contact.py`; a seed is a model); and two to six masses or a beam with two to eight
+joints, dry friction, exact sliders, stops, some with cubic springs, each from both ends of its range
+(`tests/support/drawn/joints.py`). Each is traced through a resonance at tol {tol:g}, at most {points}
+points, {newton} Newton iterations and {seconds:g} s of CPU; those with several joints at most
+{many_points}, {many_newton} and {many_seconds:g} s, limits of work and none of accuracy. {judged}
+points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in closed
+form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py` with
+`closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
+than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey`
+runs them, in the time of the last column.
 
-Engine at commit `{commit}`.
+Engine at {engines}.
 """
 
 
-def page(rows: Sequence[Row], commit: str) -> str:
+def page(rows: Sequence[Row]) -> str:
     """Return the page in Markdown."""
     begun = INTRODUCTION.format(
         count=len(rows),
-        commit=commit,
+        all=sum(SEEDS.values()),
+        engines=_engines(rows),
         tol=TOL,
         points=FEW.points,
         newton=FEW.newton,
@@ -51,6 +53,15 @@ def page(rows: Sequence[Row], commit: str) -> str:
     parts += [_told("Not traced to the end", ((r, _ended(r)) for r in rows if r.fate != FATES[0]))]
     parts += [_told("Claimed less well than asked", ((r, r.shortfall) for r in rows if r.shortfall))]
     return "\n".join(parts)
+
+
+def _engines(rows: Sequence[Row]) -> str:
+    """The commits whose engines have traced them, with how many each has where there are several."""
+    count = Counter(row.engine for row in rows)
+    names = {engine: f"commit `{engine}`" if engine else "commits not recorded" for engine in count}
+    if len(names) == 1:
+        return next(iter(names.values()))
+    return ", ".join(f"{names[engine]} ({number} models)" for engine, number in count.most_common())
 
 
 def _summary(rows: Sequence[Row]) -> str:

@@ -6,7 +6,8 @@ import json
 import time
 import warnings
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from support.drawn.jointcases import DOWN, UP, JointCase, drawn_joints
 
 import periodic as per
 from reports.studies.extremes.survey import within
+from reports.studies.pages.engine import current
 
 TOL = 1e-6
 
@@ -69,6 +71,7 @@ class Row:
 
     shortfall: its points whose estimates exceed the tolerance, as the branch says. unjudged: points that
     the reference does not follow. ratio: the largest error over what is claimed, at least the tolerance.
+    engine: the last commit that changed the engine that traced it, with a + where there were changes besides.
     """
 
     kind: str
@@ -84,6 +87,7 @@ class Row:
     wrong: tuple[str, ...] = ()
     gaps: tuple[str, ...] = ()
     unjudged: tuple[str, ...] = ()
+    engine: str = ""
 
     @property
     def fate(self) -> str:
@@ -125,8 +129,19 @@ def _as_far(case: Case | JointCase) -> per.Branch:
         return interrupted.branch
 
 
+@cache
+def engine() -> str:
+    """Return the commit of the engine as it was first asked for: what this process has imported."""
+    found = current()
+    return found.commit + "+" * found.changed
+
+
 def row(kind: str, seed: int, count: int = JUDGED) -> Row:
     """Trace a model and judge as many points. Any warning or exception is recorded as wrong."""
+    return replace(_row(kind, seed, count), engine=engine())
+
+
+def _row(kind: str, seed: int, count: int) -> Row:
     begun, most = time.process_time(), FEW.seconds
     try:
         case = drawn(kind, seed)

@@ -9,6 +9,8 @@ import pytest
 from survey.page import page
 from survey.rows import Row, models, read, row, write
 
+from reports.studies.pages.engine import current
+
 
 def test_all_models_are_drawn_once() -> None:
     """Assert that there are 900, 100 chains among them."""
@@ -22,6 +24,7 @@ def test_row_is_kept(tmp_path: Path) -> None:
     file = tmp_path / "rows.jsonl"
     found = row("gears", 100, 2)
     assert (found.fate, found.judged, found.wrong, found.gaps) == ("to the end", 2, (), ())
+    assert found.engine.removesuffix("+") == current().commit
     assert 0 < found.ratio < 1
     write(file, found)
     assert read([file, tmp_path / "none"]) == {("gears", 100): found}
@@ -32,7 +35,8 @@ def test_page_counts() -> None:
     right = Row("gears", 100, "BOUND", "bound reached: upper end", 10, judged=8, ratio=0.5)
     wrong = Row("gears", 101, "BOUND", "bound reached: upper end", 5, judged=8, wrong=("Omega 1: orbit",))
     short = Row("chains", 100, "MAX_POINTS", "largest number of points reached: 400 points", 400)
-    told = page([right, wrong, short], "abc")
+    told = page([right, wrong, short])
+    assert "3 of 900 models: one to three masses" in told
     assert "**2 of 3 are traced to the end; 1 of the 16 points judged is wrong.**" in told
     assert "| gears | 2 | 2 | 0 | 0 | 0 | 15 | 16 | 1 | 0 | 0.5 | 0 |" in told
     assert "| chains | 1 | 0 | 1 | 0 | 0 | 400 | 0 | 0 | 0 | 0 | 0 |" in told
@@ -46,7 +50,18 @@ def test_models_with_joints_count_from_both_ends() -> None:
         Row(kind, seed, "BOUND", "bound reached") for kind in ("joints", "joints down") for seed in (1, 2)
     ]
     rows[3] = Row("joints down", 2, "NO_START", "no orbit found at the start")
-    assert "**Of 2 models with several joints 1 are so from both ends.**" in page(rows, "abc")
+    assert "**Of 2 models with several joints 1 are so from both ends.**" in page(rows)
+
+
+def test_page_names_engines() -> None:
+    """Assert that the page has the commit of one engine, and of several how many models each has traced."""
+    old, new = (Row("gears", 100 + k, "BOUND", "bound reached", engine=f"abc{k}") for k in range(2))
+    assert "\nEngine at commit `abc0`.\n" in page([old])
+    told = page([old, new, new, Row("gears", 102, "BOUND", "bound reached")])
+    assert (
+        "\nEngine at commit `abc1` (2 models), commit `abc0` (1 models), commits not recorded (1 models).\n"
+        in told
+    )
 
 
 def test_joints_are_judged() -> None:

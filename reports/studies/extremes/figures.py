@@ -23,6 +23,9 @@ COLOURS = {
 FLOOR = 1e-16
 """Errors below it are drawn there."""
 
+BESIDE = 4.0
+"""How much further than its largest value an axis goes, so that markers are whole."""
+
 MARKERS = "os^D"
 """One for each way."""
 
@@ -58,6 +61,8 @@ def _axis(axes: Axes, values: Sequence[float]) -> None:
     if min(values) > 0:
         axes.set_xscale("log")
         return
-    axes.set_xscale("symlog", linthresh=min(abs(v) for v in values if v), linscale=0.5)
-    if min(values) < 0:
+    least, low = min(abs(v) for v in values if v), min(values)
+    axes.set_xscale("symlog", linthresh=least, linscale=0.5)
+    axes.set_xlim(BESIDE * low if low < 0 else -least / 2, BESIDE * max(values))
+    if low < 0:
         axes.set_xticks(values[:: max(1, len(values) // 8)])

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 import symbolic as sym
-from periodic import Branch, Label, trace
+from periodic import Label, trace
 from periodic.results.plots.curve import draw_curve
 from reports.studies.machines.machine import rpm
 from reports.studies.pages.content import Found, Kept, Section, Tell
 from reports.studies.pages.figures import SECOND, TRUSTED, panels
+from reports.studies.paper.branches.resonance import highest
 from symbolic.parts.films.regimes import REGIMES
 from symbolic.parts.films.regressions import Rolling
 
@@ -38,10 +39,9 @@ def regrouped(load: float, oil: float) -> float:
     return float((isoviscous + (viscous_rigid**-8 + viscous_elastic**-8) ** (-s / 8)) ** (1 / s))
 
 
-def disc(reduced: bool) -> Branch:
-    """Return the branch of the paper's disc, with all of the waviness or with what the film leaves of it."""
-    system = sym.scene(SCENE, {"waviness.reduction": "true"} if reduced else {})
-    return trace(system, "speed", (rpm(100), rpm(500)), start=rpm(500))
+def disc(reduced: bool) -> sym.CompiledSystem:
+    """Return the paper's disc, with all of the waviness or with what the film leaves of it."""
+    return sym.scene(SCENE, {"waviness.reduction": "true"} if reduced else {})
 
 
 def compute(tell: Tell) -> Found:
@@ -56,11 +56,12 @@ def compute(tell: Tell) -> Found:
     figure, axes = panels(1, 1, height=3.2)
     for reduced, name, color in ((False, WHOLE, TRUSTED), (True, LEFT, SECOND)):
         tell(name)
-        branch = disc(reduced)
+        system = disc(reduced)
+        branch = trace(system, "speed", (rpm(100), rpm(500)), start=rpm(500))
         swing = branch.peak_to_peak("x") * 1e6
         across = np.array([p.parameter for p in branch]) / rpm(1.0)
         draw_curve(axes, across, swing, branch.stable_between, color=color, labels=(name, ""))
-        numbers[f"largest swing (µm), {name}"] = float(swing.max())
+        numbers[f"largest swing (µm), {name}"] = highest(system, branch)[1] * 1e6
         numbers[f"folds, {name}"] = float(len(branch.labelled(Label.FOLD)))
     axes.set(xlabel="speed (rev/min)", ylabel="x peak to peak (µm)")
     axes.legend(frameon=False)

@@ -17,16 +17,19 @@ DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
 def command(page: Page, arguments: Sequence[str] | None = None) -> int:
-    """Compute a page, or one section of it, and return the exit code.
+    """Compute a page, or some of its sections, and return the exit code.
 
     Each section is kept as soon as it is done, and Ctrl-C keeps those.
     """
     parser = ArgumentParser(prog=f"python -m reports.studies.{page.name}", description="Compute the page.")
-    parser.add_argument("--only", choices=tuple(page.sections), help="compute one section, keep the others")
+    chosen = parser.add_mutually_exclusive_group()
+    every = tuple(page.sections)
+    chosen.add_argument("--only", choices=every, nargs="+", help="compute these sections, keep the others")
+    chosen.add_argument("--stale", action="store_true", help="compute those whose engine has changed since")
     parser.add_argument("--out", type=Path, default=page.folder, metavar="DIR", help="where the page goes")
     given = parser.parse_args(arguments)
-    names = (given.only,) if given.only else tuple(page.sections)
     try:
+        names = page.stale(given.out) if given.stale else given.only or every
         folder = page.ready(given.out, names)
         with interrupting_at_once(), telling("computing") as tell:
             written = page.make(folder, names, tell)

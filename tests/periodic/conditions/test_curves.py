@@ -171,7 +171,7 @@ def test_doubling_curve_stays_on_its_side_of_the_tongue() -> None:
         ),
     )
     (point,) = [p for p in curve if p.event == "heavy"]
-    # the sides at 2100 N, found as doublings of a branch by tests/test_paper_unseen.py: 651.17 and 665.88
+    # the sides at 2100 N, found as doublings by tests/reports/studies/paper/test_unseen.py: 651.17, 665.88
     assert point.parameter / RPM == pytest.approx(651.170989, rel=1e-8)
 
 
@@ -188,7 +188,7 @@ def test_folds_of_the_disc_over_preload() -> None:
         at=[200 * RPM],
     )
     (point,) = user_points(curve, 200 * RPM)
-    # found as a fold of the branch over preload at 200 rev/min by tests/test_paper_frequency.py
+    # found as a fold over preload at 200 rev/min by tests/reports/studies/paper/test_frequency.py
     assert point.orbit.parameter[index(system, "preload")] == pytest.approx(300.021108, rel=1e-8)
 
 

@@ -15,7 +15,7 @@ from periodic.correction.meanequilibrium import resting
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme
-from periodic.system import LinearPart
+from periodic.system import LinearPart, System
 
 CLEARANCE = 5e-5
 FILM = {"viscosity": 0.02, "radius": 0.025, "length": 0.025, "clearance": CLEARANCE}
@@ -67,6 +67,20 @@ def test_load_that_cannot_be_borne() -> None:
         sym.Mass(x := sym.coordinate("x"), 1.0) + sym.Damper(x, 1.0) + sym.ConstantForce(x, 1.0)
     )
     assert mesh_method(system).resting(system, at_rest(system, uniform(Scheme(), 4), system.nominal)) is None
+
+
+def test_load_that_overflows() -> None:
+    """Assert that there is no rest, and no warning, where a load is beyond all numbers."""
+
+    def beyond(*at: np.ndarray) -> SimpleNamespace:
+        line = system.linearise(*at)
+        infinite = np.full_like(line.residual, np.inf)
+        return SimpleNamespace(residual=infinite, d_state=line.d_state, d_algebraic=line.d_algebraic)
+
+    system = rotor(condense=False)
+    start = at_rest(system, uniform(Scheme(), 4), system.nominal)
+    assert resting(system, start) is not None
+    assert resting(cast(System, SimpleNamespace(states=system.states, linearise=beyond)), start) is None
 
 
 def test_linear_part_without_rest() -> None:

@@ -99,3 +99,10 @@ def test_a_sheared_pair_stays_one() -> None:
         first = left @ np.diag([1e4, 1.0, 1.0]) @ right
         found = multipliers(np.array([first, frame @ whole @ frame.T @ np.linalg.inv(first)]))
         assert np.sort(np.abs(found)) == pytest.approx([1e-3, 0.43, 0.43], abs=1e-8)
+
+
+def test_motions_that_several_steps_end() -> None:
+    """Assert multipliers, without a warning, where steps one after the other leave nothing of a motion."""
+    stuck, turned = np.diag([2.0, 0.0]), np.array([[0.5, 0.0], [1.0, 1.0]])
+    found = multipliers(np.array([stuck, stuck, turned, stuck]))
+    assert found == pytest.approx([4.0, 0.0], abs=1e-15)

@@ -76,7 +76,7 @@ def test_lower_folds_over_preload() -> None:
     light, heavy = (speed(point) for point in curve.labelled(per.Label.USER))
     if light > heavy:
         light, heavy = heavy, light
-    # a fold of the branch of that disc in tests/test_paper_unseen.py
+    # a fold of the branch of that disc in tests/reports/studies/paper/test_unseen.py
     assert heavy == pytest.approx(307.692770, abs=2e-6)
     assert light == pytest.approx(kept()["fold 2 at 200 N rpm"], rel=1e-8)
     up = per.trace(
@@ -106,7 +106,7 @@ def test_speed_rises_and_folds_stay_apart() -> None:
         assert n[f"fold 2 at {where} rpm"] - n[f"fold 1 at {where} rpm"] > 2.0
     peaks = [n[f"peak at {q} N rpm"] for q in ("20", "200", "810", "2100", "1e+04")]
     assert (np.diff(peaks) > 0).all()
-    # highest points of branches over speed, by a spline: tests/test_paper_frequency.py
+    # highest points of branches over speed, by a spline: tests/reports/studies/paper/test_frequency.py
     assert n["peak at 810 N um"] == pytest.approx(26.207, abs=2e-3)
     assert n["peak at 2100 N um"] == pytest.approx(41.537, abs=2e-3)
 

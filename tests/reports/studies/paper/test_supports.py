@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from support.fresh import assert_fresh
 
 from reports.studies.paper import supports
 from reports.studies.paper.branches import stiffness
+from reports.studies.paper.page import REPORT
 from symbolic.scenes.errors import InputError
 
 LINEAR = {
@@ -80,3 +82,8 @@ def test_no_stiffness_raises_the_resonance(rpm: float) -> None:
     """Assert that a resonance above that on rigid supports is refused, with the speeds that can be had."""
     with pytest.raises(InputError, match=r"no stiffness of the bearings gives; .* and 281\.181 \(rigid\)"):
         stiffness.stiffness_for(rpm, 0.3)
+
+
+def test_section_is_fresh() -> None:
+    """Assert that the section, computed whole, is what the page was made from; errors to a factor of ten."""
+    assert_fresh(REPORT, "supports", {"return error": 0.9})
