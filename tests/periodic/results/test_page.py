@@ -212,6 +212,7 @@ def place(page: Any, k: int) -> tuple[float, float]:
     return x, y
 
 
+@pytest.mark.browser
 def test_keys_finger_and_mouse(browser: Any, branch: per.Branch, file: Path) -> None:
     """Assert that each leads to the orbit that it points at, and that the system moves."""
     values = [p.parameter / (2 * math.pi) for p in branch]
@@ -236,6 +237,7 @@ def test_keys_finger_and_mouse(browser: Any, branch: per.Branch, file: Path) -> 
         assert page.locator(".js-plotly-plot").count() == 5
 
 
+@pytest.mark.browser
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_light_and_dark(browser: Any, file: Path, scheme: str) -> None:
     """Assert the paper's colour, of the page and of what is drawn on it."""
@@ -246,6 +248,7 @@ def test_light_and_dark(browser: Any, file: Path, scheme: str) -> None:
         assert paper == {"light": "#fff", "dark": "#14181d"}[scheme]
 
 
+@pytest.mark.browser
 def test_map_in_a_browser(browser: Any, tmp_path: Path) -> None:
     """Assert that keys lead from cell to cell."""
     peak = xr.Variable(("F", "c"), [[1.0, 2.0], [4.0, np.nan]], {"units": "m"})

@@ -18,6 +18,8 @@ from reports.studies.pages.content import Found, Section
 from reports.studies.pages.page import Page
 from symbolic.scenes.errors import InputError
 
+pytestmark = pytest.mark.studies
+
 Capture = pytest.CaptureFixture[str]
 
 

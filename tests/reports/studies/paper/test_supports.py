@@ -8,6 +8,8 @@ from reports.studies.paper import supports
 from reports.studies.paper.branches import stiffness
 from symbolic.scenes.errors import InputError
 
+pytestmark = pytest.mark.studies
+
 LINEAR = {
     "rigid resonance rpm": 281.181464,
     "scene resonance rpm": 249.997652,
