@@ -9,7 +9,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 # and keep them for other files and later runs of the same engine.
 PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadfile --keep
 # What `make test` leaves to targets of its own: a marker each.
-KINDS := browser distributed faults mutated grids backends studies gallery
+KINDS := browser distributed faults mutated drawn grids backends studies gallery
 EMPTY :=
 ANY_KIND := $(subst $(EMPTY) $(EMPTY), or ,$(KINDS))
 # Processor times, medians; the record goes to .benchmarks/.
@@ -38,7 +38,7 @@ run: $(VENV)/.installed ## Trace the example disc through resonance
 test: $(VENV)/.installed-dev ## Run the tests (6 minutes on two cores)
 	$(PYTEST) -m "not (long or $(ANY_KIND))"
 
-browser distributed faults mutated grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
+browser distributed faults mutated drawn grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
 	$(PYTEST) -m "$@ and not long"
 
 apart: $(VENV)/.installed-dev ## Run the tests of all these kinds, which `make test` leaves out
