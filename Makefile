@@ -5,15 +5,19 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
 
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-# A worker for each core, with one thread; the tests of a file share branches, so they stay together.
-PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+# A worker for each core, with one thread; the tests of a file share branches, so they stay together,
+# and keep them for other files and later runs of the same engine.
+PYTEST := $(ONE_THREAD) $(BIN)/python -m pytest --numprocesses auto --dist loadfile --keep
+# What `make test` leaves to targets of its own: a marker each.
+KINDS := browser distributed faults mutated drawn grids backends studies gallery
+EMPTY :=
+ANY_KIND := $(subst $(EMPTY) $(EMPTY), or ,$(KINDS))
 # Processor times, medians; the record goes to .benchmarks/.
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
-# The rooms of periodic/ with code for kernels; problems and studies run with those in C anyway,
-# and test_kernels.py with both.
-KERNEL_ROOMS := collocation condensed correction linear
+# The rooms of periodic/ whose tests run with kernels in C where there is a compiler (tests/conftest.py).
+KERNEL_ROOMS := bifurcations collocation condensed correction linear
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
 COUNT ?= 110
@@ -25,7 +29,7 @@ SECTION ?=
 STALE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
+.PHONY: help run test $(KINDS) apart kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -35,12 +39,17 @@ help: ## Show this list
 run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
-test: $(VENV)/.installed-dev ## Run the tests
-	$(PYTEST)
+test: $(VENV)/.installed-dev ## Run the tests (6 minutes on two cores)
+	$(PYTEST) -m "not (long or $(ANY_KIND))"
 
-kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
-	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) --ignore tests/periodic/collocation/test_kernels.py \
-	  --deselect tests/periodic/condensed/test_friction.py::test_settled
+browser distributed faults mutated drawn grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
+	$(PYTEST) -m "$@ and not long"
+
+apart: $(VENV)/.installed-dev ## Run the tests of all these kinds, which `make test` leaves out
+	$(PYTEST) -m "($(ANY_KIND)) and not long"
+
+kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in NumPy
+	ORBITRACE_KERNELS=numpy $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) -m "not (long or backends)"
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long

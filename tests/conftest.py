@@ -1,7 +1,7 @@
-"""The back end that the tests run with: NumPy, C for problems, unless the environment says otherwise.
+"""The back end that the tests run with: NumPy, C in some folders, unless the environment says otherwise.
 
-The automatic choice depends on what the user's cache holds. And the ledger: on every branch that a test
-traces each change of stability and direction must be accounted for by a labelled point.
+The automatic choice depends on what the user's cache holds. And the store of orbits, and the ledger: on every
+branch that a test traces each change of stability and direction must be accounted for by a labelled point.
 """
 
 import functools
@@ -16,6 +16,9 @@ from support.pages import chromium
 if "ORBITRACE_KERNELS" not in os.environ:
     os.environ |= {"ORBITRACE_KERNELS": "numpy", "ORBITRACE_KERNELS_UNASKED": "1"}
 
+from support.kept import STORE, UNACCOUNTED  # noqa: E402
+from support.rooms import IN_C  # noqa: E402
+
 import periodic as per  # noqa: E402
 from periodic.tracing import trace as tracing  # noqa: E402
 from symbolic.kernels import native  # noqa: E402
@@ -25,8 +28,26 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-UNACCOUNTED: list[str] = []
-"""What no labelled point accounts for on the branches that the test under way has traced."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let a run keep what tests compute."""
+    parser.addoption("--keep", action="store_true", help="keep orbits in pytest's cache for later runs")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Open the store of orbits where it is asked for."""
+    if config.getoption("--keep"):
+        folder = config.cache.mkdir("orbits")
+        STORE.open(folder)
+        if not hasattr(config, "workerinput"):
+            STORE.tidy(folder)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests that drive a browser."""
+    for item in items:
+        if isinstance(item, pytest.Function) and "browser" in item.fixturenames:
+            item.add_marker(pytest.mark.browser)
 
 
 def _noted(join: Callable[..., "per.Branch"]) -> Callable[..., "per.Branch"]:
@@ -58,6 +79,19 @@ def browser() -> Iterator[Any]:
     """Headless Chromium, where there is one."""
     with chromium() as started:
         yield started
+
+
+@pytest.fixture(autouse=True, scope="module")
+def kernels(request: pytest.FixtureRequest) -> None:
+    """As users have them, in the folders where that is so."""
+    if any(folder in request.path.parents for folder in IN_C):
+        request.getfixturevalue("users_kernels")
+
+
+@pytest.fixture(autouse=True)
+def unpatched(request: pytest.FixtureRequest) -> None:
+    """Shut the store to tests that may change the engine under way."""
+    STORE.shut = "monkeypatch" in request.fixturenames
 
 
 @pytest.fixture(autouse=True)

@@ -17,6 +17,8 @@ import periodic as per
 import symbolic as sym
 from periodic.correction.outcome import Outcome
 
+pytestmark = pytest.mark.gallery
+
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 REFERENCE = ("parts", "symbolic", "films", "functions", "periodic", "plots", "maps", "extend")
 PAGES = {str(file.relative_to(DOCS)): file for file in sorted(DOCS.glob("*/*.md"))}

@@ -8,6 +8,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
+pytestmark = pytest.mark.gallery
+
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 KEYS = {

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from support.flows import AUTONOMOUS, feedback, lorenz, period, stuart_landau, van_der_pol
+from support.kept import kept
 from support.traces import FINE
 
 import periodic as per
@@ -18,7 +17,7 @@ CASCADE = ((229.406709, 0.4808668), (218.21013, 0.987949), (215.9659, 1.986752))
 """rho and T of the period doublings of Lorenz's symmetric cycle (AUTO-07p)."""
 
 
-@cache
+@kept
 def van_der_pol_branch(tol: float) -> per.Branch:
     """Orbits from mu = 1 to 10."""
     guess = van_der_pol(1.0).simulated([2.0, 0.0], 100.0, crossing=0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ from scipy.integrate import quad
 from scipy.optimize import fsolve, minimize_scalar
 from scipy.special import ellipk
 from support.equations import oscillator, two_masses
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -120,7 +120,7 @@ MODES = {0: (1.0, 1.25), 1: (np.sqrt(3), 3.0)}
 """Linear frequency and end of the trace of the two modes of Kerschen's system."""
 
 
-@cache
+@kept
 def normal_mode(which: int, tol: float = 1e-8, everywhere: bool = True) -> per.Branch:
     """A nonlinear normal mode of Kerschen's two masses."""
     return backbone(two_masses(everywhere), MODES[which][1], which, tol)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from reference import squeeze
 from reference.discs import dry, quasistatic
 from reference.shooting import Field, Motion, motion, periodic_orbit
+from support.kept import kept
 from support.traces import RPM, disc, fold_speeds, largest_multiplier, user_points
 
 import periodic as per
@@ -145,7 +144,7 @@ def test_lift_off_and_return_are_tied() -> None:
         assert found == pytest.approx(shot(case, point).kinks, abs=1e-6)
 
 
-@cache
+@kept
 def faint(ratio: float, force: float) -> tuple[per.Branch, np.ndarray]:
     """Branch through a resonance of faint damping, and the least (unclipped) deflection along it over delta0.
 

@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from reference import squeeze
+from support.kept import kept
 from support.traces import (
     FINE,
     RPM,
@@ -46,7 +47,7 @@ VARIANTS = {
 """Other ways to trace the branch than from 500 down at standard accuracy."""
 
 
-@cache
+@kept
 def main_branch(accuracy: per.Accuracy | float) -> per.Branch:
     """The branch from 500 to 100 rev/min, with all speeds of this module asked for."""
     return disc(accuracy=accuracy, at=SPEEDS)

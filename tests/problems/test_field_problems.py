@@ -6,7 +6,6 @@ variational equations, integrated to 1e-13.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from support.field_models import (
     two_springs,
     ueda,
 )
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -74,7 +74,7 @@ def settled(field: Any, begin: list[float], until: float, period: float, paramet
     return per.sampled(phase, state, np.zeros((len(phase), 0)), np.array(parameter))
 
 
-@cache
+@kept
 def circuit_orbits() -> per.Branch:
     """AUTO tor, second run: symmetric orbits from the Hopf point, up to a period of 31."""
     (point,) = per.trace(circuit(), "nu", (-0.9, -0.55), method=per.Equilibrium()).labelled(HB)
@@ -99,7 +99,7 @@ def test_electronic_oscillator() -> None:
     assert circuit_orbits().stop == per.Stop(per.Reason.BOUND, "lower limit of omega")
 
 
-@cache
+@kept
 def lopsided() -> per.Branch:
     """AUTO tor, third run: the orbits without the symmetry."""
     point = circuit_orbits().labelled(BP)[0]
@@ -119,7 +119,7 @@ def test_torus_of_the_electronic_oscillator() -> None:
     )
 
 
-@cache
+@kept
 def enzyme_orbits() -> per.Branch:
     """AUTO plp: the orbits from the first Hopf point, and one of them at rho = 4."""
     points = per.trace(enzyme(), "rho", (2, 6), method=per.Equilibrium()).labelled(HB)
@@ -231,7 +231,7 @@ def test_doublings_of_the_spiral() -> None:
         guess = per.doubled(spiral(), point.orbit, "c", determined=ORBIT)
 
 
-@cache
+@kept
 def entrained() -> per.Branch:
     """Van der Pol's oscillator forced near resonance."""
     return trace(forced_van_der_pol(), "Omega", (0.8, 1.3), start=1.0)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from reference.confirmation import Integrator
 from support.drawn.models import Case, drawn
+from support.grids import spread
 
 import periodic as per
 from periodic import Reason
@@ -101,7 +102,7 @@ FAST = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "seed"), FAST)
+@pytest.mark.parametrize(("kind", "seed"), spread(FAST, 4))
 def test_a_dozen(kind: str, seed: int) -> None:
     """Assert it of twelve cases."""
     check(kind, seed)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -24,7 +25,7 @@ def chain(count: int, cubic: float = 0.5) -> sym.CompiledSystem:
     return sym.compile(sym.combine([*parts, sym.HarmonicForce(q[-1], 0.2, 1.6)]))
 
 
-@cache
+@kept
 def branch(split: bool) -> per.Branch:
     """Past the last resonance of three."""
     system = sym.condensed(chain(3)) if split else chain(3)
@@ -72,7 +73,7 @@ def test_linear_model_is_refused() -> None:
         sym.condensed(chain(2, cubic=0.0))
 
 
-@cache
+@kept
 def whole(condense: bool) -> per.Branch:
     """A chain of ten past a resonance, condensed on the way or not."""
     watch = per.Watch(

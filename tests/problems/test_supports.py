@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 import pytest
 from reference.integration import path
+from support.kept import kept
 from support.traces import FINE, RPM
 
 import periodic as per
@@ -147,7 +148,7 @@ def rates(tau: float, s: np.ndarray, omega: float, k: float, c: float, f: float)
     ]
 
 
-@cache
+@kept
 def through_resonance() -> per.Branch:
     """The dry scene from contact at 300 rev/min to the loss of it at 235."""
     bounds = (235 * RPM, 450 * RPM)

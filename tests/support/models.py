@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 import symbolic as sym
+from support.kept import once
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.variables import Coordinate, Value
 
@@ -119,7 +119,7 @@ REGIMES = {"touching": (-3.0, 3.0), "pressed": (5.0, 35.0), "deep": (42.0, 60.0)
 """Ranges of xi, none of which holds a place where softplus is put together."""
 
 
-@cache
+@once
 def scene(name: str) -> sym.CompiledSystem:
     """The compiled scene of that name."""
     return sym.compile(sym.combine(PARTS[name]()))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import periodic as per
+from support.kept import kept
 from support.traces import DUFFING_A, RPM, disc_system, duffing_system
 
 
@@ -36,7 +36,7 @@ def disc_options(**watched: Any) -> dict[str, Any]:
     }
 
 
-@cache
+@kept
 def whole(which: str) -> per.Branch:
     """The branch without an interrupt."""
     return per.trace(**OPTIONS[which]())

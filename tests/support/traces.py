@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 
 import periodic as per
 import symbolic as sym
+from support.kept import kept, once
 from symbolic.scenes.building import build
 from symbolic.scenes.reading import load
 
@@ -17,7 +17,7 @@ STANDARD, FINE = per.Accuracy.STANDARD, per.Accuracy.FINE
 NO_VALUES: tuple[float, ...] = ()
 
 
-@cache
+@once
 def duffing_system(damping: float, cubic: float, force: float) -> sym.CompiledSystem:
     """x'' + damping x' + x + cubic x^3 = force cos(Omega t)."""
     x = sym.coordinate("x")
@@ -29,7 +29,7 @@ DUFFING_A = (0.1, 1.0, 0.5)
 DUFFING_NLVIB = (0.05, 0.1, 0.18)
 
 
-@cache
+@kept
 def duffing(
     problem: tuple[float, float, float] = DUFFING_A,
     accuracy: per.Accuracy = STANDARD,
@@ -40,13 +40,13 @@ def duffing(
     return per.trace(duffing_system(*problem), "Omega", bounds, at=at, tol=accuracy)
 
 
-@cache
+@once
 def disc_system(scene: str, ratio: float | None = None) -> sym.CompiledSystem:
     """Compiled system of a disc scene, perhaps at another damping ratio."""
     return build(load(scene, [] if ratio is None else [("damping.ratio", str(ratio))]))
 
 
-@cache
+@kept
 def disc(
     scene: str = "vitrea79-810N",
     accuracy: per.Accuracy | float = STANDARD,

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from reports.studies.pages.engine import current
 from survey.page import page
 from survey.rows import Row, models, read, row, write
-
-from reports.studies.pages.engine import current
 
 
 def test_all_models_are_drawn_once() -> None:

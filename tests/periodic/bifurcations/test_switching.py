@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from reference import squeeze
+from support.kept import kept
 from support.mathieu import Mathieu
 from support.numpy_systems import Array, LinearOscillator
 from support.traces import RPM, disc_system
@@ -36,7 +37,7 @@ def test_mathieu(q: float, a: float) -> None:
     assert not found[0].stable
 
 
-@cache
+@kept
 def small_orbits() -> per.Branch:
     """The disc's small orbits, from above the 1:2 resonance down."""
     return per.trace(disc_system(SCENE), "speed", (480 * RPM, 640 * RPM), start=640 * RPM, at=[556 * RPM])
@@ -54,7 +55,7 @@ def simulated() -> Trajectory:
     return last
 
 
-@cache
+@kept
 def doubled_orbits() -> per.Branch:
     """The branch through that motion."""
     system, motion = disc_system(SCENE), simulated()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ from reference.integration import path
 from reference.shooting import Field, motion
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
+from support.kept import kept
 from support.mathieu import Mathieu
 from support.numpy_systems import Array, LinearOscillator
 from support.traces import DUFFING_A, FINE, disc_system, duffing, duffing_system
@@ -100,7 +100,7 @@ class Pendulum(LinearOscillator):
 PENDULUM = Pendulum(Omega=0.6, zeta=0.125, F=0.3)
 
 
-@cache
+@kept
 def symmetric() -> per.Branch:
     """Its symmetric orbits."""
     return per.trace(PENDULUM, "F", (0.3, 1.2))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from support import joints, traces
+from support.kept import kept
 from support.numpy_systems import LinearOscillator
 
 import periodic as per
@@ -59,7 +60,7 @@ def begun(name: str) -> Orbit:
     return per.trace(compiled(name), "Omega", (1.5, 1.6), control=one)[0].orbit
 
 
-@cache
+@kept
 def duffing() -> per.Branch:
     """The resonance of Duffing's oscillator."""
     return per.trace(compiled("duffing"), "Omega", (0.3, 3.0))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from reference.closer import closer
 from reference.contact import Contact, Stop, period, periodic
 from reference.hybrid import Hybrid, Surface, motion, periodic_orbit
 from reference.integration import Array
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -30,7 +30,7 @@ def touch() -> float:
     return float(np.sqrt(square.real.max()))
 
 
-@cache
+@kept
 def traced(law: str, bounds: tuple[float, float]) -> tuple[int, per.Branch]:
     """The index of the depth's switch, and the branch of x'' + .05 x' + x + the contact = .4 cos Omega t."""
     k, c, preload, lost = LAWS[law]

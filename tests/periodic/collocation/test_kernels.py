@@ -18,6 +18,8 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from symbolic.kernels import native
 
+pytestmark = pytest.mark.backends
+
 if native.compiler() is None:
     pytest.skip("there is no C compiler", allow_module_level=True)
 

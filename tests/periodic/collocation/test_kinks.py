@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from reference import piecewise
 from reference.shooting import Motion, in_order, oscillator, periodic_orbit
+from support.kept import kept
 from support.numpy_systems import FORCE, OMEGA, ZETA, BilinearOscillator, MeissnerOscillator
 
 import periodic as per
@@ -33,7 +34,7 @@ TIGHT = NewtonSettings(tolerance=1e-10)
 each_case = pytest.mark.parametrize("Omega, kinks", CASES.items())
 
 
-@cache
+@kept
 def draft() -> per.Branch:
     """The bilinear oscillator from high frequencies down, through many changes of its kinks."""
     system = BilinearOscillator(zeta=DAMPING)
@@ -45,7 +46,7 @@ def rough(Omega: float) -> per.Point:
     return next(p for p in draft().labelled(per.Label.USER) if p.parameter == Omega)
 
 
-@cache
+@kept
 def standard(Omega: float) -> per.Point:
     """A point at standard accuracy."""
     system = BilinearOscillator(zeta=DAMPING)
@@ -233,7 +234,7 @@ def test_kink_beside_the_start_of_the_period(after: float, kink: int) -> None:
     assert np.min(np.abs(np.exp(1j * point.orbit.phases) - np.exp(1j * after))) < 1e-9
 
 
-@cache
+@kept
 def excited_at_zero() -> per.Point:
     """The orbit at phi = 0."""
     return per.trace(late(), "phi", (0.0, 1e-3), tol=1e-8)[0]

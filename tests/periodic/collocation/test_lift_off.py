@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
 from reference.returning import Rates, shot
+from support.kept import kept
 from support.stops import errors, exactly, stopped
 
 import periodic as per
@@ -31,7 +31,7 @@ def rub(w: float) -> Rates:
     return found
 
 
-@cache
+@kept
 def rotor(start: float) -> per.Branch:
     """A rotor that rubs: from no contact to a whirl all round the stator, and back to none."""
     places = (0.97, 0.971, 0.972)

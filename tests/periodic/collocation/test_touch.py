@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from reference.piecewise import Piecewise
+from support.kept import kept
 from support.stops import errors, exactly, stopped
 from support.stops import judged as exactly_judged
 
@@ -25,7 +25,7 @@ STIFFNESSES = [5.0, 1e2, 1e4]
 each_way = pytest.mark.parametrize("way", [UP, DOWN], ids=["up", "down"])
 
 
-@cache
+@kept
 def branch(stiffness: float, way: tuple[float, float], tol: float = 1e-6) -> per.Branch:
     """The branch through the touch."""
     return per.trace(stopped(stiffness), "Omega", way, tol=tol)

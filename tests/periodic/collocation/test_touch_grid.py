@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 
 import pytest
+from support.grids import spread
 from support.stops import exactly, judged, stopped
 
 import periodic as per
@@ -22,7 +23,7 @@ RESOLVED = 4e-13
 """Rounding of multipliers that no estimate claims to see."""
 
 
-@pytest.mark.parametrize(("stiffness", "tol", "way"), SHORT)
+@pytest.mark.parametrize(("stiffness", "tol", "way"), spread(SHORT, 4))
 def test_every_point_is_right(stiffness: float, tol: float, way: tuple[float, float]) -> None:
     """Assert that a branch comes to its bound through the touch, on small meshes, and what it claims."""
     confirmed(stiffness, tol, way)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.cantilevers import cantilever, cubic
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -21,7 +21,7 @@ from periodic.orbit.scheme import Array
 from periodic.tracing.methodchoice import chosen_method
 
 
-@cache
+@kept
 def branch(elements: int, condense: bool = True) -> per.Branch:
     """The first resonance of a cantilever with a cubic spring at its tip."""
     return per.trace(cantilever(elements, cubic, condense=condense), "Omega", (3.0, 8.0), tol=1e-6)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 import pytest
 from scipy.special import mathieu_a, mathieu_b
+from support.kept import kept
 from support.traces import (
     DUFFING_A,
     FINE,
@@ -53,7 +53,7 @@ def index(system: sym.CompiledSystem, name: str) -> int:
     return [p.name for p in system.parameters].index(name)
 
 
-@cache
+@kept
 def fold_curve(which: int) -> per.Branch:
     """The curve of folds of Duffing A over Omega and F, begun at its upper (0) or lower (1) fold."""
     fold = duffing(accuracy=FINE).labelled(per.Label.FOLD)[which]

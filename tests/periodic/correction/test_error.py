@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from support.kept import kept
 from support.traces import DUFFING_A, FINE, RPM, disc_system, duffing, duffing_system
 
 import periodic as per
@@ -31,7 +31,7 @@ def settings(tolerance: float, family: per.Family, ncol: int) -> dict[str, Any]:
     }
 
 
-@cache
+@kept
 def oscillators(tolerance: float, family: per.Family, ncol: int) -> tuple[per.Point, ...]:
     """Duffing orbits, at some frequencies on three sheets."""
     branch = per.trace(
@@ -44,7 +44,7 @@ def oscillators(tolerance: float, family: per.Family, ncol: int) -> tuple[per.Po
     return branch.labelled(per.Label.USER)
 
 
-@cache
+@kept
 def discs(tolerance: float, family: per.Family, ncol: int) -> tuple[per.Point, ...]:
     """Orbits of the disc on its upper sheet."""
     branch = per.trace(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from support.equations import (
     reaction,
     stuart_landau,
 )
+from support.kept import kept
 from support.traces import FINE, duffing, duffing_system, fold_speeds
 
 import periodic as per
@@ -42,13 +42,13 @@ def equations(function: Any, states: dict[str, float], **parameters: float) -> s
     return sym.compile(sym.Equations(function, states=states, parameters=parameters))
 
 
-@cache
+@kept
 def origin() -> per.Branch:
     """Lorenz's origin."""
     return per.trace(lorenz(), "rho", (0, 30), at=[28], method=per.Equilibrium())
 
 
-@cache
+@kept
 def convection() -> per.Branch:
     """Lorenz's other equilibria, from the pitchfork."""
     guess = per.branched(lorenz(), origin().labelled(per.Label.BRANCH)[0].orbit, "rho")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import cache
 
 import numpy as np
 import pytest
 from support.flows import AUTONOMOUS, feedback, period, van_der_pol
+from support.kept import kept
 from support.numpy_systems import (
     AlgebraicOscillator,
     Array,
@@ -184,7 +184,7 @@ def test_kink_is_refused() -> None:
     assert 1e-6 < refusal(branch) < 1e-3
 
 
-@cache
+@kept
 def van_der_pol_branch() -> per.Branch:
     """Orbits from mu = 1 on, by harmonic balance."""
     guess = van_der_pol(1.0).simulated([2.0, 0.0], 100.0, crossing=0)

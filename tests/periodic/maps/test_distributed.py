@@ -18,6 +18,8 @@ from support.maps import GRID, Deadly, ends, height, process, task
 import periodic as per
 from periodic.maps.execution import DIED
 
+pytestmark = pytest.mark.distributed
+
 TESTS = Path(__file__).resolve().parents[2]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(TESTS), "OMP_NUM_THREADS": "1"}
 

@@ -14,6 +14,8 @@ from support.maps import GRID, Deadly, task
 import periodic as per
 from periodic.maps.execution import DIED
 
+pytestmark = pytest.mark.faults
+
 
 class KilledWorker(Exception):  # noqa: N818
     """As dask.distributed says that several workers have died of one piece of work."""

@@ -9,6 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.kept import kept
 from support.numpy_systems import LinearOscillator
 from support.traces import RPM, disc, duffing, duffing_system
 
@@ -32,7 +33,7 @@ def loaded(preload: float) -> sym.CompiledSystem:
     return build(load(SCENE, [("contact.preload", str(preload))]))
 
 
-@cache
+@kept
 def traced(preload: float) -> per.Branch:
     """A short stretch of its branch."""
     return per.trace(loaded(preload), "speed", (300 * RPM, 280 * RPM), tol=per.Accuracy.DRAFT)

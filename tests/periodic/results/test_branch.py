@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from support.equations import growing
+from support.kept import kept
 from support.numpy_systems import AlgebraicOscillator, BrokenOscillator
 from support.traces import disc, duffing
 
@@ -27,7 +27,7 @@ def axes() -> Axes:
     return Figure().subplots()
 
 
-@cache
+@kept
 def branches() -> dict[str, per.Branch]:
     """A smooth branch, one with event nodes and an unknown, one both ways, one without a point."""
     system = AlgebraicOscillator()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+from support.kept import kept
 from support.traces import disc, duffing
 
 import periodic as per
@@ -28,7 +28,7 @@ def axes() -> Axes:
     return figure.subplots()
 
 
-@cache
+@kept
 def gears() -> per.Branch:
     """The gear pair: four folds and seven touches, some close together."""
     return per.trace(sym.scene("gear-pair"), "Omega", (0.4, 1.2), start=1.2)

@@ -14,6 +14,7 @@ import pytest
 from support.flows import AUTONOMOUS
 from support.flows import feedback as numpy_feedback
 from support.flows import van_der_pol as numpy_van_der_pol
+from support.kept import kept
 from support.numpy_systems import LinearOscillator
 from support.traces import (
     DUFFING_A,
@@ -90,7 +91,7 @@ def linear_system() -> sym.CompiledSystem:
     return sym.compile(sym.combine(parts))
 
 
-@cache
+@kept
 def by_collocation() -> per.Branch:
     """The disc's branch with its two folds, with points at SPEEDS and a little above."""
     return disc(rpm=(500.0, 235.0), at=(*SPEEDS, *(v + AHEAD for v in SPEEDS)))
@@ -107,7 +108,7 @@ def shot(guess: per.Orbit, rpm: tuple[float, float], method: per.extend.Discreti
     return per.trace(disc_scene(), "speed", bounds, guess=guess, method=method, control=FEW_STEPS)
 
 
-@cache
+@kept
 def disc_by_shooting(segments: int) -> list[per.Point]:
     """The disc's orbits at SPEEDS, each at the end of a short branch from an orbit of collocation."""
     method = per.Shooting(segments=segments)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -14,13 +13,13 @@ from periodic.tori.invariant import Invariance, unknowns
 from periodic.tori.torus import Family, first
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """The rotor with internal damping through its torus bifurcation."""
     return per.trace(sym.scene("jeffcott-internal-damping"), "n", (1.2, 2.2), start=1.2)
 
 
-@cache
+@kept
 def whirl() -> per.Torus:
     """Its torus at n = 2."""
     return per.torus(sym.scene("jeffcott-internal-damping"), branch().labelled("NS")[0], "n", 2.0, tol=1e-10)

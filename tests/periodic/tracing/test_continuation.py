@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from functools import cache
 
 import numpy as np
 import pytest
+from support.kept import kept
 from support.numpy_systems import BrokenOscillator, LinearOscillator
 from support.traces import DUFFING_A, FINE, STANDARD, duffing, duffing_system, largest_multiplier
 
@@ -25,7 +25,7 @@ def labelled(branch: per.Branch, label: per.Label) -> list[float]:
     return [point.parameter for point in branch.labelled(label)]
 
 
-@cache
+@kept
 def both_ways() -> per.Branch:
     """Traced from inside the range to both of its ends, the start asked for too."""
     return per.trace(SYSTEM, "Omega", RANGE, start=1.0, at=(1.0, 1.8))

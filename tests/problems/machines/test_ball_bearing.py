@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
 from reference.returning import Rates, Shot, shot
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -18,7 +18,7 @@ PEAKS = {7.0: (0.49618627, 0.29072993), 6.0: (2.43086450, 0.41931401)}
 """Known x and y peak to peak in um (another author's integration, its peaks on samples)."""
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """The branch from 10 krpm to beyond the doubling; it has no point between its two tori but by itself."""
     return per.trace(

@@ -6,12 +6,12 @@ Over a passage every ball takes the place of the next: the motion returns after 
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -24,7 +24,7 @@ STIFFNESS, H0, W0, BETA = 13.34e9, 0.3e-6, 100.0, 13.7
 PRELOAD = 3e-6
 
 
-@cache
+@kept
 def traced(count: int) -> per.Point:
     """The bearing at 10 krpm."""
     x, y = (sym.coordinate(q, scale=1e-6) for q in "xy")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
 from reference.returning import Rates, Shot, shot
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -18,7 +18,7 @@ FOLDS = (0.598153117, 0.835837679)
 PLACES = (1.1, 0.9, 0.7, 0.62, 0.5)
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """The branch from 1.2 down to 0.4."""
     return per.trace(sym.scene("gear-pair"), "Omega", (0.4, 1.2), start=1.2, at=PLACES)

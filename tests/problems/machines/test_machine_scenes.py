@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 import pytest
 from reference.returning import Rates, shot
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -160,7 +160,7 @@ CASES = {
 QUICK = ("jeffcott-internal-damping", "stop", "friction-damper")
 
 
-@cache
+@kept
 def branch(name: str) -> per.Branch:
     """The branch of a scene through the places."""
     case, (begin, end) = CASES[name], _range(name)

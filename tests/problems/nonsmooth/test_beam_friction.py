@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy
 from reference.contact import Contact, Friction, Period, periodic
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -24,7 +25,7 @@ def system() -> sym.CompiledSystem:
     return sym.compile(structure + sym.CoulombFriction(tip, FRICTION) + sym.HarmonicForce(tip, FORCE, 2.55))
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """The branch past a frequency at which stops become passages."""
     return per.trace(system(), "Omega", (2.55, 2.7))

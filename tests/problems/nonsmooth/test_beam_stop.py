@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from reference.contact import Contact, Period, Stop, period
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -17,7 +18,7 @@ PLACES = tuple(HZ * f for f in (17.0, 18.5, 19.5, 21.0, 25.0))
 ELEMENTS, RAYLEIGH, STIFFNESS, GAP, FORCE = 2, 3.5e-4, 2000.0, 1e-3, 0.02
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """The branch of the scene with fewer elements, whose fastest mode closed forms can follow."""
     system = sym.scene("beam-stop", {"structure.beam.beam.elements": ELEMENTS})

@@ -11,6 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 from reference.chatter import Chatter
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -38,7 +39,7 @@ def settled(force: float) -> sym.Simulation:
     return sym.simulate(system(), {"F": force}, knock={"y": ABOVE}, settle=3, tolerance=TOLERANCE)
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """Orbits that rest, over the force."""
     motion = settled(1.2)

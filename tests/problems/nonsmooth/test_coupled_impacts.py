@@ -7,14 +7,13 @@ as is that of an orbit followed in doubles. So these are such that M^-1 K, M^-1 
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 from reference.closer import closer
 from reference.contact import Contact, Period, Wall, periodic
 from reference.judging import quiet
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -26,7 +25,7 @@ STIFFNESS = np.array([[3.0, -1.0], [-1.0, 2.0]])
 DAMPING = STIFFNESS / 32
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """From beyond the resonance down to the touch, and with one to three impacts, beside two more touches."""
     structure = sym.Structure(MASS, DAMPING, STIFFNESS, at={"a": 0, "b": 1})

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from reference.hybrid import Hybrid, Signs, Surface, periodic_orbit
 from reference.shooting import in_order
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -38,7 +39,7 @@ def gear() -> sym.CompiledSystem:
     return sym.compile(sym.Equations(equations, {"x": 1.1, "v": 0.0}, {"w": 1.0}, frequency="w"))
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """Responses over the frequency, through two folds."""
     return per.trace(gear(), "w", (0.5, 1.0), at=0.7)

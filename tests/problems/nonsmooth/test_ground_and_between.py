@@ -13,6 +13,8 @@ from survey.rows import TOL, verdicts
 
 import periodic as per
 
+pytestmark = pytest.mark.drawn
+
 BOUNDS = 0.35, 2.2
 
 

@@ -10,7 +10,6 @@ whose least A is a fold; v = 0 is grazing, at A = c d.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from reference.closer import closer
 from reference.contact import Contact, Wall, periodic
 from reference.shooting import in_order
 from scipy.linalg import expm
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -28,7 +28,7 @@ import symbolic as sym
 C, D, E = DAMPING, GAP, RESTITUTION
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """Orbits with one impact over A, from 1 down to grazing."""
     system = bouncing()

@@ -14,6 +14,8 @@ from survey.rows import drawn, verdicts
 import periodic as per
 from periodic.system import STUCK
 
+pytestmark = pytest.mark.drawn
+
 RANGE = (1.18, 1.34)
 
 

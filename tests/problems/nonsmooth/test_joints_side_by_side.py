@@ -13,6 +13,8 @@ from survey.rows import TOL, drawn, verdicts
 import periodic as per
 import symbolic as sym
 
+pytestmark = pytest.mark.drawn
+
 
 def some(seed: int, start: float | None, points: int, beyond: float) -> per.Branch:
     """So many steps of the branch of a model from somewhere: they lead beyond a value, no point wrong."""

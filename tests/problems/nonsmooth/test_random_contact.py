@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from reference.judging import judged
 from support.drawn.contact import Case, drawn
+from support.grids import spread
 from survey.rows import FEW, TOL, row, traced, verdicts
 
 import periodic as per
@@ -52,7 +53,7 @@ SAMPLE = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "seed"), SAMPLE)
+@pytest.mark.parametrize(("kind", "seed"), spread(SAMPLE, 4))
 def test_some(kind: str, seed: int) -> None:
     """Assert it of one of each kind, and that they are traced to their ends."""
     case = drawn(kind, seed)
@@ -65,6 +66,7 @@ SHORT_STOPS = [(4, 0.7730, 0.7690, 1), (4, 0.77166, 0.7700, 0), (106, 0.6830, 0.
 """Seeds, stretches of the branch in which a stop begins or ends, and how often one touches there (GR)."""
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize(("seed", "begin", "end", "touches"), SHORT_STOPS)
 def test_stops_however_short(seed: int, begin: float, end: float, touches: int) -> None:
     """Assert multipliers where sliding just stops: they jump there, and no stop is too short to be seen.
@@ -101,6 +103,7 @@ def test_folds_beside_a_touch() -> None:
     assert wrong(case, branch, 132) == []
 
 
+@pytest.mark.drawn
 def test_impact_and_end_of_a_contact_swap() -> None:
     """Assert that a branch goes on where an impact comes to lie before the end of a contact, not after it.
 
@@ -130,6 +133,7 @@ def test_impacts_that_follow_each_other(seed: int, reason: Reason | None) -> Non
     assert (found.wrong, found.unjudged, list(branch.unaccounted)) == ([], [], [])
 
 
+@pytest.mark.drawn
 def test_last_digits_of_the_parameter() -> None:
     """Assert that errors tell what the parameter's last digits are to multipliers beside a touch, 2e-7."""
     case = drawn("clearances", 130)
@@ -149,6 +153,7 @@ BESIDE = 1.0920005367814
 """Where the contact of chains 1019 ends; 5e-11 beside it lies a fold, of a contact of 1e-4 rad."""
 
 
+@pytest.mark.drawn
 def test_contact_ends_beside_a_fold() -> None:
     """Assert that a step may end at both, and that no shorter contact is followed; all points are judged."""
     case = drawn("chains", 1019)
@@ -160,6 +165,7 @@ def test_contact_ends_beside_a_fold() -> None:
     assert wrong(case, branch, len(branch)) == []
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("ends_below", [None, 0.0])
 def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that it ends where a step has gone past where contacts do, and no false label on the way.
@@ -178,6 +184,7 @@ def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: py
     assert verdicts(case, branch, 1019, len(branch)).wrong == []
 
 
+@pytest.mark.drawn
 def test_contact_that_is_rounding() -> None:
     """Assert that nothing is claimed of multipliers where rounding decides how long a contact is."""
     case = drawn("chains", 1019)
@@ -238,6 +245,7 @@ def test_seven_hundred(kind: str, seeds: Iterable[int], capsys: pytest.CaptureFi
     assert [(each.seed, said) for each in rows for said in (*each.wrong, *each.gaps, *each.unjudged)] == []
 
 
+@pytest.mark.drawn
 def test_what_ends_where_friction_turns_leaves_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that beyond the end of an excursion each mesh that is tried lacks its event nodes."""
     gone, beyond = [], Ends.beyond

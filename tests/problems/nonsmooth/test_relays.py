@@ -12,6 +12,7 @@ from reference.shooting import in_order
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq, minimize_scalar
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -67,7 +68,7 @@ def off(point: per.Point) -> float:
     return phi
 
 
-@cache
+@kept
 def branches() -> tuple[per.Branch, per.Branch]:
     """Over the amplitude, from its middle both ways, and back from its upper end."""
     there = per.trace(thermostat(), "A", (0.02, 1.5), start=0.3, tol=1e-9)

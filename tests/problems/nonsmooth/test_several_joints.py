@@ -12,6 +12,8 @@ from survey.rows import drawn, traced, verdicts
 import periodic as per
 import symbolic as sym
 
+pytestmark = pytest.mark.drawn
+
 
 @pytest.mark.parametrize("seed", [128])
 def test_random_models(seed: int) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -15,7 +15,7 @@ import symbolic as sym
 STIFF, DAMPING, FORCE, W = (1.0, 4.0), 0.05, 0.5, 0.6
 
 
-@cache
+@kept
 def branch() -> per.Branch:
     """Over the friction force, from slip alone, through the onset of stops and their merging."""
     x, y = sym.coordinate("x"), sym.coordinate("y")

@@ -169,6 +169,7 @@ def test_title_that_is_no_formula(tmp_path: Path, capsys: Capture) -> None:
     assert capsys.readouterr().out.startswith(f"{title}, force = 0.4\n")
 
 
+@pytest.mark.faults
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this machine has no device that is always full")
 def test_full_standard_output(tmp_path: Path) -> None:
     """Assert that a standard output that takes nothing more is said in a sentence; the files are there."""
@@ -180,6 +181,7 @@ def test_full_standard_output(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 5
 
 
+@pytest.mark.faults
 def test_request_to_end(tmp_path: Path) -> None:
     """Assert that SIGTERM, like Ctrl-C, saves the points so far."""
     process = command("trace", "turbo33-2100N", "--accuracy", "fine", "--out", str(tmp_path))

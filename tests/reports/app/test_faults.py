@@ -26,6 +26,8 @@ from periodic.results.files import digest
 from periodic.results.journal import TABLE
 from reports.app.cli import main
 
+pytestmark = pytest.mark.faults
+
 TRACE = ("trace", "duffing", "--to", "0.7", "--accuracy", "draft", "--out")
 JOURNAL = "branch.journal"
 

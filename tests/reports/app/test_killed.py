@@ -17,6 +17,8 @@ from support.traces import DUFFING_A, duffing_system
 import periodic as per
 from reports.app.cli import main
 
+pytestmark = pytest.mark.faults
+
 ARGUMENTS = ("trace", "vitrea79-810N", "--to", "200", "--accuracy", "fine")
 
 

@@ -24,6 +24,8 @@ from reports.studies.extremes.words import domain, error, number
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
 
+pytestmark = pytest.mark.studies
+
 FOLDER = REPORT.folder
 FEW = per.ArclengthControl(max_points=20)
 

@@ -13,6 +13,8 @@ from reports.studies.machines.page import MACHINES, REPORT
 from reports.studies.pages.page import PAGE
 from reports.studies.pages.text import FIGURES
 
+pytestmark = pytest.mark.studies
+
 FOLDER = REPORT.folder
 NEAR = {"peak": 1e-5, "p-p": 1e-5}
 """Relative differences from known numbers that were read from samples; 2e-8 for the others."""

@@ -11,6 +11,8 @@ from reports.studies.pages.text import FIGURES
 from reports.studies.structures import accuracy, chain, modes, peer, rotor, size
 from reports.studies.structures.page import REPORT
 
+pytestmark = pytest.mark.studies
+
 FOLDER = REPORT.folder
 
 

@@ -21,6 +21,8 @@ from reports.studies.trade.methods.whole import accuracies
 from reports.studies.trade.page import REPORT
 from reports.studies.trade.words import cheapest, decade, seconds
 
+pytestmark = pytest.mark.studies
+
 FOLDER = REPORT.folder
 KEYS: dict[str, dict[str, tuple[str, ...]]] = {
     "smooth": {names.ANCHORED: ("tol 1e-7",), names.BALANCE: ("H 5",), "Gauss 4, even": ("ntst 24",)},

@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.faults
+
 SCRIPT = """
 import os, signal, sys, threading, time
 from contextlib import nullcontext

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from support.kept import kept
 
 import periodic as per
 import symbolic as sym
@@ -16,7 +16,7 @@ from symbolic.equations.surfaces import Kind
 STIFFNESS, LIMIT, PLACE = 0.5, 0.1, 1.15
 
 
-@cache
+@kept
 def slid() -> per.Branch:
     """The branch of the scene, from above its resonance down into it, where the slider slips."""
     return per.trace(sym.scene("jenkins-damper"), "Omega", (1.1, 1.3), start=1.3, at=PLACE)

@@ -15,6 +15,8 @@ from symbolic.scenes.errors import InputError
 from symbolic.scenes.reading import load
 from symbolic.scenes.schema import Scene
 
+pytestmark = pytest.mark.mutated
+
 BLOCK = 500
 
 

@@ -22,6 +22,8 @@ from reports.studies.pages.engine import Engine
 from reports.studies.pages.page import Page
 from symbolic.scenes.errors import InputError
 
+pytestmark = pytest.mark.studies
+
 Capture = pytest.CaptureFixture[str]
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from functools import cache
 
 import numpy as np
 import pytest
+from support.kept import kept
 from support.traces import RPM
 
 import periodic as per
@@ -44,11 +44,13 @@ from reports.studies.paper.marching.transients import (
 from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import Verdict, rows
 
+pytestmark = pytest.mark.studies
+
 OILS = (OIL_A, OIL_B)
 STEP = 1e-4
 
 
-@cache
+@kept
 def small_orbit(name: str, part: float) -> per.Point:
     """The orbit at 360 rev/min and a small part of the paper's waviness."""
     begin = part * WAVINESS
@@ -252,7 +254,7 @@ def test_key_number(key: str) -> None:
     assert numbers()[key] == pytest.approx(value, rel=accuracy)
 
 
-@cache
+@kept
 def numbers() -> dict[str, float]:
     """The key numbers, computed once."""
     return damping.key_numbers()

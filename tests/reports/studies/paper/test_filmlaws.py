@@ -9,6 +9,8 @@ import pytest
 import periodic
 from reports.studies.paper.branches import films
 
+pytestmark = pytest.mark.studies
+
 READINGS = {
     "calibrated": (3.850006, 281.181464, 0.00676333, 237.486586, 252.035057),
     "constant-one-body": (3.570320, 281.193196, 0.00618655, 236.239420, 252.044790),

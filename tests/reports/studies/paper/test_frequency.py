@@ -10,6 +10,8 @@ from reports.studies.paper.branches import preload
 from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import rows
 
+pytestmark = pytest.mark.studies
+
 
 def test_continuation_in_preload_meets_that_in_speed() -> None:
     """Assert that both give the same orbits at their common points, to 1e-8."""

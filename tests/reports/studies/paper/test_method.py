@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.kept import kept
 from support.traces import RPM
 
 import periodic as per
@@ -34,11 +35,13 @@ from symbolic.motion.linear import modes
 from symbolic.scenes.building import build
 from symbolic.scenes.reading import load
 
+pytestmark = pytest.mark.studies
+
 OIL_A, OIL_B = "vitrea79-810N", "turbo33-810N"
 AT = (240.0, 245.0, 270.0, 290.0, 315.0, 320.0, 360.0)
 
 
-@cache
+@kept
 def known() -> per.Branch:
     """Return the branch of oil A at 810 N with points at the speeds of this module."""
     return branch(OIL_A, 500.0, 230.0, at=AT)

@@ -15,6 +15,8 @@ from reports.studies.paper import damping, filmlaws, frequency, regions, support
 from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import Row, Verdict, compared, rows
 
+pytestmark = pytest.mark.studies
+
 NUMBERS: dict[str, Callable[[], Mapping[str, float]]] = {
     "timedomain": timedomain.key_numbers,
     "damping": damping.key_numbers,

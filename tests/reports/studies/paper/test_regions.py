@@ -24,6 +24,8 @@ from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import rows
 from symbolic.scenes.axes import RPM
 
+pytestmark = pytest.mark.studies
+
 
 def kept() -> dict[str, float]:
     """The numbers that the page was made from."""

@@ -10,6 +10,8 @@ from reports.studies.paper.branches import stiffness
 from reports.studies.paper.page import REPORT
 from symbolic.scenes.errors import InputError
 
+pytestmark = pytest.mark.studies
+
 LINEAR = {
     "rigid resonance rpm": 281.181464,
     "scene resonance rpm": 249.997652,

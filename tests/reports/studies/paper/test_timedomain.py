@@ -25,6 +25,8 @@ from reports.studies.paper.marching.histories import (
 from reports.studies.paper.page import REPORT
 from reports.studies.paper.rows import Verdict, rows
 
+pytestmark = pytest.mark.studies
+
 
 @cache
 def section() -> Found:

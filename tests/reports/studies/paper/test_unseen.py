@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 from reference import squeeze
+from support.kept import kept
 from support.traces import RPM
 
 import periodic as per
 from reports.studies.paper import unseen
 from reports.studies.paper.common.scenes import system
 from reports.studies.paper.common.tracing import branch
+
+pytestmark = pytest.mark.studies
 
 FOLDS = {
     "vitrea79-810N": (237.486586, 252.035057),
@@ -35,7 +37,7 @@ LOST = {
 }
 
 
-@cache
+@kept
 def numbers() -> dict[str, float]:
     """The section's key numbers, made once."""
     return unseen.numbers()
