@@ -59,7 +59,10 @@ SEEDS = {
 """How many models of a kind, from seed 100 on; those with several joints are traced from either end."""
 
 BACK = "turned back"
-"""What a branch says that came back to where it began."""
+"""What a branch says that came back to the end of the range where it began."""
+
+APART = 1e-3
+"""By which part peaks to peak of states differ at least, where it came back at another orbit, past folds."""
 
 HELD = "holds all along"
 """What a branch says where friction holds the motion for good: it is at rest, anywhere."""
@@ -69,6 +72,7 @@ HELD = "holds all along"
 class Row:
     """A model. `wrong` lists what its branch claims that is not so, `gaps` what its ledger leaves open.
 
+    retraced: whether one that came back did so at the orbit where it began, as far as peaks to peak say.
     shortfall: its points whose estimates exceed the tolerance, as the branch says. unjudged: points that
     the reference does not follow. ratio: the largest error over what is claimed, at least the tolerance.
     engine: the last commit that changed the engine that traced it, with a + where there were changes besides.
@@ -88,11 +92,12 @@ class Row:
     gaps: tuple[str, ...] = ()
     unjudged: tuple[str, ...] = ()
     engine: str = ""
+    retraced: bool = True
 
     @property
     def fate(self) -> str:
         """The column of the page that it is counted in."""
-        if self.reason == "BOUND" and BACK not in self.told:
+        if self.reason == "BOUND" and not (BACK in self.told and self.retraced):
             return "to the end"
         if HELD in self.told:
             return "friction holds"
@@ -169,7 +174,16 @@ def _row(kind: str, seed: int, count: int) -> Row:
         tuple(verdict.wrong),
         tuple(map(str, branch.unaccounted)),
         tuple(verdict.unjudged),
+        retraced=_retraced(branch, [output.name for output in case.system.outputs]),
     )
+
+
+def _retraced(branch: per.Branch, outputs: list[str]) -> bool:
+    """Whether a branch ends at an orbit with the peaks to peak of the one where it began."""
+    if not len(branch):
+        return True
+    first, last = ([branch[k].peak_to_peak(name) for name in outputs] for k in (0, -1))
+    return all(abs(b - a) <= APART * max(a, b) for a, b in zip(first, last, strict=True))
 
 
 @dataclass

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from reports.studies.pages.engine import current
 from survey.page import page
-from survey.rows import Row, models, read, row, write
+from survey.rows import BACK, Row, models, read, row, write
 
 
 def test_all_models_are_drawn_once() -> None:
@@ -27,6 +28,14 @@ def test_row_is_kept(tmp_path: Path) -> None:
     assert 0 < found.ratio < 1
     write(file, found)
     assert read([file, tmp_path / "none"]) == {("gears", 100): found}
+
+
+def test_branch_that_comes_back_at_another_orbit() -> None:
+    """Assert that it is traced to its end: past a fold, not along itself; others that come back are not."""
+    found = row("gears", 102, 0)
+    assert BACK in found.told
+    assert (found.fate, found.retraced) == ("to the end", False)
+    assert replace(found, retraced=True).fate == "other"
 
 
 def test_page_counts() -> None:
