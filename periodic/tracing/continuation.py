@@ -34,7 +34,7 @@ from periodic.tracing.start import Start
 from periodic.tracing.state import State
 from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, crossed, standing
-from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
+from periodic.tracing.steps.stepper import BeyondError, Stepper, UnsolvedError, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
 from periodic.tracing.watch import Watch
 
@@ -294,6 +294,7 @@ class Continuation:
         over = self._over_changes(base, ds, sought)
         if over is not None:
             return over
+        failed = 0
         longest = np.inf  # the next step is no longer where a longer one has just failed
         while True:
             try:
@@ -308,10 +309,11 @@ class Continuation:
                 course = Course(length, margins(base, (*codim2.along(base), *tests)))
                 return Step(new, further, found, course, tried.change, ds)
             except RejectedError as rejected:
-                longest = ds = ds * rejected.shorter
+                failed = failed + 1 if isinstance(rejected, UnsolvedError) and base.orbit.mesh.events else 0
                 beyond = isinstance(rejected, BeyondError)
                 self._unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
+                longest = ds = _shortened(ds, rejected.shorter, failed, least)
                 if self._unread or not ds >= least:
                     self.stop = Stop(Reason.INACCURATE if beyond else Reason.SMALL_STEP, str(rejected))
                     return None
@@ -477,3 +479,13 @@ class Continuation:
     @cached_property
     def _stepper(self) -> Stepper:
         return Stepper(self.solver, self.control)
+
+
+def _shortened(ds: float, shorter: float, failed: int, least: float) -> float:
+    """Return the step to be tried after one that was rejected, Newton having failed so often in a row.
+
+    Beside events that meet segments grow as roots of the way along the branch: a step that Newton follows may
+    be shorter by decades. So each further failure shortens by one more power; none passes the least step.
+    """
+    found = ds * shorter ** max(failed, 1)
+    return least if found < least <= ds * shorter else found

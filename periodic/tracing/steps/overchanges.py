@@ -9,6 +9,7 @@ may have been passed, the step is left to those that stop there.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -141,10 +142,12 @@ class _Way:
         return float(np.sign(self.base.tangent.parameter))
 
     def _accurate(self, new: Solution) -> Solution | None:
-        """The orbit to the tolerance; None where its word is another one."""
+        """The orbit to the tolerance; None where its word is another one, as if an excursion is too brief."""
+        events = Counter(new.orbit.mesh.events)
         if np.isfinite(new.error.motion):
             new = refined(self.solver, new, fixed=True)
-        return new if new.ok and new.error.curable <= self.solver.tolerance.orbit else None
+        kept = new.ok and Counter(new.orbit.mesh.events) == events
+        return new if kept and new.error.curable <= self.solver.tolerance.orbit else None
 
     def _words(self, distance: float) -> Iterator[Orbit]:
         """Yield guesses of the orbit at a distance with another word than the base's."""
