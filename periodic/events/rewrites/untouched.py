@@ -83,11 +83,8 @@ def _persist(stays: Iterable[Stay], others: Sequence[Stay], period: float) -> bo
     A slip may begin where friction holds, and a stick where it reverses.
     """
     for stay in stays:
-        if stay.mode == STUCK:
-            modes, free = (STUCK,), stay.before == -stay.after
-        else:
-            modes, free = (STUCK, stay.mode), False
-        if not free and not _overlapped(stay, others, modes, period):
+        reverses = stay.mode == STUCK and stay.before == -stay.after
+        if not reverses and not _overlapped(stay, others, (STUCK, stay.mode), period):
             return False
     return True
 

@@ -81,7 +81,8 @@ def over_changes(
 class _Way:
     """Orbits ahead of a base at parameters along its tangent, with the words that they have there.
 
-    read: whether a word may still be read from a motion, which takes as long as a step: one in each step.
+    read: whether a word may be read from a motion, which takes as long as a step: once, and again where it
+    has led to an orbit that is only too far off.
     """
 
     solver: Solver
@@ -110,6 +111,7 @@ class _Way:
         """The step to an orbit, if it keeps the bounds of a step and passes no special point."""
         ratios = list(bound_ratios(self.base, new, ds, self.control, self.solver.tolerance.orbit))
         if not all(ratio.size <= 1 for ratio in ratios):
+            self.read = True  # its word may be that of an orbit less far off
             return None
         self.known[ds] = new
         try:
