@@ -9,6 +9,7 @@ may have been passed, the step is left to those that stop there.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -80,7 +81,8 @@ def over_changes(
 class _Way:
     """Orbits ahead of a base at parameters along its tangent, with the words that they have there.
 
-    read: whether a word may still be read from a motion, which takes as long as a step: one in each step.
+    read: whether a word may be read from a motion, which takes as long as a step: once, and again where it
+    has led to an orbit that is only too far off.
     """
 
     solver: Solver
@@ -109,6 +111,7 @@ class _Way:
         """The step to an orbit, if it keeps the bounds of a step and passes no special point."""
         ratios = list(bound_ratios(self.base, new, ds, self.control, self.solver.tolerance.orbit))
         if not all(ratio.size <= 1 for ratio in ratios):
+            self.read = True  # its word may be that of an orbit less far off
             return None
         self.known[ds] = new
         try:
@@ -141,10 +144,12 @@ class _Way:
         return float(np.sign(self.base.tangent.parameter))
 
     def _accurate(self, new: Solution) -> Solution | None:
-        """The orbit to the tolerance; None where its word is another one."""
+        """The orbit to the tolerance; None where its word is another one, as if an excursion is too brief."""
+        events = Counter(new.orbit.mesh.events)
         if np.isfinite(new.error.motion):
             new = refined(self.solver, new, fixed=True)
-        return new if new.ok and new.error.curable <= self.solver.tolerance.orbit else None
+        kept = new.ok and Counter(new.orbit.mesh.events) == events
+        return new if kept and new.error.curable <= self.solver.tolerance.orbit else None
 
     def _words(self, distance: float) -> Iterator[Orbit]:
         """Yield guesses of the orbit at a distance with another word than the base's."""
