@@ -77,7 +77,8 @@ class Covering:
                 seconds = max(note.get("seconds", 0.0), UNKNOWN if note["outcome"] == "stopped" else 0.0)
                 self.all[name] = last[function(name)] = Executed(name, seconds, own)
         for name, note in notes.items():
-            if note["outcome"] == "alike" and (like := last.get(function(name))):
+            if note["outcome"] == "alike":
+                like = last.get(function(name), Executed(name, UNKNOWN, {}))
                 self.all[name] = replace(like, name=name)
 
     def seconds(self, test: str) -> float:
@@ -155,8 +156,9 @@ class Covering:
 def _likely(module: Path, test: Executed) -> float:
     """Return how likely a test is to notice a change of a module, up to a factor."""
     own = sum(_module(name) == str(module) for name in test.functions)
-    share = own / len(test.functions) if test.functions else 0.0
     file, room = Path(test.name.partition("::")[0]), Path("tests") / module.parent
+    alone = float(file.stem == f"test_{module.stem}")
+    share = own / len(test.functions) if test.functions else alone
     near = 2 if file.parent == room or room in file.parents else 1
     return (PRIOR + share) * near * (2 if file.stem == f"test_{module.stem}" else 1)
 

@@ -27,14 +27,14 @@ ROOMS = ("periodic", "symbolic", "problems", "howto")
 """Folders of tests: not those of the command line and of texts, which run the packages from afar."""
 
 
-LONGEST = 0.3
+LONGEST = 1.0
 """CPU seconds after which a test is stopped as it is measured; what it has executed until then counts."""
 
-CASES = 0.6
+CASES = 2.0
 """CPU seconds of a test's cases: those that are left then are taken to execute what the others do."""
 
-WHOLE = 2.0
-"""CPU seconds of a file's tests: those that are left then, but further cases, are asked of no mutant."""
+WHOLE = 10.0
+"""CPU seconds of a file's tests: of those that are left then, but of further cases, nothing is known."""
 
 
 def files(clone: Path) -> list[Path]:

@@ -32,6 +32,9 @@ ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build"
 CLONE = BUILD / "mutants"
 COVERING = BUILD / "covering"
+COMPILED = ".git/compiled"
+"""Says which commit the clone's bytecode is of."""
+
 LIMIT = 60.0
 """Seconds of CPU time for the tests of one mutant."""
 
@@ -55,14 +58,24 @@ def known(file: Path) -> list[Outcome]:
 
 
 def cloned() -> str:
-    """Clone the last commit, compile it to bytecode, which no mutant is, and return the commit."""
-    subprocess.run(["rm", "-rf", str(CLONE)], check=True)
-    subprocess.run(["git", "clone", "-q", "--shared", str(ROOT), str(CLONE)], check=True)
-    environment = os.environ | {"PYTHONPATH": str(CLONE)}
-    for command in (["compileall", "-q", *PACKAGES], ["pytest", "-q", "-n0", "--collect-only", "tests"]):
-        made = [sys.executable, "-m", *command]
-        subprocess.run(made, cwd=CLONE, env=environment, check=True, stdout=subprocess.DEVNULL)
-    return subprocess.check_output(["git", "rev-parse", "--short", "HEAD"], cwd=CLONE, text=True).strip()
+    """Clone the last commit, compile it to bytecode, which no mutant is, and return the commit.
+
+    A clone of that commit that is there is kept, without what a run that was stopped has left of a mutant.
+    """
+    commit = subprocess.check_output(["git", "rev-parse", "HEAD"], cwd=ROOT, text=True).strip()
+    if not CLONE.exists():
+        subprocess.run(["git", "clone", "-q", "--shared", str(ROOT), str(CLONE)], check=True)
+    there = subprocess.check_output(["git", "rev-parse", "HEAD"], cwd=CLONE, text=True).strip()
+    if there != commit:
+        subprocess.run(["git", "fetch", "-q", "origin", commit], cwd=CLONE, check=True)
+    subprocess.run(["git", "reset", "-q", "--hard", commit], cwd=CLONE, check=True)
+    if not (CLONE / COMPILED).exists() or (CLONE / COMPILED).read_text() != commit:
+        environment = os.environ | {"PYTHONPATH": str(CLONE)}
+        for command in (["compileall", "-q", *PACKAGES], ["pytest", "-q", "-n0", "--collect-only", "tests"]):
+            made = [sys.executable, "-m", *command]
+            subprocess.run(made, cwd=CLONE, env=environment, check=True, stdout=subprocess.DEVNULL)
+        (CLONE / COMPILED).write_text(commit)
+    return commit[:7]
 
 
 def main() -> int:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from support.surfaces import Surfaces, along
 
+from periodic.correction import error as errors
 from periodic.correction import identity
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import EXACT, UNKNOWN, ErrorEstimate, _to, shortfall
@@ -265,3 +266,18 @@ def test_orbits_that_are_the_same(error: float, apart: float, alike: bool) -> No
     a, b = (SimpleNamespace(orbit=orbit, error=SimpleNamespace(worst=error)) for orbit in (one, other))
     solver = SimpleNamespace(problem=problem_of(), tolerance=SimpleNamespace(orbit=1e-6))
     assert identity.same(solver, a, b) is alike  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("rate", "straight"),
+    [(1.0, True), (0.51, True), (0.49, False), (1.99, True), (2.01, False), (-1.0, False)],
+)
+def test_way_on_which_the_branch_is_straight(
+    rate: float, straight: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that d parameter / d arclength changes by no more than a factor of two, and not its sign."""
+    found, there = (SimpleNamespace(kernel=SimpleNamespace(parameter=each)) for each in (0.5, 0.5 * rate))
+    monkeypatch.setattr(errors._OnBranch, "_moved", lambda *_: None)
+    on_branch = errors._OnBranch(problem_of(), lambda _: there, 1.0)  # type: ignore[arg-type, return-value]
+    given: Any = None
+    assert on_branch._there(found, given) is (there if straight else None)  # type: ignore[arg-type]

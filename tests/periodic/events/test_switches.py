@@ -14,7 +14,7 @@ from periodic.events.rewrites import ends, merging, sites, strikes, swaps, table
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import GRAZING, IMPACT, SHORT
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed
-from periodic.events.switchpolynomials import SwitchPolynomials, _roots
+from periodic.events.switchpolynomials import Extremum, SwitchPolynomials, _roots
 from periodic.events.thresholds import decades
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
@@ -362,3 +362,30 @@ def test_sites_of_sliders_that_slip_together_are_one() -> None:
     release, stop = (added.event for added in twins._both(one, other).added)
     assert release == EventNode(1, 1, modes=((3, 1),))
     assert stop == EventNode(0, -1, modes=((0, STUCK), (3, STUCK)))
+
+
+def test_slider_that_slips_where_others_stop() -> None:
+    """Assert that it is held with its twin at the turn of the strain, and that friction is left as it is."""
+    surfaces = [joint(), joint(1, 3, Kind.SLIDER), joint(2, 6, Kind.SLIDER)]
+    weights = [[0.0, 1.0]] * 3 + [[1.0, 0.0]] * 6
+    system = Surfaces(surfaces, weights)
+    turn, release = EventNode(3, -1, modes=((3, STUCK),)), EventNode(4, 1)
+    orbit = along(
+        lambda tau: np.stack([np.sin(tau), np.cos(tau)], axis=1),
+        [(turn, 1.0), (release, 3.0)],
+        modes=[(6, 3)],
+    )
+    at = Extremum(7, 0, 0.0, 1.0 + 1e-5, 0.0)
+    slip, stop = (
+        Added(EventNode(7, 1), 1.00001, 0.0),
+        Added(EventNode(6, -1, modes=((6, STUCK),)), 1.00001, 1.0),
+    )
+    site = Site(table.LIMIT_GRAZING, 7, at, Length(0, 0.0), 0.0, (slip, stop))
+    joined = twins.with_twins(system, orbit, site)
+    assert joined.added == (replace(slip, phase=1.0),)
+    assert joined.replaced == ((0, replace(turn, modes=((3, STUCK), (6, STUCK)))),)
+    friction = replace(site, row=table.ADDING_SLIDING, switch=1, at=replace(at, switch=1))
+    beside = Surfaces(surfaces, [[1.0, 0.0]] * 9)  # friction in parallel with both
+    assert twins.with_twins(beside, orbit, friction) is friction
+    far = replace(site, at=replace(at, phase=2.0))
+    assert twins.with_twins(system, orbit, far) is far

@@ -205,6 +205,12 @@ def test_limits_are_generous() -> None:
     assert (light.damping.ratio, heavy.damping.ratio) == (0, 1)
 
 
+@pytest.mark.parametrize("text", ["0.99", "4.01"])
+def test_exponents_of_a_contact(text: str) -> None:
+    """Assert that a contact's stiffness does not fall with its deflection, and rises by its cube at most."""
+    assert sentence("dry-810N", ("exponent", text)).endswith("it must be a number from 1 to 4")
+
+
 def test_range_sentence() -> None:
     """Assert the whole sentence of a number out of range."""
     assert sentence("dry-810N", ("preload", "-3")) == (

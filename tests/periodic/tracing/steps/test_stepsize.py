@@ -82,6 +82,8 @@ def test_angles_in_parts_of_the_largest(cosine: float, angle: float) -> None:
         ((2.0, 1.0), (-1.0, -1.0), False),  # a line
         ((1.0, 1.0), (0.0, 8.0), True),  # 1 - 8 t^2 (1 - t): 8 * 4 / 27 below, at 2/3
         ((1.0, 1.0), (0.0, 3.0), False),  # 0.444 below
+        ((1.1, 9.1), (4.0, 12.0), False),  # 4 (t + 0.5)^2 + 0.1, lowest before the step
+        ((9.1, 1.1), (-12.0, -4.0), False),  # ... and behind it
     ],
 )
 def test_cubic_that_comes_near_0(ends: tuple[float, float], rates: tuple[float, float], back: bool) -> None:

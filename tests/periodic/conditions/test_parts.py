@@ -1,0 +1,112 @@
+"""Numbers of orbits and how they are picked, of orbits that are given: by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from support.surfaces import along
+
+import periodic as per
+from periodic.conditions import extremes
+from periodic.conditions.functionals import Component, apart, output_index
+from periodic.orbit.gradients import collocation_points
+from periodic.tracing.watch import _rising, slack
+
+
+@pytest.mark.parametrize(
+    ("angle", "value", "level", "found"),
+    [
+        (False, 3.0, 5.0, -2.0),
+        (True, 3.0, -3.0, 6.0 - 2 * np.pi),
+        (True, -3.0, 3.0, 2 * np.pi - 6.0),
+        (True, 1.0, 0.5, 0.5),
+    ],
+)
+def test_distance_from_a_level(angle: bool, value: float, level: float, found: float) -> None:
+    """Assert value - level, of angles between -pi and pi."""
+    functional: Any = SimpleNamespace(angle=angle) if angle else SimpleNamespace()
+    assert apart(functional, value, level) == pytest.approx(found, abs=1e-14)
+
+
+def test_outputs_by_name() -> None:
+    """Assert the index, and that another name is refused with those there are."""
+    system: Any = SimpleNamespace(outputs=[SimpleNamespace(name=name) for name in ("x", "force")])
+    assert output_index(system, "force") == 1
+    with pytest.raises(
+        ValueError, match="output is 'y'; it must be one of x, force|output is 'y'; it must be"
+    ):
+        output_index(system, "y")
+
+
+@pytest.mark.parametrize(
+    ("order", "phase", "value"),
+    [
+        (0.0, 0.0, 1.5),
+        (1.0, 0.0, 2.0),
+        (1.0, np.pi / 2, 3.0),
+        (2.0, 0.0, 0.0),
+        (3.0, np.pi / 2, -1.0),
+        (1.0, np.pi, -2.0),
+    ],
+)
+def test_harmonics_of_a_wave(order: float, phase: float, value: float) -> None:
+    """Assert those of 1.5 + 2 cos tau + 3 sin tau - sin 3 tau, to the quadrature of 40 intervals."""
+    orbit = along(lambda tau: np.sin(tau)[:, None])
+    points = collocation_points(orbit)
+    tau = points.phase
+    wave = 1.5 + 2 * np.cos(tau) + 3 * np.sin(tau) - np.sin(3 * tau)
+    assert wave @ Component("x", order, phase)._weights(orbit, points) == pytest.approx(value, abs=1e-9)
+
+
+@pytest.mark.parametrize(("begin", "found"), [(1.0004, 1.0), (1.002, 1.002), (1.0, 1.0)])
+def test_stationary_phase_near_another(begin: float, found: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that of cos(tau - 1) by Newton's steps, and the phase itself where there is none within 1e-3."""
+    orbit = along(lambda tau: np.sin(tau)[:, None])
+    monkeypatch.setattr(extremes.measure, "outputs", lambda system, orbit, tau: np.cos(tau - 1.0)[:, None])
+    given: Any = None
+    assert extremes._stationary(given, orbit, 0, begin) == pytest.approx(found, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("ends", "rising"),
+    [
+        ((0.0, 1.0), True),
+        ([0, 1], True),
+        ((1.0, 1.0), False),
+        ((1.0, 0.0), False),
+        ((0.0, np.inf), False),
+        ((0.0, 1.0, 2.0), False),
+        (3.0, False),
+        (("a", "b"), False),
+    ],
+)
+def test_limits_are_two_rising_numbers(ends: object, rising: bool) -> None:
+    """Assert what is taken for limits."""
+    assert _rising(ends) is rising
+    assert slack(-5.0) == pytest.approx(5e-12)
+
+
+@pytest.mark.parametrize("count", [0, -1, True, 1.5])
+def test_counts_at_which_a_trace_stops(count: Any) -> None:
+    """Assert that they are whole numbers of at least 1."""
+    with pytest.raises(ValueError, match="it must be a whole number of at least 1"):
+        per.Watch(stop={"LP": count})
+    assert per.Watch(stop={"LP": 1}).stop == {"LP": 1}
+
+
+def test_start_within_the_limits() -> None:
+    """Assert that an orbit at a limit, to rounding, may be begun from, and none beyond it."""
+    system: Any = SimpleNamespace(parameters=[SimpleNamespace(name="F")])
+    watch = per.Watch(limits={"F": (1.0, 2.0)})
+
+    def begun(value: float) -> Any:
+        return SimpleNamespace(parameter=np.array([value]))
+
+    for value in (1.0 - 0.9e-12, 1.5, 2.0 + 1.9e-12):
+        watch.check(system, begun(value))
+    for value in (1.0 - 1.1e-12, 2.0 + 2.1e-12, 0.0):
+        with pytest.raises(ValueError, match="F is .* at the start; its limits are 1.0 to 2.0"):
+            watch.check(system, begun(value))
