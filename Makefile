@@ -16,7 +16,7 @@ ANY_KIND := $(subst $(EMPTY) $(EMPTY), or ,$(KINDS))
 BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.process_time \
   --benchmark-sort=name --benchmark-columns=median,iqr,rounds
 
-# The rooms of periodic/ whose tests run with kernels in C where there is a compiler (tests/conftest.py).
+# The rooms of periodic/ whose tests `--in-c` runs in C where there is a compiler: tests/support/rooms.py.
 KERNEL_ROOMS := bifurcations collocation condensed correction linear
 
 # Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
@@ -40,13 +40,13 @@ run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
 test: $(VENV)/.installed-dev ## Run the tests (6 minutes on two cores)
-	$(PYTEST) -m "not (long or $(ANY_KIND))"
+	$(PYTEST) --in-c -m "not (long or $(ANY_KIND))"
 
 browser distributed faults mutated drawn grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
-	$(PYTEST) -m "$@ and not long"
+	$(PYTEST) --in-c -m "$@ and not long"
 
 apart: $(VENV)/.installed-dev ## Run the tests of all these kinds, which `make test` leaves out
-	$(PYTEST) -m "($(ANY_KIND)) and not long"
+	$(PYTEST) --in-c -m "($(ANY_KIND)) and not long"
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in NumPy
 	ORBITRACE_KERNELS=numpy $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) -m "not (long or backends)"

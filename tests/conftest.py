@@ -17,7 +17,7 @@ if "ORBITRACE_KERNELS" not in os.environ:
     os.environ |= {"ORBITRACE_KERNELS": "numpy", "ORBITRACE_KERNELS_UNASKED": "1"}
 
 from support.kept import STORE, UNACCOUNTED  # noqa: E402
-from support.rooms import IN_C  # noqa: E402
+from support.rooms import IN_C, ROOMS_IN_C  # noqa: E402
 
 import periodic as per  # noqa: E402
 from periodic.tracing import trace as tracing  # noqa: E402
@@ -29,7 +29,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let a run keep what tests compute."""
+    """Let a run keep what tests compute, and have the tests of orbits run in C."""
+    parser.addoption("--in-c", action="store_true", help="tests of orbits in C where there is a compiler")
     parser.addoption("--keep", action="store_true", help="keep orbits in pytest's cache for later runs")
 
 
@@ -82,9 +83,10 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def kernels(request: pytest.FixtureRequest) -> None:
-    """As users have them, in the folders where that is so."""
-    if any(folder in request.path.parents for folder in IN_C):
+def back_end_of_users(request: pytest.FixtureRequest) -> None:
+    """Use the kernels that a user gets, in the folders where that is so."""
+    folders = (*IN_C, *ROOMS_IN_C) if request.config.getoption("--in-c") else IN_C
+    if any(folder in request.path.parents for folder in folders):
         request.getfixturevalue("users_kernels")
 
 

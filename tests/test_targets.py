@@ -41,11 +41,15 @@ def test_ci_runs_it(target: str) -> None:
 
 def test_expressions_leave_nothing_out() -> None:
     """Assert that what `make test` does not run is what `make apart` runs, long studies aside."""
-    assert '$(PYTEST) -m "not (long or $(ANY_KIND))"' in MAKEFILE
-    assert '$(PYTEST) -m "($(ANY_KIND)) and not long"' in MAKEFILE
+    assert '$(PYTEST) --in-c -m "not (long or $(ANY_KIND))"' in MAKEFILE
+    assert '$(PYTEST) --in-c -m "($(ANY_KIND)) and not long"' in MAKEFILE
 
 
 def test_rooms_run_with_both_back_ends() -> None:
     """Assert that rooms that `make test` runs in C are those that `make kernels` runs in NumPy."""
     assert words("KERNEL_ROOMS") == list(ROOMS)
+    assert (
+        'ORBITRACE_KERNELS=numpy $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) -m "not (long or backends)"'
+        in MAKEFILE
+    )
     assert all(list((TESTS / "periodic" / room).rglob("test_*.py")) for room in ROOMS)

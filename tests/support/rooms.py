@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-ROOMS = ("bifurcations", "collocation", "condensed", "correction", "linear")
-"""Those of tests/periodic; `make kernels` runs them once more with kernels in NumPy."""
-
 TESTS = Path(__file__).resolve().parent.parent
 
-IN_C = (*(TESTS / "periodic" / room for room in ROOMS), TESTS / "problems", TESTS / "reports" / "studies")
+IN_C = (TESTS / "problems", TESTS / "reports" / "studies")
+"""Known answers and studies: always."""
+
+ROOMS = ("bifurcations", "collocation", "condensed", "correction", "linear")
+"""Those of tests/periodic that `make test` runs in C (`--in-c`) and `make kernels` in NumPy."""
+
+ROOMS_IN_C = tuple(TESTS / "periodic" / room for room in ROOMS)

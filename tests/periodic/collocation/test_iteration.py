@@ -112,6 +112,7 @@ CASES = {
 }
 
 
+@pytest.mark.backends
 @pytest.mark.parametrize("close_to", [0.0, 1.0])
 @pytest.mark.parametrize("name", CASES)
 def test_corrections_are_the_same(name: str, close_to: float) -> None:
@@ -132,6 +133,7 @@ def test_corrections_are_the_same(name: str, close_to: float) -> None:
     assert found.residual < 10 * expected.residual + 1e-9 and found.increment < NEWTON.tolerance
 
 
+@pytest.mark.backends
 @pytest.mark.parametrize("along", [0.1, 1e-6])
 @pytest.mark.parametrize("name", CASES)
 def test_error_estimates_are_the_same(name: str, along: float) -> None:
@@ -217,6 +219,7 @@ def summary(point: Point) -> list[float]:
     return [point.parameter, *point.maximum.values(), *np.abs(point.multipliers)]
 
 
+@pytest.mark.backends
 def test_branches_are_the_same() -> None:
     """Assert the branch of Duffing's resonance point by point, in C and in NumPy, to 1e-8."""
     other = per.trace(compiled("duffing", "numpy"), "Omega", (0.3, 3.0))

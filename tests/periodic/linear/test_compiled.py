@@ -213,6 +213,7 @@ def both(name: str) -> tuple[sym.CompiledSystem, sym.CompiledSystem]:
     return made[0], made[1]
 
 
+@pytest.mark.backends
 @pytest.mark.parametrize("name", scene_names())
 def test_orbits_of_scenes(name: str) -> None:
     """Assert the same orbit, multipliers and number of iterations of every scene, from a state near rest."""
@@ -231,6 +232,7 @@ def test_orbits_of_scenes(name: str) -> None:
     compare(eliminated(by_c, orbit, FREE), eliminated(by_numpy, orbit, FREE), 1e-8)
 
 
+@pytest.mark.backends
 def test_branch_is_the_same() -> None:
     """Assert the folds of problem A to 1e-10 with C, and that its branch has as many points."""
     x = sym.coordinate("x")

@@ -20,6 +20,8 @@ from support.numpy_systems import LinearOscillator
 import periodic as per
 from periodic.maps import store as stores
 
+pytestmark = pytest.mark.faults
+
 TESTS = Path(__file__).resolve().parents[2]
 RUN = """
 import sys

@@ -42,6 +42,7 @@ def test_folder_in_place_of_a_file(tmp_path: Path) -> None:
     complaint(tmp_path)
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("part", [0.0, 0.001, 0.1, 0.5, 0.9, 0.999])
 def test_truncated_file(saved: bytes, part: float, tmp_path: Path) -> None:
     """Assert that a file cut short anywhere is refused."""
@@ -91,6 +92,7 @@ NAMES = [
 ]
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("name", NAMES)
 def test_missing_variable(saved: bytes, name: str, tmp_path: Path) -> None:
     """Assert that a file without one of its variables is refused."""
@@ -99,6 +101,7 @@ def test_missing_variable(saved: bytes, name: str, tmp_path: Path) -> None:
     complaint(tmp_path / "spoilt.nc")
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("name", ["layout", "scheme", "ncol", "stop", "versions", "parameter"])
 def test_spoilt_attribute(saved: bytes, name: str, tmp_path: Path) -> None:
     """Assert that an attribute which is missing or nonsense is refused."""
@@ -111,6 +114,7 @@ def test_spoilt_attribute(saved: bytes, name: str, tmp_path: Path) -> None:
         complaint(tmp_path / "spoilt.nc")
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("name", ["break_count", "event_count", "segment_count"])
 def test_counts_that_do_not_add_up(saved: bytes, name: str, tmp_path: Path) -> None:
     """Assert that orbits whose shares of the arrays do not add up are refused."""
@@ -120,6 +124,7 @@ def test_counts_that_do_not_add_up(saved: bytes, name: str, tmp_path: Path) -> N
     complaint(tmp_path / "spoilt.nc")
 
 
+@pytest.mark.faults
 def test_another_version_of_the_format(saved: bytes, tmp_path: Path) -> None:
     """Assert that a format of the future is refused by name."""
     data = changed(saved, tmp_path / "branch.nc")
@@ -175,6 +180,7 @@ def test_file_is_portable_text_and_numbers(saved: bytes, tmp_path: Path) -> None
     assert b"pickle" not in saved and b"\x80\x04\x95" not in saved
 
 
+@pytest.mark.faults
 @pytest.mark.parametrize("place", np.linspace(0.02, 0.98, 13))
 def test_flipped_bit(saved: bytes, place: float, tmp_path: Path) -> None:
     """Assert that a single flipped bit never loads as another branch."""
@@ -193,6 +199,7 @@ def test_flipped_bit(saved: bytes, place: float, tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.faults
 def test_missing_variable_is_noticed(saved: bytes, tmp_path: Path) -> None:
     """Assert that a variable which loading could do without is missed as well."""
     data = changed(saved, tmp_path / "branch.nc").drop_vars("residual")

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.grids import spread
 from support.resumed import OPTIONS, disc_options, duffing_options, whole
 from support.traces import DUFFING_A, duffing_system
 
@@ -40,9 +41,8 @@ def cut(count: int, which: str = "duffing", **options: Any) -> per.Branch:
 @pytest.mark.parametrize(
     ("which", "count"),
     [
-        *(("duffing", k) for k in (1, 2, 8, 17, 18, 19, 20, 21, 30, 40, 41, 42, 47, 52)),
-        ("disc", 15),
-        ("disc", 40),
+        *spread((("duffing", k) for k in (1, 2, 8, 17, 18, 19, 20, 21, 30, 40, 41, 42, 47, 52)), 4),
+        *spread([("disc", 15), ("disc", 40)], 1),
     ],
 )
 def test_resumed_branch_is_the_uninterrupted_one(which: str, count: int, tmp_path: Path) -> None:

@@ -166,6 +166,7 @@ def agree(found: object, expected: object) -> None:
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-14 * size)
 
 
+@pytest.mark.backends
 @pytest.mark.parametrize("name", [*SCENES, *scene_names()])
 def test_kernels_of_a_scene_agree(name: str) -> None:
     """Assert residual, derivatives, outputs, switches and second derivatives, in and out of contact."""
