@@ -21,7 +21,7 @@ SEED ?= 2029
 SINCE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
+.PHONY: help run test kernels long dependencies survey mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -32,7 +32,7 @@ run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
 test: $(VENV)/.installed-dev ## Run the tests
-	$(PYTEST)
+	$(PYTEST) -rs
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in C
 	ORBITRACE_KERNELS=c $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) --ignore tests/periodic/collocation/test_kernels.py \
@@ -40,6 +40,9 @@ kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kerne
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
+
+dependencies: $(VENV)/.installed-dev ## Install the lowest versions declared and the newest, and try them
+	$(BIN)/python tests/dependencies/run.py
 
 survey: $(VENV)/.installed-dev ## Trace and judge 900 models with contact drawn at random
 	@mkdir -p build

@@ -10,9 +10,10 @@ from importlib.metadata import version
 from platform import python_version
 from typing import TYPE_CHECKING, Any
 
-from reports.app.settings import parameters
-from reports.app.view import Cell, Column, View, view_of
 from symbolic.scenes.schema import Scene
+
+from ..settings import parameters
+from ..view import Cell, Column, View, view_of
 
 if TYPE_CHECKING:
     from periodic import Branch, Point
