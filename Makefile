@@ -29,7 +29,7 @@ SECTION ?=
 STALE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test $(KINDS) apart kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
+.PHONY: help run test $(KINDS) apart kernels long dependencies survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -40,19 +40,22 @@ run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
 test: $(VENV)/.installed-dev ## Run the tests (6 minutes on two cores)
-	$(PYTEST) --in-c -m "not (long or $(ANY_KIND))"
+	$(PYTEST) -rs --in-c -m "not (long or $(ANY_KIND))"
 
 browser distributed faults mutated drawn grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
 	$(PYTEST) --in-c -m "$@ and not long"
 
 apart: $(VENV)/.installed-dev ## Run the tests of all these kinds, which `make test` leaves out
-	$(PYTEST) --in-c -m "($(ANY_KIND)) and not long"
+	$(PYTEST) -rs --in-c -m "($(ANY_KIND)) and not long"
 
 kernels: $(VENV)/.installed-dev ## Run the tests of orbits once more, with kernels in NumPy
 	ORBITRACE_KERNELS=numpy $(PYTEST) $(KERNEL_ROOMS:%=tests/periodic/%) -m "not (long or backends)"
 
 long: $(VENV)/.installed-dev ## Run the long studies
 	$(PYTEST) -m long
+
+dependencies: $(VENV)/.installed-dev ## Install the lowest versions declared and the newest, and try them
+	$(BIN)/python tests/dependencies/run.py
 
 survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at random (hours)
 	@mkdir -p build

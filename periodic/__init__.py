@@ -13,8 +13,12 @@ from typing import Any
 
 import lazy_loader
 
+from periodic.namesakes import foreign
+
 _listed, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __version__ = version("orbitrace")
+if _told := foreign("symbolic"):
+    warnings.warn(_told, UserWarning, stacklevel=2)
 
 _PLOTS = ("campbell", "multipliers", "orbit", "phase", "regions", "spectrum", "waterfall")
 _MAPS = (

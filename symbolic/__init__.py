@@ -14,9 +14,13 @@ from typing import Any
 
 import lazy_loader
 
+from symbolic.namesakes import foreign
+
 _listed, __dir__, _names = lazy_loader.attach_stub(__name__, __file__)
 __all__ = [name for name in _names if not hasattr(builtins, name)]  # `import *` leaves Python's compile alone
 __version__ = version("orbitrace")
+if _told := foreign("periodic"):
+    warnings.warn(_told, UserWarning, stacklevel=2)
 
 _FILMS = (
     *("AmplitudeReduction", "CalibratedThickness", "CavitatingFilm", "Compliance", "ConstantThickness"),

@@ -80,6 +80,7 @@ class Processes:
         if self._pool is None:
             from loky import ProcessPoolExecutor
 
+            _tracked()
             self._pool = ProcessPoolExecutor(self.count, env=THREADS, initializer=_dependent)
         return self._pool.submit(function, *arguments)
 
@@ -112,9 +113,27 @@ class Given:
             future.cancel()
 
 
+def _tracked() -> None:
+    """Start loky's process that tidies up such that a closed terminal, which tells all, does not end it.
+
+    What is blocked here stays blocked there; here it is heard a moment later.
+    """
+    from loky.backend import resource_tracker
+
+    if not hasattr(signal, "pthread_sigmask"):
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _dependent() -> None:
-    """Leave Ctrl-C to the process that has the map, and end when that has ended."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Leave Ctrl-C and a closed terminal to the process that has the map, and end when that has ended."""
+    for name in ("SIGINT", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
 
 

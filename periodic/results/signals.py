@@ -1,4 +1,4 @@
-"""Signals that end a program (Ctrl-C, SIGTERM): handled otherwise, or made to wait, while a block runs."""
+"""Signals that end a program (Ctrl-C, SIGTERM, SIGHUP): handled otherwise or made to wait in a block."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from types import FrameType
 from typing import Any
 
 Handler = Callable[[int, FrameType | None], Any] | int | None
-ENDING = (signal.SIGINT, signal.SIGTERM)
+HANGUP: signal.Signals | None = getattr(signal, "SIGHUP", None)
+"""What a terminal sends that is closed; Windows has none."""
+
+ENDING = tuple(each for each in (signal.SIGINT, signal.SIGTERM, HANGUP) if each is not None)
 
 
 @contextmanager
@@ -31,7 +34,10 @@ def handled(handler: Handler) -> Iterator[dict[int, Handler]]:
     if threading.current_thread() is not threading.main_thread():
         yield {}
         return
-    before: dict[int, Handler] = {each: signal.signal(each, handler) for each in ENDING}
+    # A closed terminal that `nohup` has a program ignore stays ignored.
+    nohup = HANGUP is not None and signal.getsignal(HANGUP) == signal.SIG_IGN
+    heard = [each for each in ENDING if not (nohup and each == HANGUP)]
+    before: dict[int, Handler] = {each: signal.signal(each, handler) for each in heard}
     try:
         yield before
     finally:

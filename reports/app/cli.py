@@ -14,14 +14,14 @@ from typing import Annotated
 import typer
 from typer._click.exceptions import ClickException
 
-from reports.app.doctor.command import doctor
-from reports.app.export.command import export
-from reports.app.linear.command import linear
-from reports.app.map.command import map_
-from reports.app.options import BAD_INPUT, DONE, say
-from reports.app.parts.command import new, parts
-from reports.app.scenes import scenes
-from reports.app.trace.command import trace
+from .doctor.command import doctor
+from .export.command import export
+from .linear.command import linear
+from .map.command import map_
+from .options import BAD_INPUT, DONE, say
+from .parts.command import new, parts
+from .scenes import scenes
+from .trace.command import trace
 
 app = typer.Typer(
     help="Traces the periodic orbits of nonlinear vibrating systems through resonance.",

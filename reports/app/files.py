@@ -7,8 +7,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from periodic.results.files import replacing
-from reports.app.interrupts import ignoring_interrupts
 from symbolic.scenes.errors import InputError
+
+from .interrupts import ignoring_interrupts
 
 INCOMPLETE = "incomplete"
 """Where a result goes that was cut short, beside an earlier one."""

@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from reports.app.completion import axis_names, keys, scene_files
+from .completion import axis_names, keys, scene_files
 
 DONE, BAD_INPUT, STOPPED_EARLY, INTERRUPTED = 0, 2, 3, 130
 """Exit codes; the last is a shell's own for a program that Ctrl-C ended."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from reports.app.view import view_of
 from symbolic.scenes.axes import AXES
 from symbolic.scenes.errors import InputError, listed, refused
 from symbolic.scenes.model.scene import ModelScene
 from symbolic.scenes.reading import Override, ends, load
 from symbolic.scenes.schema import Scene
+
+from .view import view_of
 
 
 @dataclass(frozen=True, kw_only=True)

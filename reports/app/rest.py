@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from reports.app.request import Task
-from reports.app.view import view_of
 from symbolic.motion.linear import NoRestError, modes
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
 from symbolic.scenes.model.scene import ModelScene
+
+from .request import Task
+from .view import view_of
 
 
 def check_rest(task: Task) -> None:

@@ -9,9 +9,10 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from reports.app.files import writable, write
 from symbolic.scenes.errors import InputError, cut
 from symbolic.scenes.schema import Scene
+
+from .files import writable, write
 
 RECORD = "settings.json"
 """File of the settings in a directory."""

@@ -18,7 +18,8 @@ from symbolic.scenes.schema import DiscScene, Scene
 
 if TYPE_CHECKING:
     from periodic import Point
-    from reports.app.sweep import Settled
+
+    from .sweep import Settled
 
 MICRO = 1e-6
 

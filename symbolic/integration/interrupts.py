@@ -14,7 +14,7 @@ from types import FrameType
 
 INTERRUPTING = [
     each
-    for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGVTALRM", "SIGPROF")
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGALRM", "SIGVTALRM", "SIGPROF")
     if (each := getattr(signal, name, None)) is not None
 ]
 """Signals whose handlers end a computation: of keys, of other processes and of timers, if they exist."""

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from reports.app.options import DONE, STOPPED_EARLY
+from ..options import DONE, STOPPED_EARLY
 
 Json = Annotated[bool, typer.Option("--json", help="Print the same as JSON, and nothing else.")]
 
@@ -18,9 +18,9 @@ def doctor(as_json: Json = False) -> int:
     """
     import json
 
-    from reports.app.doctor.machine import facts
-    from reports.app.doctor.numbers import checks
-    from reports.app.doctor.text import record, table
+    from ..doctor.machine import facts
+    from ..doctor.numbers import checks
+    from ..doctor.text import record, table
 
     found = facts()
     if not as_json:

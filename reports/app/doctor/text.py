@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from reports.app.doctor.machine import Facts
-from reports.app.doctor.numbers import Check
+from ..doctor.machine import Facts
+from ..doctor.numbers import Check
 
 
 def table(facts: Facts) -> str:

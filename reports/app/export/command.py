@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from reports.app.completion import branch_files
-from reports.app.options import DONE, count
+from ..completion import branch_files
+from ..options import DONE, count
 
 Source = Annotated[
     str,

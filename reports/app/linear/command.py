@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.app.options import (
+from ..options import (
     DONE,
     STOPPED_EARLY,
     Axis,
@@ -22,8 +22,8 @@ from reports.app.options import (
 )
 
 if TYPE_CHECKING:
-    from reports.app.linear.study import Study
-    from reports.app.request import Task
+    from ..linear.study import Study
+    from ..request import Task
 
 Values = Annotated[
     str | None,
@@ -50,9 +50,10 @@ def linear(
     Writes linear.csv (the response over the scene's range), linear.json and linear.png. Exit code 0: done;
     2: bad input; 3: no equilibrium was found.
     """
-    from reports.app.request import Request, validated
-    from reports.app.settings import folder_for, settings
     from symbolic.scenes.names import short_name
+
+    from ..request import Request, validated
+    from ..settings import folder_for, settings
 
     take_parts(parts)
     task = validated(Request(source=scene, at=at, overrides=pairs(changes), axis=axis))
@@ -63,9 +64,10 @@ def linear(
 
 def _run(name: str, task: Task, folder: Path, as_json: bool) -> int:
     """Linearise, save and tell; return the exit code."""
-    from reports.app.linear import study, text
-    from reports.app.rest import check_rest
     from symbolic.motion.linear import NoRestError
+
+    from ..linear import study, text
+    from ..rest import check_rest
 
     try:
         found = study.study(task)
@@ -83,9 +85,9 @@ def _run(name: str, task: Task, folder: Path, as_json: bool) -> int:
 
 def _saved(folder: Path, name: str, found: Study) -> list[Path]:
     """Write linear.csv, linear.json and linear.png and return them. Raises InputError if one cannot be."""
-    from reports.app.files import write
-    from reports.app.linear.picture import draw
-    from reports.app.linear.text import csv_text, json_text
+    from ..files import write
+    from ..linear.picture import draw
+    from ..linear.text import csv_text, json_text
 
     writers: dict[str, Callable[[Path], object]] = {
         "linear.csv": lambda path: path.write_text(csv_text(found), "utf-8"),
@@ -96,8 +98,8 @@ def _saved(folder: Path, name: str, found: Study) -> list[Path]:
 
 
 def _show(found: Study, files: list[Path]) -> None:
-    from reports.app import console
-    from reports.app.linear.text import table, verdict
+    from .. import console
+    from ..linear.text import table, verdict
 
     headings, rows = table(found)
     typer.echo(found.scene.title)

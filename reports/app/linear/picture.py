@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from reports.app.drawing import BLUE, INK, ORANGE, figure, legend, write
-from reports.app.linear.study import Study
-from reports.app.linear.text import degrees, units
-from reports.app.view import view_of
+from ..drawing import BLUE, INK, ORANGE, figure, legend, write
+from ..linear.study import Study
+from ..linear.text import degrees, units
+from ..view import view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.app.request import Task
-from reports.app.view import View, view_of
 from symbolic import CompiledSystem
 from symbolic.motion.frequencyresponse import FrequencyResponse, peak, response
 from symbolic.motion.linear import Modes, modes, resonance
 from symbolic.scenes.building import build
 from symbolic.scenes.schema import Scene
+
+from ..request import Task
+from ..view import View, view_of
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from periodic.results.textcell import text_cell
-from reports.app.linear.study import Array, Study
-from reports.app.settings import parameters
-from reports.app.view import MICRO, View, view_of
 from symbolic import CompiledSystem
 from symbolic.scenes.axes import SHORT
+
+from ..linear.study import Array, Study
+from ..settings import parameters
+from ..view import MICRO, View, view_of
 
 
 def units(system: CompiledSystem) -> list[tuple[str, str, float]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.app.options import (
+from ..options import (
     DONE,
     INTERRUPTED,
     STOPPED_EARLY,
@@ -23,13 +23,13 @@ from reports.app.options import (
     pairs,
     say,
 )
-from reports.app.trace.command import Accuracy, Dial, From, To
+from ..trace.command import Accuracy, Dial, From, To
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from reports.app.map.run import How
-    from reports.app.request import Task
+    from ..map.run import How
+    from ..request import Task
 
 Over = Annotated[
     list[str],
@@ -62,18 +62,19 @@ def map_(
     Writes map.nc and, over one or two parameters, map.png. Exit code 0: done; 2: bad input; 3: some cells
     have no numbers, each with its reason. Ctrl-C keeps what is there.
     """
-    from reports.app.map.axes import axes
-    from reports.app.request import Request, validated
-    from reports.app.settings import folder_for, settings
     from symbolic.scenes.errors import InputError
     from symbolic.scenes.names import short_name
+
+    from ..map.axes import axes
+    from ..request import Request, validated
+    from ..settings import folder_for, settings
 
     overrides = pairs(changes)
     task = validated(Request(source=scene, begin=begin, end=end, overrides=overrides))
     values, keys = axes(scene, overrides, over)
     cells, processes = count("--adaptive", adaptive), count("--jobs", jobs)
     name, asked = short_name(scene), {"over": values, "cells": cells, "accuracy": accuracy.value}
-    from reports.app.map.run import How
+    from ..map.run import How
 
     if cells is not None and find_spec("adaptive") is None:
         missing = "needs the package adaptive"
@@ -88,9 +89,10 @@ def _run(
 ) -> int:
     """Compute, draw and tell; return the exit code."""
     import periodic as per
-    from reports.app.console import status
-    from reports.app.interrupts import interrupting_once
-    from reports.app.map import run
+
+    from ..console import status
+    from ..interrupts import interrupting_once
+    from ..map import run
 
     try:
         with interrupting_once(), status(f"mapping {name}") as update, warnings.catch_warnings():
@@ -106,9 +108,9 @@ def _run(
 
 def _told(task: Task, data: xr.Dataset, keys: dict[str, str], folder: Path) -> None:
     """Draw, and print what there is in short."""
-    from reports.app.files import write
-    from reports.app.map.picture import draw, drawable
-    from reports.app.map.run import MAP
+    from ..files import write
+    from ..map.picture import draw, drawable
+    from ..map.run import MAP
 
     files = [folder / MAP]
     if drawable(keys, data):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from reports.app.drawing import BLUE, INK, ORANGE, figure, legend, write
+from ..drawing import BLUE, INK, ORANGE, figure, legend, write
 
 if TYPE_CHECKING:
     import xarray as xr

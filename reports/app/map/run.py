@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import periodic as per
-from reports.app.files import unwritable
-from reports.app.request import Task
-from reports.app.view import view_of
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError, refused
+
+from ..files import unwritable
+from ..request import Task
+from ..view import view_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from reports.app.completion import part_names, starts
-from reports.app.options import DONE, Own, take_parts
+from ..completion import part_names, starts
+from ..options import DONE, Own, take_parts
 
 Name = Annotated[
     str | None,
@@ -29,7 +29,7 @@ File = Annotated[Path, typer.Argument(metavar="FILE", help="The TOML file to wri
 
 def parts(name: Name = None, own: Own = None) -> int:
     """List the parts that a scene of the kind "model" can name, or show one: formula, keys, an example."""
-    from reports.app.parts.text import every, one
+    from ..parts.text import every, one
 
     take_parts(own)
     typer.echo(every() if name is None else one(name))
@@ -38,7 +38,7 @@ def parts(name: Name = None, own: Own = None) -> int:
 
 def new(kind: Start, file: File) -> int:
     """Write the commented start of a scene of your own."""
-    from reports.app.parts.start import write_start
+    from ..parts.start import write_start
 
     typer.echo(f"written: {write_start(kind, file)}; run it with: orbitrace trace {file}")
     return DONE

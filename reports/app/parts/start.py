@@ -7,10 +7,11 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from reports.app.parts.text import said, toml
 from symbolic.scenes.errors import InputError, refused
 from symbolic.scenes.model.catalogue import KIND, Entry, catalogue
 from symbolic.scenes.names import built_in, scene_names
+
+from ..parts.text import said, toml
 
 MODEL = "model"
 """The start of any model."""

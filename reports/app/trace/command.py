@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reports.app.options import (
+from ..options import (
     DONE,
     INTERRUPTED,
     STOPPED_EARLY,
@@ -30,9 +30,10 @@ from reports.app.options import (
 
 if TYPE_CHECKING:
     from periodic import Branch
-    from reports.app.request import Task
-    from reports.app.trace.picture import Settlements
-    from reports.app.trace.run import Effort, Result
+
+    from ..request import Task
+    from ..trace.picture import Settlements
+    from ..trace.run import Effort, Result
 
 
 class Accuracy(Enum):
@@ -105,10 +106,11 @@ def trace(
     code 0: done; 2: bad input; 3: stopped early for a numerical reason, with what was traced saved. Ctrl-C
     saves what is there.
     """
-    from reports.app.request import Request, validated
-    from reports.app.settings import folder_for, settings
-    from reports.app.trace.html import check_html
     from symbolic.scenes.names import short_name
+
+    from ..request import Request, validated
+    from ..settings import folder_for, settings
+    from ..trace.html import check_html
 
     take_parts(parts)
     wanted = Request(source=scene, begin=begin, end=end, at=at, overrides=pairs(changes), axis=axis)
@@ -119,7 +121,7 @@ def trace(
     name, at_ = short_name(scene), list(task.at)
     asked = {"at": at_, "axis": axis, "accuracy": accuracy.value, "method": method.value}
 
-    from reports.app.trace.run import Effort
+    from ..trace.run import Effort
 
     effort = Effort(accuracy=accuracy.name, method=method.value, max_points=points, max_newton=newton)
     wishes = Wishes(resume=resume, sweep=sweep, html=html, as_json=as_json)
@@ -139,8 +141,8 @@ class Wishes:
 
 def _run(name: str, task: Task, effort: Effort, folder: Path, wishes: Wishes) -> int:
     """Trace, integrate in time, save and tell; return the exit code."""
-    from reports.app.interrupts import interrupting_once
-    from reports.app.trace import run, shown, summary
+    from ..interrupts import interrupting_once
+    from ..trace import run, shown, summary
 
     before, journal = run.interrupted(task, folder) if wishes.resume else None, folder / run.JOURNAL
     with interrupting_once():
@@ -167,8 +169,8 @@ def _traced(name: str, task: Task, effort: Effort, folder: Path, before: Branch 
 
     Raises InputError where there is no point because the scene does not rest anywhere.
     """
-    from reports.app.rest import check_rest
-    from reports.app.trace import run, shown
+    from ..rest import check_rest
+    from ..trace import run, shown
 
     with shown.progress(name, task.scene) as progress, warnings.catch_warnings():
         warnings.showwarning = lambda message, *_, **__: say(str(message))
@@ -189,8 +191,8 @@ def _interrupted(branch: Branch) -> bool:
 
 def _swept(name: str, task: Task) -> Settlements | None:
     """Integrate in time; None where that is interrupted, so that the branch is still saved."""
-    from reports.app import console
-    from reports.app.trace import run
+    from .. import console
+    from ..trace import run
 
     wanted = 2 * run.SPEEDS
     with console.counting(f"integrating {name} in time", wanted) as counted:
@@ -206,8 +208,9 @@ def _swept(name: str, task: Task) -> Settlements | None:
 
 def _saved(result: Result, folder: Path, journal: Path, *, html: bool) -> list[Path]:
     """Write the files. Raises InputError that tells what is left of results that could not be written."""
-    from reports.app.trace import run
     from symbolic.scenes.errors import InputError
+
+    from ..trace import run
 
     try:
         return run.save(folder, result, html=html)

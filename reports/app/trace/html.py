@@ -23,8 +23,9 @@ def check_html() -> None:
 def write_page(path: Path, scene: Scene, branch: Branch) -> None:
     """Write the page of a branch."""
     import periodic as per
-    from reports.app.view import MICRO, view_of
     from symbolic.scenes.building import build
+
+    from ..view import MICRO, view_of
 
     view = view_of(scene)
     known = {quantity.name for quantity in branch.layout.outputs}

@@ -9,9 +9,10 @@ import numpy as np
 
 from periodic.results.plots.curve import draw_curve
 from periodic.results.plots.labels import placed
-from reports.app.drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
-from reports.app.view import View, view_of
 from symbolic.scenes.schema import Scene
+
+from ..drawing import BLUE, GREEN, INK, ORANGE, figure, legend, write
+from ..view import View, view_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,16 +10,17 @@ from pathlib import Path
 import numpy as np
 
 import periodic as per
-from reports.app.files import INCOMPLETE, unwritable, writable, write
-from reports.app.request import Task
-from reports.app.sweep import Settled, sweep
-from reports.app.trace.html import write_page
-from reports.app.trace.picture import Settlements, draw
-from reports.app.trace.summary import csv_text, json_text
-from reports.app.view import view_of
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError, refused
 from symbolic.scenes.schema import Scene
+
+from ..files import INCOMPLETE, unwritable, writable, write
+from ..request import Task
+from ..sweep import Settled, sweep
+from ..trace.html import write_page
+from ..trace.picture import Settlements, draw
+from ..trace.summary import csv_text, json_text
+from ..view import view_of
 
 BRANCH = "branch.nc"
 """File of a branch in its directory."""

@@ -8,10 +8,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from periodic import Branch, Point
-from reports.app.console import status, table
-from reports.app.trace.summary import special_table
-from reports.app.view import Column, view_of
 from symbolic.scenes.schema import Scene
+
+from ..console import status, table
+from ..trace.summary import special_table
+from ..view import Column, view_of
 
 
 @contextmanager

@@ -11,9 +11,10 @@ from platform import python_version
 from typing import TYPE_CHECKING, Any
 
 from periodic.results.textcell import text_cell
-from reports.app.settings import parameters
-from reports.app.view import Cell, Column, View, view_of
 from symbolic.scenes.schema import Scene
+
+from ..settings import parameters
+from ..view import Cell, Column, View, view_of
 
 if TYPE_CHECKING:
     from periodic import Branch, Point
