@@ -15,11 +15,17 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from periodic.maps.cell import Cell, Outcome
+from periodic.results.brancharrays import DAMAGE
+from periodic.results.database import bounded
 from periodic.results.described import differences
 from periodic.results.files import digest, replacing
+from periodic.results.guarded import content
+from periodic.results.hdf import opened
 from periodic.results.journal import MAGIC, JournalError, locked
-from periodic.results.netcdf import packed, sound
+from periodic.results.netcdf import LARGEST, packed, sound
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,8 +112,8 @@ class Store:
         """Take what is there, or make room."""
         there = loaded(self.path) if self.path.exists() else None
         if resume and there is not None:
-            self._check(json.loads(there.attrs["made"]))
-            if there.attrs["complete"]:
+            self._check(_said(there, self.path))
+            if there.attrs.get("complete"):
                 self.finished = there.drop_attrs(deep=False).assign_attrs(
                     {key: value for key, value in there.attrs.items() if key not in OWN}
                 )
@@ -116,7 +122,7 @@ class Store:
         rows = list(self._rows()) if resume else []
         if rows:
             self._check(rows[0])
-            outcomes = [Outcome.of(plain) for row in rows[1:] for plain in row]
+            outcomes = self._outcomes(rows[1:])
             self.found = {o.cell: o for o in outcomes if not o.lost}
         else:
             self._emptied()
@@ -129,9 +135,16 @@ class Store:
                 f"choose another, or resume=False to replace it"
             )
 
+    def _outcomes(self, rows: list[Any]) -> list[Outcome]:
+        """What became of the cells of some rows. Raises MapFileError where they say something else."""
+        try:
+            return [Outcome.of(plain) for row in rows for plain in row]
+        except DAMAGE as error:
+            raise MapFileError(_foreign(self._journal)) from error
+
     def _rows(self) -> Iterator[Any]:
         """The rows up to the first that is not whole."""
-        with suppress(sqlite3.DatabaseError):
+        with suppress(sqlite3.DatabaseError, ValueError, RecursionError), bounded(self._base, self._journal):
             rows = self._base.execute("SELECT number, content, digest FROM chunks ORDER BY number")
             for count, (number, content, seal) in enumerate(rows):
                 if number != count or not isinstance(content, str) or seal != digest(content.encode()):
@@ -223,16 +236,23 @@ class Store:
 
 def loaded(path: Path) -> xr.Dataset:
     """Return the map that a file holds. Raises MapFileError for any other file."""
-    import xarray as xr
-
     try:
-        if sound(path.read_bytes()):
-            data = xr.load_dataset(path, engine="h5netcdf")
-            if data.attrs.get("format") == FORMAT:
-                return data
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        held = content(path, LARGEST)
+        if sound(held):
+            with np.errstate(all="ignore"), opened(held) as data:
+                if data.attrs.get("format") == FORMAT:
+                    return data.load()
+    except (OSError, *DAMAGE) as error:
         raise MapFileError(_foreign(path)) from error
     raise MapFileError(_foreign(path))
+
+
+def _said(there: xr.Dataset, path: Path) -> Any:
+    """What the map of a file is made of. Raises MapFileError where it does not say."""
+    try:
+        return json.loads(there.attrs["made"])
+    except DAMAGE as error:
+        raise MapFileError(_foreign(path)) from error
 
 
 def _foreign(path: Path) -> str:

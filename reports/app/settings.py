@@ -10,11 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from reports.app.files import writable, write
+from symbolic.guarded import content
 from symbolic.scenes.errors import InputError, cut
 from symbolic.scenes.schema import Scene
 
 RECORD = "settings.json"
 """File of the settings in a directory."""
+
+LARGEST_RECORD = 2**24
+"""Most bytes of it: a map may be over a million values."""
 
 OUT = "orbitrace-out"
 """Where directories of scenes go unless told otherwise."""
@@ -83,8 +87,8 @@ def _resumed(made: Settings) -> Path:
 def _known(folder: Path) -> Settings:
     """The settings that a directory tells; none where it tells nothing that can be read."""
     try:
-        found = json.loads((folder / RECORD).read_text("utf-8"))
-    except (OSError, ValueError):
+        found = json.loads(content(folder / RECORD, LARGEST_RECORD).decode("utf-8"))
+    except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
 
