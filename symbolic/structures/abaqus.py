@@ -1,18 +1,17 @@
-"""Matrices in files of text: Matrix Market, and Abaqus in any of its three forms."""
+"""Matrices in .mtx files: Matrix Market, and Abaqus in any of its three forms."""
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 
 from symbolic.arrays import Array
 from symbolic.guarded import DamagedError
+from symbolic.structures.market import entries, matrix_market, whole_numbers
 from symbolic.structures.matrices import sparse
 
 BELOW = "its indices begin below 1"
@@ -32,29 +31,18 @@ def mtx(path: Path, held: bytes) -> Mapping[str, Any]:
         return {"": matrix_market(held)}
     if head.startswith(b"*"):
         return substructure(held)
-    text = io.StringIO(held.decode(errors="replace"))
-    rows = np.loadtxt(text, delimiter="," if b"," in head else None, comments=("*", "%", "#"), ndmin=2)
+    rows = entries(held, "," if b"," in head else None)
     if rows.shape[1] == 3:
-        row, column = _indices(rows[:, :2], len(held)).T
+        row, column = whole_numbers(rows[:, :2], len(held)).T
         if min(row.min(), column.min()) < 1:
             raise DamagedError(BELOW)
         return {"": _filled(row - 1, column - 1, rows[:, 2])}
     if rows.shape[1] == 5:
-        four = _indices(rows[:, :4], 2**53)
-        numbered = np.unique(np.concatenate([four[:, :2], four[:, 2:]]), axis=0, return_inverse=True)[
-            1
-        ].ravel()
+        four = whole_numbers(rows[:, :4], 2**53)
+        pairs = np.concatenate([four[:, :2], four[:, 2:]])
+        numbered = np.unique(pairs, axis=0, return_inverse=True)[1].ravel()
         return {"": _filled(numbered[: len(rows)], numbered[len(rows) :], rows[:, 4])}
     raise DamagedError(f"its lines have {rows.shape[1]} numbers; 3 or 5 are known")
-
-
-def matrix_market(held: bytes) -> Any:
-    """Return a matrix of NIST's exchange format, dense or sparse as written."""
-    rows, columns, entries, form, *_ = scipy.io.mminfo(io.BytesIO(held))
-    declared = max(rows, columns, entries if form == "coordinate" else rows * columns)
-    if declared > len(held):  # an entry takes a digit and what stands before the next, a row has an entry
-        raise DamagedError("it declares a matrix that is larger than what it holds")
-    return scipy.io.mmread(io.BytesIO(held), spmatrix=False)
 
 
 def substructure(held: bytes) -> dict[str, Any]:
@@ -84,22 +72,14 @@ def _keywords(text: str) -> Iterator[tuple[list[str], Array]]:
 def _square(numbers: Array, whole: bool) -> Array:
     size = math.isqrt(len(numbers) if whole else 2 * len(numbers))
     if len(numbers) != (size * size if whole else size * (size + 1) // 2):
-        raise DamagedError(
-            f"it has {len(numbers)} numbers, which make no {'square' if whole else 'triangle'}"
-        )
+        form = "square" if whole else "triangle"
+        raise DamagedError(f"it has a matrix of {len(numbers)} numbers, which make no {form}")
     if whole:
         return numbers.reshape(size, size)
     matrix, below = np.zeros((size, size)), np.tril_indices(size)
     matrix[below] = numbers
     matrix.T[below] = numbers
     return matrix
-
-
-def _indices(given: Array, most: int) -> np.ndarray[Any, np.dtype[np.int64]]:
-    """Whole numbers of a file, none so large that a matrix of that size would not fit it."""
-    if not (np.abs(given) <= most).all() or (given != np.round(given)).any():
-        raise DamagedError("it has indices that are not whole numbers, or larger than what it holds")
-    return given.astype(np.int64)
 
 
 def _filled(row: Any, column: Any, value: Any) -> Any:

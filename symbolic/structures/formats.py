@@ -8,7 +8,10 @@ from __future__ import annotations
 import io
 import logging
 import re
+import struct
 import warnings
+import zipfile
+import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -21,6 +24,12 @@ from symbolic.structures.nastran import op4
 
 EXTRA = "pip install 'orbitrace[files]'"
 """What installs the readers of other programs' formats."""
+
+FAILURES = (
+    *(OSError, EOFError, ValueError, TypeError, LookupError, ArithmeticError, RuntimeError, MemoryError),
+    *(AssertionError, Warning, struct.error, zipfile.BadZipFile, zlib.error),
+)
+"""What readers raise on what is no file of theirs."""
 
 PLACE = re.compile(r"\b(row|line) \d+")
 """Where a library says that a file is wrong; what else it says may quote the file."""
@@ -52,7 +61,7 @@ def contents(path: Path) -> dict[str, Any]:
             return {name: _sound(matrix, held) for name, matrix in reader(path, held).items()}
     except ModuleNotFoundError as error:
         raise ValueError(f"{path.name} needs the package {error.name}: {EXTRA}") from None
-    except Exception as error:  # whatever the readers of other packages raise on what is no file of theirs
+    except FAILURES as error:
         said = f"{str(path)!r} cannot be read as a {path.suffix} file: {_why(error)}"
     raise ValueError(said)
 

@@ -28,6 +28,12 @@ NUMBERS = {"double", "single", "sparse", "logical"} | {
 }
 """Classes of variables that are read: no cells, no texts, no objects, no functions."""
 
+NUMERIC = range(5, 16)
+"""Codes of the classes of numbers, those of sparse matrices included."""
+
+TYPES = {*range(1, 8), 9, 12, 13}
+"""Codes of the types of numbers in a file."""
+
 SHORT = "it ends before what it declares"
 
 
@@ -59,20 +65,38 @@ def _of_version_5(held: bytes) -> int:
         kind, count = struct.unpack_from(f"{order}II", held, place)
         if kind not in (MATRIX, COMPRESSED) or not 0 < count <= len(held) - place - 8:
             raise DamagedError(SHORT)
-        total += _uncompressed(held[place + 8 : place + 8 + count]) if kind == COMPRESSED else count
-        place += 8 + count
+        variable = held[place + 8 : place + 8 + count]
+        if kind == COMPRESSED:
+            variable = zlib.decompressobj().decompress(variable, LARGEST + 1)
+            kind, within = struct.unpack_from(f"{order}II", variable)
+            if kind != MATRIX or within > len(variable) - 8:
+                raise DamagedError(SHORT)
+            variable = variable[8 : 8 + within]
+        total, place = total + len(variable), place + 8 + count
         if total > LARGEST:
             raise DamagedError(f"its arrays take more than {LARGEST} bytes")
+        _check_elements(variable, order)
     return total
 
 
-def _uncompressed(held: bytes) -> int:
-    """The length of what was compressed, as far as it is of interest."""
-    reader, length = zlib.decompressobj(), 0
-    while held and length <= LARGEST:
-        length += len(reader.decompress(held, 2**20))
-        held = reader.unconsumed_tail
-    return length
+def _check_elements(variable: bytes, order: str) -> None:
+    """Refuse a variable of numbers whose elements are of no known type or end beyond it."""
+    if len(variable) < 16 or variable[8 if order == "<" else 11] not in NUMERIC:
+        return  # it is passed over
+    place = 0
+    while place < len(variable):
+        if place + 8 > len(variable):
+            raise DamagedError(SHORT)
+        kind, count = struct.unpack_from(f"{order}II", variable, place)
+        if kind >> 16:  # of up to four bytes, which stand in the place of the second number
+            kind, count, end = kind & 0xFFFF, kind >> 16, place + 8
+            short = count > 4
+        else:
+            end = place + 8 + count + -count % 8
+            short = place + 8 + count > len(variable)
+        if short or kind not in TYPES:
+            raise DamagedError("it has an element of no known type, or one that ends beyond it")
+        place = end
 
 
 def _of_version_4(held: bytes) -> int:
