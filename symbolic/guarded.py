@@ -12,7 +12,10 @@ import io
 import math
 import os
 import stat
+import struct
+import tokenize
 import zipfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +32,13 @@ HEADERS = {
     (2, 0): np.lib.format.read_array_header_2_0,
 }
 """Readers of the headers of NumPy's arrays, by version."""
+
+
+DAMAGED = (
+    *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError),
+    *(EOFError, LookupError, RuntimeError, SyntaxError, TypeError),
+)
+"""What is raised on what is no archive, besides ValueError: headers of arrays are written as Python."""
 
 
 class DamagedError(ValueError):
@@ -95,10 +105,17 @@ def archive(held: bytes, most: int = LARGEST) -> dict[str, np.ndarray[Any, Any]]
     Raises
     ------
     DamagedError
-        For arrays that are larger than `most` or than the archive has bytes for, and for arrays of objects.
-    Exception
-        What zipfile and NumPy raise for what is no archive.
+        For arrays that are larger than `most` or than the archive has bytes for, for arrays of objects, and
+        for what is no archive.
     """
+    try:
+        return _members(held, most)
+    except DAMAGED as error:
+        raise DamagedError("it is no archive of arrays, or damaged") from error
+
+
+def _members(held: bytes, most: int) -> dict[str, np.ndarray[Any, Any]]:
+    """The arrays of an archive; what zipfile and NumPy raise is not caught."""
     found = {}
     with zipfile.ZipFile(io.BytesIO(held)) as members:
         if sum(member.file_size for member in members.infolist()) > most:

@@ -18,7 +18,7 @@ from typing import Any
 
 from symbolic.guarded import DamagedError, archive, content
 from symbolic.structures.abaqus import mtx
-from symbolic.structures.matlab import matlab
+from symbolic.structures.matlab import files, matlab
 from symbolic.structures.matrices import sparse
 from symbolic.structures.nastran import op4
 
@@ -27,7 +27,15 @@ EXTRA = "pip install 'orbitrace[files]'"
 
 FAILURES = (
     *(OSError, EOFError, ValueError, TypeError, LookupError, ArithmeticError, RuntimeError, MemoryError),
-    *(AssertionError, Warning, struct.error, zipfile.BadZipFile, zlib.error),
+    *(
+        AssertionError,
+        UnboundLocalError,
+        Warning,
+        files.MatReadError,
+        struct.error,
+        zipfile.BadZipFile,
+        zlib.error,
+    ),
 )
 """What readers raise on what is no file of theirs."""
 
