@@ -129,6 +129,8 @@ class Store:
 
     def _check(self, before: Any) -> None:
         """Refuse a map that is made of something else."""
+        if not isinstance(before, dict):
+            raise MapFileError(_foreign(self.path))
         if found := differences(before, self._made):
             raise MapFileError(
                 f"store is {str(self.path)!r}, which holds a map made with {'; and with '.join(found)}; "

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from symbolic.guarded import DamagedError, archive, content
+from symbolic.guarded import LARGEST, DamagedError, archive, content
 from symbolic.structures.abaqus import mtx
 from symbolic.structures.matlab import files, matlab
 from symbolic.structures.matrices import sparse
@@ -66,7 +66,7 @@ def contents(path: Path) -> dict[str, Any]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # a reader that has doubts goes on with what it has
-            return {name: _sound(matrix, held) for name, matrix in reader(path, held).items()}
+            return {name: _sound(matrix) for name, matrix in reader(path, held).items()}
     except ModuleNotFoundError as error:
         raise ValueError(f"{path.name} needs the package {error.name}: {EXTRA}") from None
     except FAILURES as error:
@@ -83,10 +83,12 @@ def _why(error: Exception) -> str:
     return "it is damaged or of another kind" + (f" ({where[0]})" if where else "")
 
 
-def _sound(matrix: Any, held: bytes) -> Any:
-    """A matrix, if it is one of numbers whose indices are within it."""
+def _sound(matrix: Any) -> Any:
+    """A matrix, if it is one of numbers whose indices are within it, and of a size to be handled."""
     if not hasattr(matrix, "dtype") or matrix.dtype.kind not in "biufc":
         raise DamagedError("it has an array that is not of numbers")
+    if max(matrix.shape, default=0) > LARGEST // 8:
+        raise DamagedError("it has a matrix of more rows or columns than are read")
     if sparse.issparse(matrix):
         check = getattr(matrix, "check_format", None)
         if check is not None:  # what is made of compressed rows later trusts them
