@@ -49,6 +49,12 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
+def printable(text: str) -> str:
+    """Return a text of a file as a terminal may show it: without what it would obey, and not too long."""
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return shown if len(shown) <= 2 * LONGEST else shown[: 2 * LONGEST - 3] + "..."
+
+
 def number(name: str, value: Any) -> float:
     """Return a real number, infinities and NaN included. Raises ValueError for anything else."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from periodic.checks import printable
 from periodic.maps.cell import Cell, Outcome
 from periodic.results.brancharrays import DAMAGE
 from periodic.results.database import bounded
@@ -122,8 +123,7 @@ class Store:
         rows = list(self._rows()) if resume else []
         if rows:
             self._check(rows[0])
-            outcomes = self._outcomes(rows[1:])
-            self.found = {o.cell: o for o in outcomes if not o.lost}
+            self.found = self._outcomes(rows[1:])
         else:
             self._emptied()
 
@@ -132,21 +132,23 @@ class Store:
         if not isinstance(before, dict):
             raise MapFileError(_foreign(self.path))
         if found := differences(before, self._made):
+            said = printable("; and with ".join(found))
             raise MapFileError(
-                f"store is {str(self.path)!r}, which holds a map made with {'; and with '.join(found)}; "
+                f"store is {str(self.path)!r}, which holds a map made with {said}; "
                 f"choose another, or resume=False to replace it"
             )
 
-    def _outcomes(self, rows: list[Any]) -> list[Outcome]:
+    def _outcomes(self, rows: list[Any]) -> dict[Cell, Outcome]:
         """What became of the cells of some rows. Raises MapFileError where they say something else."""
         try:
-            return [Outcome.of(plain) for row in rows for plain in row]
+            outcomes = [Outcome.of(plain) for row in rows for plain in row]
+            return {outcome.cell: outcome for outcome in outcomes if not outcome.lost}
         except DAMAGE as error:
             raise MapFileError(_foreign(self._journal)) from error
 
     def _rows(self) -> Iterator[Any]:
         """The rows up to the first that is not whole."""
-        with suppress(sqlite3.DatabaseError, ValueError, RecursionError), bounded(self._base, self._journal):
+        with suppress(sqlite3.DatabaseError, *DAMAGE), bounded(self._base, self._journal):
             rows = self._base.execute("SELECT number, content, digest FROM chunks ORDER BY number")
             for count, (number, content, seal) in enumerate(rows):
                 if number != count or not isinstance(content, str) or seal != digest(content.encode()):
@@ -156,7 +158,7 @@ class Store:
     def _emptied(self) -> None:
         try:
             self._base.execute("DROP TABLE IF EXISTS chunks")
-        except sqlite3.DatabaseError as error:
+        except (sqlite3.DatabaseError, UnicodeError) as error:
             if not isinstance(error, sqlite3.OperationalError):  # damaged, not a disk that is full
                 self._base.close()
                 self._journal.unlink()
@@ -188,8 +190,8 @@ class Store:
             self._base.execute("COMMIT")
             self._base.execute("BEGIN IMMEDIATE")
             self._pending.clear()
-        except sqlite3.Error as error:
-            with suppress(sqlite3.Error):
+        except (sqlite3.Error, UnicodeError) as error:
+            with suppress(sqlite3.Error, UnicodeError):
                 self._base.rollback()
                 self._base.execute("BEGIN IMMEDIATE")
             self._warn(error)

@@ -138,7 +138,7 @@ class Journal:
         try:
             if _schema(self._base):
                 self._base.execute("DROP TABLE steps")
-        except (sqlite3.DatabaseError, BranchFileError) as error:
+        except (sqlite3.DatabaseError, BranchFileError, UnicodeError) as error:
             if isinstance(error, sqlite3.OperationalError):
                 raise
             self._base.close()
@@ -182,8 +182,8 @@ def locked(path: Path) -> sqlite3.Connection:
         base.execute("PRAGMA synchronous = OFF")  # a process that is killed loses nothing that it has written
         base.execute("BEGIN IMMEDIATE")
         base.execute(f"PRAGMA busy_timeout = {PATIENCE}")
-    except sqlite3.DatabaseError as error:
-        if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
+    except (sqlite3.DatabaseError, UnicodeError) as error:  # of damage SQLite speaks in its own bytes
+        if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_BUSY:
             base.close()
             raise JournalError(f"journal is {str(path)!r}; another trace is writing to it") from None
     return base

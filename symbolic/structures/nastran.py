@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from symbolic.guarded import DamagedError
+from symbolic.structures.matrices import sparse
 
 LARGER = "it declares a matrix that is larger than what it holds"
 
@@ -23,17 +24,27 @@ FILLED = 4
 def op4(path: Path, held: bytes) -> Mapping[str, Any]:
     """Return the matrices of a Nastran OUTPUT4 file, names in capitals, by pyyeti."""
     module = _module("pyyeti.nastran.op4")
+    warnings.filterwarnings("ignore", "Output4 file has matrix name")  # it is called m0, m1, ... then
+    kept: bool | None = True  # in text zeros may be left out, and how many is not known before it is read
     if 0 in held[:4]:
         _check_records(held)
-    warnings.filterwarnings("ignore", "Output4 file has matrix name")  # it is called m0, m1, ... then
-    names, sizes, _, _ = module.dir(str(path), verbose=False)
-    if len({*names}) < len(names):
-        raise DamagedError("it has two matrices of one name")
+        names, sizes, _, _ = module.dir(str(path), verbose=False)
+        if len({*names}) < len(names):
+            raise DamagedError("it has two matrices of one name")
+        kept = None if _small(sizes, held) else True
+    read = module.read(str(path), into="dct", justmatrix=True, sparse=kept)
+    small = _small([matrix.shape for matrix in read.values()], held)
+    return {
+        name.upper(): matrix.toarray() if small and kept and sparse.issparse(matrix) else matrix
+        for name, matrix in read.items()
+    }
+
+
+def _small(sizes: Sequence[tuple[int, int]], held: bytes) -> bool:
+    """Whether matrices may be dense. Raises DamagedError for those of more rows than a file has bytes."""
     if any(max(size) > len(held) or min(size) < 0 for size in sizes):
         raise DamagedError(LARGER)
-    small = 8 * sum(rows * columns for rows, columns in sizes) <= FILLED * len(held)
-    read = module.read(str(path), into="dct", justmatrix=True, sparse=None if small else True)
-    return {name.upper(): matrix for name, matrix in read.items()}
+    return 8 * sum(rows * columns for rows, columns in sizes) <= FILLED * len(held)
 
 
 def _check_records(held: bytes) -> None:

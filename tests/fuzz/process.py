@@ -11,6 +11,7 @@ import time
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -103,18 +104,20 @@ def _bounded() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
-def _outcome(kind: object, path: Path) -> tuple[str, str]:
+def _outcome(kind: Any, path: Path) -> tuple[str, str]:
     """What becomes of a file: read, refused or wrong, and what was said."""
     import traceback
 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            kind.read(path)  # type: ignore[attr-defined]
+            kind.read(path)
         return "read", ""
     except BaseException as error:  # whatever comes is what is looked for
         said = str(error)
-        if type(error) is kind.refusal and fit(said, kind.tells):  # type: ignore[attr-defined]
+        wanted = kind.refusal
+        own = type(error) is wanted or (wanted is not ValueError and isinstance(error, wanted))
+        if own and fit(said, kind.tells):
             return "refused", ""
         where = traceback.extract_tb(error.__traceback__)[-1]
         place = f"{Path(where.filename).name}:{where.lineno}"

@@ -120,7 +120,8 @@ def test_a_sparse_matrix_whose_indices_lie(tmp_path: Path) -> None:
     for name, array in [("indices", np.array([0, 1, 10**6])), ("indptr", np.array([0, 1, 2**31 - 1, 3]))]:
         given = {"indices": good.indices, "indptr": good.indptr, "data": good.data, name: array}
         np.savez(path, format=b"csr", shape=(3, 3), **given)
-        assert said(path) == "it is damaged or of another kind"
+        why = {"indices": "it is damaged", "indptr": "it has a sparse matrix whose rows or columns are out"}
+        assert said(path).startswith(why[name])
     np.savez(path, format=b"csr", shape=(3, 10**12), indices=good.indices, indptr=good.indptr, data=good.data)
     assert said(path) == "it declares a matrix that is larger than what it holds"
 
