@@ -21,7 +21,7 @@ SEED ?= 2029
 SINCE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test kernels long survey mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
+.PHONY: help run test kernels long survey fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -46,6 +46,9 @@ survey: $(VENV)/.installed-dev ## Trace and judge 900 models with contact drawn 
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
 	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
 	PYTHONPATH=tests $(BIN)/python -m survey build/survey-*.jsonl --page tests/survey/README.md
+
+fuzz: $(VENV)/.installed-dev ## Read spoilt files of every kind (COUNT of each, by default 10000)
+	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m fuzz --count $(if $(filter file,$(origin COUNT)),10000,$(COUNT))
 
 mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
 	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) \
