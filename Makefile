@@ -29,7 +29,7 @@ SECTION ?=
 STALE ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help run test $(KINDS) apart kernels long dependencies survey mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
+.PHONY: help run test $(KINDS) apart kernels long dependencies survey fuzz mutants bench report-paper report-trade report-extremes report-machines report-structures stale docs lint types layers wheel clean
 # Two installs into one environment would collide.
 .NOTPARALLEL:
 
@@ -62,6 +62,9 @@ survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at r
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-0.jsonl --share 0/2 & \
 	  PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m survey build/survey-1.jsonl --share 1/2; wait
 	PYTHONPATH=tests $(BIN)/python -m survey build/survey-*.jsonl --page tests/survey/README.md
+
+fuzz: $(VENV)/.installed-dev ## Read spoilt files of every kind (COUNT of each, by default 10000)
+	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m fuzz --count $(if $(filter file,$(origin COUNT)),10000,$(COUNT))
 
 mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
 	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) \

@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+LONGEST = 200
+"""Characters of the longest value that a sentence quotes."""
+
 
 class UnknownNameError(KeyError):
     """A name that does not exist; the sentence lists those that do."""
@@ -37,11 +40,29 @@ class ByName(dict[str, float]):
         return ByName, (self._what, dict(self))
 
 
+def shown(value: Any) -> str:
+    """Return a value as a sentence shows it, not too long; Python does not write out the longest numbers."""
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:
+        return "a number of too many digits"
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def printable(text: str) -> str:
+    """Return a text of a file as a terminal may show it: without what it would obey, and not too long."""
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return shown if len(shown) <= 2 * LONGEST else shown[: 2 * LONGEST - 3] + "..."
+
+
 def number(name: str, value: Any) -> float:
     """Return a real number, infinities and NaN included. Raises ValueError for anything else."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         raise ValueError(f"{name} is {value!r}; it must be a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{name} is a whole number of too many digits; it must be below 1e308") from None
 
 
 def positive(name: str, value: Any) -> float:

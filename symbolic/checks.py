@@ -9,9 +9,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from symbolic.quoting import shortened
+from symbolic.quoting import LONGEST_QUOTE, shortened
 
 T = TypeVar("T")
+
+HUGE = 10**LONGEST_QUOTE
+"""Whole numbers from here on are not written out."""
 
 
 def refusal(field: str, value: object, allowed: str) -> ValueError:
@@ -21,6 +24,8 @@ def refusal(field: str, value: object, allowed: str) -> ValueError:
 
 def shown(value: object) -> str:
     """Return a value as a sentence shows it: on one line, texts in quotes, not too long."""
+    if isinstance(value, int) and abs(value) >= HUGE:  # Python refuses to write out the largest
+        return "a whole number of too many digits"
     text = " ".join((str(value) if isinstance(value, np.generic) else repr(value)).split())
     return shortened(text)
 

@@ -9,11 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from periodic.checks import named, number
+from periodic.checks import named, number, shown
 from periodic.correction.condition import Condition, SideCondition, side_conditions
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import System, check_system, index_of
+from periodic.system.precision import EXTREME
 
 
 class Wider(Protocol):
@@ -259,10 +260,15 @@ class Problem:
 
 
 def _range(parameter: str, bounds: tuple[float, float]) -> tuple[float, float]:
+    given = shown(bounds) if not isinstance(bounds, str) else bounds
     try:
         first, second = (number("bound", end) for end in bounds)
     except (TypeError, ValueError):
         first = second = np.nan
     if not (np.isfinite(first) and np.isfinite(second) and first != second):
-        raise ValueError(f"bounds of {parameter} are {bounds}; they must be two different finite numbers")
+        raise ValueError(f"bounds of {parameter} are {given}; they must be two different finite numbers")
+    for size in (abs(first), abs(second), abs(first - second)):
+        if size != 0 and not 1 / EXTREME <= size <= EXTREME:
+            allowed = f"each 0 or of a magnitude from {1 / EXTREME:g} to {EXTREME:g}, and so their difference"
+            raise ValueError(f"bounds of {parameter} are {given}; they must be {allowed}")
     return first, second

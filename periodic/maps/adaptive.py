@@ -10,7 +10,7 @@ import numpy as np
 
 from periodic.checks import named, number, whole
 from periodic.maps.cell import Arrangement, Cell, Chunk, Outcome
-from periodic.maps.grid import check_names, check_values
+from periodic.maps.grid import check_names, check_total, check_values
 from periodic.maps.task import Task
 
 ROUND = 16
@@ -54,6 +54,7 @@ class Adaptive:
         for name, ends in self.bounds.items():
             _rising(name, ends)
         object.__setattr__(self, "total", whole("cells", self.cells, 2 ** len(self.bounds)))
+        check_total("map", self.total)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +15,9 @@ from periodic.checks import named, number
 from periodic.maps.cell import Arrangement, Cell, Chunk, Outcome
 from periodic.maps.task import Task
 from periodic.system import check_value, index_of
+
+MOST_CELLS = 1_000_000
+"""Cells of a map: what is kept of each takes about a kilobyte of memory."""
 
 
 class Plan(Protocol):
@@ -97,6 +101,7 @@ class Grid:
         if not self.values:
             raise ValueError("grid is empty; it must give the values of at least one parameter")
         object.__setattr__(self, "values", {name: _values(name, v) for name, v in self.values.items()})
+        check_total("grid", self.total)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -106,7 +111,7 @@ class Grid:
     @property
     def total(self) -> int:
         """How many cells there are."""
-        return len(self._cells)
+        return math.prod(map(len, self.values.values()))
 
     @cached_property
     def _cells(self) -> list[Cell]:
@@ -140,6 +145,12 @@ class Grid:
     def described(self) -> Any:
         """Return the values by name."""
         return {name: list(values) for name, values in self.values.items()}
+
+
+def check_total(what: str, total: int) -> None:
+    """Refuse more cells than a map can have. Raises ValueError."""
+    if total > MOST_CELLS:
+        raise ValueError(f"{what} has {total} cells; it must have at most {MOST_CELLS}")
 
 
 def check_values(task: Task, values: Mapping[str, Sequence[float]]) -> None:

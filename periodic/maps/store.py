@@ -15,11 +15,18 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from periodic.checks import printable
 from periodic.maps.cell import Cell, Outcome
+from periodic.results.brancharrays import DAMAGE
+from periodic.results.database import bounded
 from periodic.results.described import differences
 from periodic.results.files import digest, replacing
+from periodic.results.guarded import content
+from periodic.results.hdf import opened
 from periodic.results.journal import MAGIC, JournalError, locked
-from periodic.results.netcdf import packed, sound
+from periodic.results.netcdf import LARGEST, packed, sound
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,8 +113,8 @@ class Store:
         """Take what is there, or make room."""
         there = loaded(self.path) if self.path.exists() else None
         if resume and there is not None:
-            self._check(json.loads(there.attrs["made"]))
-            if there.attrs["complete"]:
+            self._check(_said(there, self.path))
+            if there.attrs.get("complete"):
                 self.finished = there.drop_attrs(deep=False).assign_attrs(
                     {key: value for key, value in there.attrs.items() if key not in OWN}
                 )
@@ -116,22 +123,32 @@ class Store:
         rows = list(self._rows()) if resume else []
         if rows:
             self._check(rows[0])
-            outcomes = [Outcome.of(plain) for row in rows[1:] for plain in row]
-            self.found = {o.cell: o for o in outcomes if not o.lost}
+            self.found = self._outcomes(rows[1:])
         else:
             self._emptied()
 
     def _check(self, before: Any) -> None:
         """Refuse a map that is made of something else."""
+        if not isinstance(before, dict):
+            raise MapFileError(_foreign(self.path))
         if found := differences(before, self._made):
+            said = printable("; and with ".join(found))
             raise MapFileError(
-                f"store is {str(self.path)!r}, which holds a map made with {'; and with '.join(found)}; "
+                f"store is {str(self.path)!r}, which holds a map made with {said}; "
                 f"choose another, or resume=False to replace it"
             )
 
+    def _outcomes(self, rows: list[Any]) -> dict[Cell, Outcome]:
+        """What became of the cells of some rows. Raises MapFileError where they say something else."""
+        try:
+            outcomes = [Outcome.of(plain) for row in rows for plain in row]
+            return {outcome.cell: outcome for outcome in outcomes if not outcome.lost}
+        except DAMAGE as error:
+            raise MapFileError(_foreign(self._journal)) from error
+
     def _rows(self) -> Iterator[Any]:
         """The rows up to the first that is not whole."""
-        with suppress(sqlite3.DatabaseError):
+        with suppress(sqlite3.DatabaseError, *DAMAGE), bounded(self._base, self._journal):
             rows = self._base.execute("SELECT number, content, digest FROM chunks ORDER BY number")
             for count, (number, content, seal) in enumerate(rows):
                 if number != count or not isinstance(content, str) or seal != digest(content.encode()):
@@ -141,7 +158,7 @@ class Store:
     def _emptied(self) -> None:
         try:
             self._base.execute("DROP TABLE IF EXISTS chunks")
-        except sqlite3.DatabaseError as error:
+        except (sqlite3.DatabaseError, UnicodeError) as error:
             if not isinstance(error, sqlite3.OperationalError):  # damaged, not a disk that is full
                 self._base.close()
                 self._journal.unlink()
@@ -173,8 +190,8 @@ class Store:
             self._base.execute("COMMIT")
             self._base.execute("BEGIN IMMEDIATE")
             self._pending.clear()
-        except sqlite3.Error as error:
-            with suppress(sqlite3.Error):
+        except (sqlite3.Error, UnicodeError) as error:
+            with suppress(sqlite3.Error, UnicodeError):
                 self._base.rollback()
                 self._base.execute("BEGIN IMMEDIATE")
             self._warn(error)
@@ -223,16 +240,23 @@ class Store:
 
 def loaded(path: Path) -> xr.Dataset:
     """Return the map that a file holds. Raises MapFileError for any other file."""
-    import xarray as xr
-
     try:
-        if sound(path.read_bytes()):
-            data = xr.load_dataset(path, engine="h5netcdf")
-            if data.attrs.get("format") == FORMAT:
-                return data
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        held = content(path, LARGEST)
+        if sound(held):
+            with np.errstate(all="ignore"), opened(held) as data:
+                if data.attrs.get("format") == FORMAT:
+                    return data.load()
+    except (OSError, *DAMAGE) as error:
         raise MapFileError(_foreign(path)) from error
     raise MapFileError(_foreign(path))
+
+
+def _said(there: xr.Dataset, path: Path) -> Any:
+    """What the map of a file is made of. Raises MapFileError where it does not say."""
+    try:
+        return json.loads(there.attrs["made"])
+    except DAMAGE as error:
+        raise MapFileError(_foreign(path)) from error
 
 
 def _foreign(path: Path) -> str:

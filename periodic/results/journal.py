@@ -26,7 +26,9 @@ import numpy as np
 from periodic.results.branch import Branch
 from periodic.results.brancharrays import DAMAGE, attributes, record_of, tables
 from periodic.results.checkpoint import Checkpoint
+from periodic.results.database import bounded
 from periodic.results.files import digest
+from periodic.results.guarded import archive, regular
 from periodic.results.halves import Half, joined
 from periodic.results.netcdf import BranchFileError
 from periodic.results.point import Point
@@ -72,6 +74,8 @@ class Journal:
     def __init__(self, path: Path, empty: Branch) -> None:
         self._empty, self._path = empty, path
         self._steps, self._broken = 0, False
+        if path.exists():
+            regular(path.stat())  # opening a pipe would wait for whoever reads it
         with path.open("ab"):
             pass  # SQLite does not say why a file cannot be made
         with path.open("rb") as file:
@@ -134,7 +138,7 @@ class Journal:
         try:
             if _schema(self._base):
                 self._base.execute("DROP TABLE steps")
-        except (sqlite3.DatabaseError, BranchFileError) as error:
+        except (sqlite3.DatabaseError, BranchFileError, UnicodeError) as error:
             if isinstance(error, sqlite3.OperationalError):
                 raise
             self._base.close()
@@ -178,8 +182,8 @@ def locked(path: Path) -> sqlite3.Connection:
         base.execute("PRAGMA synchronous = OFF")  # a process that is killed loses nothing that it has written
         base.execute("BEGIN IMMEDIATE")
         base.execute(f"PRAGMA busy_timeout = {PATIENCE}")
-    except sqlite3.DatabaseError as error:
-        if error.sqlite_errorcode == sqlite3.SQLITE_BUSY:
+    except (sqlite3.DatabaseError, UnicodeError) as error:  # of damage SQLite speaks in its own bytes
+        if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_BUSY:
             base.close()
             raise JournalError(f"journal is {str(path)!r}; another trace is writing to it") from None
     return base
@@ -212,9 +216,11 @@ def recovered(path: str | Path) -> Branch:
         In one sentence, for a file that is no journal or holds no step.
     """
     try:
+        regular(Path(path).stat())
         with Path(path).open("rb"):
             pass
-        pieces = list(_pieces(Path(path)))
+        with np.errstate(all="ignore"):
+            pieces = list(_pieces(Path(path)))
     except OSError as error:
         raise BranchFileError(f"journal is {str(path)!r}; it cannot be read ({error.strerror})") from error
     except (sqlite3.Error, zipfile.BadZipFile, *DAMAGE) as error:
@@ -237,8 +243,12 @@ def _pieces(path: Path) -> Iterator[Record]:
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True)) as base:
         base.execute("PRAGMA trusted_schema = OFF")
         base.execute("PRAGMA writable_schema = ON")  # or a file that was cut short would not be read at all
-        if not _schema(base):
-            return
+        with bounded(base, path):
+            yield from _steps(base)
+
+
+def _steps(base: sqlite3.Connection) -> Iterator[Record]:
+    if _schema(base):
         rows = base.execute("SELECT number, content, digest FROM steps ORDER BY number")
         with suppress(sqlite3.DatabaseError):
             for count, (number, content, seal) in enumerate(rows):
@@ -255,5 +265,5 @@ def _packed(piece: Record) -> bytes:
 
 
 def _unpacked(content: bytes) -> Record:
-    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-        return record_of(dict(arrays), json.loads(arrays["said"].tobytes()))
+    arrays = archive(content, len(content))
+    return record_of(arrays, json.loads(arrays["said"].tobytes()))

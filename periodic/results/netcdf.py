@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import sys
 from contextlib import nullcontext
 from pathlib import Path
@@ -17,6 +18,8 @@ import numpy as np
 
 from periodic.results.brancharrays import DAMAGE, FORMAT, attributes, record_of, tables
 from periodic.results.files import digest, replacing
+from periodic.results.guarded import DamagedError, content
+from periodic.results.hdf import opened
 from periodic.results.record import Record
 
 if TYPE_CHECKING:
@@ -25,8 +28,11 @@ if TYPE_CHECKING:
 SEAL = b"orbitrace sha256"
 """Stands before the digest at the end of a file: what does not agree with it is not read any further."""
 
-SLACK = 100_000
-"""Bytes that texts may take more in memory than in a file; numbers are not packed."""
+OURS = re.compile(r"orbitrace [a-z]{1,10} \d{1,5}")
+"""Formats of this package, of any version."""
+
+LARGEST = 2**32
+"""Most bytes of a branch or map that is read: 4 GiB. Its arrays take no more than it has."""
 
 
 class BranchFileError(ValueError):
@@ -81,34 +87,38 @@ def load(path: Path) -> Record:
     BranchFileError
         If the file is missing, damaged, of another format or no branch.
     """
-    if not path.is_file():
-        raise BranchFileError(f"branch file is {str(path)!r}; there is no such file")
     try:
-        if not sound(path.read_bytes()):
-            raise BranchFileError(f"branch file {str(path)!r} is damaged (its seal is wrong)")
-        return _read(path)
+        held = content(path, LARGEST)
+    except FileNotFoundError:
+        raise BranchFileError(f"branch file is {str(path)!r}; there is no such file") from None
+    except OSError as error:
+        raise BranchFileError(f"branch file is {str(path)!r}; it cannot be read ({error.strerror})") from None
+    if not sound(held):
+        raise BranchFileError(f"branch file {str(path)!r} is damaged (its seal is wrong)")
+    try:
+        with np.errstate(all="ignore"), opened(held) as data:
+            _check_format(data.attrs.get("format"), path)
+            return _read(data)
     except BranchFileError:
         raise
+    except DamagedError as error:
+        raise BranchFileError(f"branch file {str(path)!r} is damaged ({error})") from None
     except (OSError, *DAMAGE) as error:
         raise BranchFileError(f"branch file {str(path)!r} is damaged or not a branch") from error
 
 
-def _read(path: Path) -> Record:
-    import h5py
-    import xarray as xr
+def _check_format(found: object, path: Path) -> None:
+    """Refuse another format than this version's; of formats that are none of ours no name is told."""
+    if not (isinstance(found, str) and found == FORMAT):
+        known = found if isinstance(found, str) and OURS.fullmatch(found) else None
+        raise BranchFileError(f"branch file {str(path)!r} has format {known!r}; expected {FORMAT!r}")
 
-    with h5py.File(path, "r"):
-        pass  # on a file that is none h5netcdf complains from its destructor, where nobody can catch it
-    with xr.open_dataset(path, engine="h5netcdf", decode_times=False, phony_dims="access") as data:
-        if data.attrs.get("format") != FORMAT:
-            raise BranchFileError(
-                f"branch file {str(path)!r} has format {data.attrs.get('format')!r}; expected {FORMAT!r}"
-            )
-        if data.nbytes > path.stat().st_size + SLACK:
-            raise BranchFileError(f"branch file {str(path)!r} is damaged (it is too short for its arrays)")
-        if data.attrs.pop("checksum", None) != checksum(data.load()):
-            raise BranchFileError(f"branch file {str(path)!r} is damaged (its checksum is wrong)")
-        return record_of({str(name): data[name].values for name in data.variables}, data.attrs)
+
+def _read(data: xr.Dataset) -> Record:
+    """The branch of a data set. Raises DamagedError, or one of DAMAGE."""
+    if data.attrs.pop("checksum", None) != checksum(data.load()):
+        raise DamagedError("its checksum is wrong")
+    return record_of({str(name): data[name].values for name in data.variables}, data.attrs)
 
 
 def packed(data: xr.Dataset) -> bytes:

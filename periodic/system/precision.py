@@ -16,6 +16,9 @@ Also how nearly dependent two directions may be: numbers that are found along th
 MOST_ITERATIONS = 12
 """Newton steps for a few unknowns: with its digits doubled at each, five lead from one digit to rounding."""
 
+EXTREME = 1e100
+"""Largest magnitude of an end of a range, its reciprocal the least: cubes of both are finite."""
+
 LARGEST = 1e300
 """What is larger is given as this number; it may still be added up, and the square of its root is finite."""
 

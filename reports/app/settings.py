@@ -9,6 +9,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from symbolic.guarded import content
 from symbolic.scenes.errors import InputError, cut
 from symbolic.scenes.schema import Scene
 
@@ -16,6 +17,9 @@ from .files import writable, write
 
 RECORD = "settings.json"
 """File of the settings in a directory."""
+
+LARGEST_RECORD = 2**24
+"""Most bytes of it: a map may be over a million values."""
 
 OUT = "orbitrace-out"
 """Where directories of scenes go unless told otherwise."""
@@ -84,8 +88,8 @@ def _resumed(made: Settings) -> Path:
 def _known(folder: Path) -> Settings:
     """The settings that a directory tells; none where it tells nothing that can be read."""
     try:
-        found = json.loads((folder / RECORD).read_text("utf-8"))
-    except (OSError, ValueError):
+        found = json.loads(content(folder / RECORD, LARGEST_RECORD).decode("utf-8"))
+    except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
 

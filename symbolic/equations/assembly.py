@@ -11,6 +11,7 @@ import casadi as ca
 from symbolic.equations.terms import Motion, Place, Relay, Slider, State, struck
 from symbolic.equations.variables import Parameter, SwitchInfo
 from symbolic.equations.workbench import Workbench
+from symbolic.meter import counted
 from symbolic.mistakes import explained
 from symbolic.relays import kept_by
 
@@ -111,7 +112,9 @@ class Assembly(Workbench):
         parts : iterable of Part
             In any order.
         """
-        for part in parts:
+        listed = list(parts)
+        for k in counted(len(listed), "compiling", "parts"):
+            part = listed[k]
             with kept_by(self), self.owned(part.owner), explained(type(part).__name__):
                 part.contribute(self)
 

@@ -22,6 +22,12 @@ Order = int | float | str | Fraction
 MOST_PERIODS = 1000
 """Most periods of theta after which an excitation may repeat."""
 
+HIGHEST_ORDER = 100_000
+"""Most turns of a harmonic within a turn of theta, or within the common period."""
+
+LONGEST_TEXT = 40
+"""Most characters of an order written as text, and most places by which its exponent shifts the point."""
+
 ROUNDED_RATIO = 1e-12
 """Relative difference from a rational number up to which a floating-point number stands for it."""
 
@@ -30,15 +36,26 @@ def order_of(value: Order) -> Fraction:
     """Return a positive rational order. Raises ValueError."""
     allowed = f'a positive rational number such as 2, 0.5 or "1/3", with a denominator up to {MOST_PERIODS}'
     try:
-        exact = math.nan if isinstance(value, bool) else Fraction(value)
+        exact = math.nan if isinstance(value, bool) else Fraction(_bounded(value))
     except (TypeError, ValueError, ZeroDivisionError, OverflowError):
         exact = math.nan
     if not isinstance(exact, Fraction) or exact <= 0:
         raise refusal("order", value, allowed)
+    if exact > HIGHEST_ORDER:
+        raise refusal("order", value, f"{allowed}, and at most {HIGHEST_ORDER}")
     found = exact.limit_denominator(MOST_PERIODS)
     if abs(found - exact) > ROUNDED_RATIO * exact:
         raise refusal("order", value, f"{allowed}: the excitation has no common period otherwise")
     return found
+
+
+def _bounded(value: Order) -> Order:
+    """The value, if it may be read: of a text its exponent, as a number it would be written out in digits."""
+    if isinstance(value, str):
+        exponent = value.lower().partition("e")[2]
+        if len(value) > LONGEST_TEXT or (exponent and abs(int(exponent)) > LONGEST_TEXT):
+            raise ValueError("it has too many digits")
+    return value
 
 
 def fundamental(orders: Iterable[Fraction]) -> Fraction:
@@ -53,6 +70,11 @@ def fundamental(orders: Iterable[Fraction]) -> Fraction:
         raise ValueError(
             f"the orders {listed} have no common period of at most {MOST_PERIODS} periods of the excitation; "
             f"choose orders of a smaller common denominator"
+        )
+    if numbers[-1] > HIGHEST_ORDER * found:
+        raise ValueError(
+            f"the order {numbers[-1]} turns {numbers[-1] / found} times in the common period of all orders; "
+            f"it must turn at most {HIGHEST_ORDER} times"
         )
     return found
 

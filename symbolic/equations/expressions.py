@@ -22,6 +22,7 @@ from symbolic.equations.jumps.resting import Resting, walls, with_walls
 from symbolic.equations.jumps.sides import Sided, sided
 from symbolic.equations.jumps.sliders import Held, with_sliders
 from symbolic.equations.packed import Packed
+from symbolic.meter import counted
 
 
 @dataclass(frozen=True)
@@ -150,14 +151,17 @@ def _places(packed: Packed, assembly: Assembly) -> dict[int, tuple[str, tuple[fl
 def _motion_rows(assembly: Assembly) -> list[ca.SX]:
     rows: list[ca.SX] = []
     held = [id(place.motion) for place in assembly.places]
-    for coordinate, motion in assembly.motions.items():
+    motions = list(assembly.motions.items())
+    for k in counted(len(motions), "compiling", "coordinates"):
+        coordinate, motion = motions[k]
         if id(motion) in held:
             rows += [ca.SX(0), ca.SX(0)]
             continue
         inertia = motion.mass * assembly.omega**2
         if motion.mass.is_zero() or not assembly.nominal(motion.mass) > 0:
             raise ValueError(f"coordinate {coordinate.name!r} has no mass; add a Mass on it")
-        _check_frequency(assembly)
+        if not rows:
+            _check_frequency(assembly)
         scale = assembly.nominal(inertia) * motion.position.scale
         rows.append((motion.position.derivative - motion.velocity.symbol) / motion.position.scale)
         rows.append((inertia * motion.velocity.derivative - motion.force) / scale)

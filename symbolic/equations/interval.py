@@ -7,6 +7,14 @@ from dataclasses import dataclass
 
 from symbolic.checks import refusal
 
+EXTREME = 1e100
+"""Largest magnitude of a number of a model; its cube is finite, and so is the reciprocal of its cube."""
+
+
+def usual(value: float) -> bool:
+    """Return whether a number can be reckoned with: what is not 0 has squares and reciprocals in doubles."""
+    return not math.isfinite(value) or value == 0 or 1 / EXTREME <= abs(value) <= EXTREME
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -20,6 +28,8 @@ class Interval:
         """Refuse a value outside, calling it `field`. Raises ValueError."""
         if not self.low <= value <= self.high or (self.positive and value == 0):
             raise refusal(field, value, self._words)
+        if not usual(value):
+            raise refusal(field, value, f"0, or of a magnitude from {1 / EXTREME:g} to {EXTREME:g}")
 
     def within(self, other: Interval) -> Interval:
         """Return the values that both have."""

@@ -37,6 +37,8 @@ class Numbers:
 
     taken: list[Number] = field(default_factory=list)
     allowed: dict[Parameter, Interval] = field(default_factory=dict)
+    _values: dict[int, float] = field(default_factory=dict, init=False)
+    _groups: dict[tuple[str, str, float], list[Number]] = field(default_factory=dict, init=False)
 
     def symbol(self, value: Value, name: str, unit: str, owner: str, allowed: Interval = ANY) -> ca.SX:
         """Return the symbol of a part's number, one for all numbers of one owner, name and value."""
@@ -49,20 +51,28 @@ class Numbers:
 
     def _taken(self, wanted: Parameter, owner: str, bare: bool) -> Parameter:
         """The equal number that exists already, or the new one."""
-        for known in self.taken:
-            same = known.bare and bare and known.owner == owner and _alike(known.parameter, wanted)
-            if same or known.parameter is wanted:
+        among = self._groups.setdefault((owner, wanted.name, wanted.value), [])
+        for known in among:
+            if (known.bare and bare and _fits(known.parameter, wanted)) or known.parameter is wanted:
                 return known.parameter
-        self.taken.append(Number(wanted, owner, bare))
+        if wanted.symbol.element_hash() in self._values:  # a user's parameter, of another part's already
+            return wanted
+        among.append(Number(wanted, owner, bare))
+        self.taken.append(among[-1])
+        self._values[wanted.symbol.element_hash()] = wanted.value
         return wanted
 
     def interval(self, symbols: list[ca.SX]) -> Interval:
         """Return the values that all numbers of one name may have, by their symbols."""
-        found = ANY
+        found, wanted = ANY, {id(symbol) for symbol in symbols}
         for number, allowed in self.allowed.items():
-            if any(number.symbol is symbol for symbol in symbols):
+            if id(number.symbol) in wanted:
                 found = found.within(allowed)
         return found
+
+    def value_of(self, symbol: ca.SX) -> float:
+        """Return the nominal value of the parameter that a symbol stands for."""
+        return self._values[symbol.element_hash()]
 
     def name_of(self, symbol: ca.SX) -> str:
         """Return the name of the parameter that a symbol stands for."""
@@ -75,8 +85,13 @@ class Numbers:
         Raises ValueError where two of them get one name.
         """
         found: dict[str, tuple[Parameter, list[ca.SX]]] = {}
+        groups: dict[str, list[Number]] = {}
         for number in self.taken:
-            name, own = self._name(number), number.parameter
+            groups.setdefault(number.parameter.name, []).append(number)
+        equal = {name for name, group in groups.items() if _all_fit([n.parameter for n in group])}
+        for number in self.taken:
+            own = number.parameter
+            name = own.name if own.name in equal else _name(number, groups[own.name])
             if name not in found:
                 found[name] = (own if own.name == name else Parameter(name, own.value, own.unit), [])
             first, symbols = found[name]
@@ -100,17 +115,22 @@ class Numbers:
         same = [n for n in self.taken if not n.bare and n.parameter.name == number.parameter.name]
         return same[0] is not number
 
-    def _name(self, number: Number) -> str:
-        own = number.parameter
-        group = [n for n in self.taken if n.parameter.name == own.name]
-        if number.kept or all(_fits(n.parameter, own) for n in group):
-            return own.name
-        fitting = [n for n in group if n.kept and _fits(n.parameter, own)]
-        if fitting:
-            return own.name
-        mine = [n for n in group if not n.kept and n.owner == number.owner]
-        behind = f"_{mine.index(number) + 1}" if len(mine) > 1 else ""
-        return f"{own.name}_{number.owner}{behind}"
+
+def _name(number: Number, group: list[Number]) -> str:
+    """The name of one of several numbers that were given one name."""
+    own = number.parameter
+    if number.kept or all(_fits(n.parameter, own) for n in group):
+        return own.name
+    if any(n.kept and _fits(n.parameter, own) for n in group):
+        return own.name
+    mine = [n for n in group if not n.kept and n.owner == number.owner]
+    behind = f"_{mine.index(number) + 1}" if len(mine) > 1 else ""
+    return f"{own.name}_{number.owner}{behind}"
+
+
+def _all_fit(group: list[Parameter]) -> bool:
+    """Whether numbers of one name are one parameter, in whatever order they are looked at."""
+    return len({p.value for p in group}) == 1 and len({p.unit for p in group} - {""}) <= 1
 
 
 def _alike(a: Parameter, b: Parameter) -> bool:

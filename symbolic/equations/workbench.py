@@ -218,10 +218,11 @@ class Workbench:
         """
         if ca.depends_on(expression, self.omega):
             expression = self.with_frequency(expression)
-        items = [number.parameter for number in self.numbers.taken]
-        symbols = ca.vertcat(*[item.symbol for item in items])
-        values = [item.value for item in items]
-        return float(ca.Function("nominal", [symbols], [expression])(values))
+        symbols = ca.symvar(expression)  # few: a model may have thousands of parameters
+        if not symbols:
+            return float(ca.DM(expression))
+        values = [self.numbers.value_of(symbol) for symbol in symbols]
+        return float(ca.Function("nominal", [ca.vertcat(*symbols)], [expression])(values))
 
     def with_frequency(self, expression: ca.SX) -> ca.SX:
         """Replace the placeholder omega by the frequency of the phase: Omega times the common order.

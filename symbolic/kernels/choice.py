@@ -73,13 +73,14 @@ def chosen(kernels: Kernels | str | None) -> Kernels:
 def shared(source: str, kernels: Kernels) -> ctypes.CDLL | None:
     """Return the library of a C source that every run needs, or None where NumPy must be used.
 
-    AUTO compiles it at once if it can be kept: later runs have it for nothing.
+    AUTO compiles it at once if it can be kept: later runs have it for nothing. Where a cache is not used
+    because others can write to it, this run alone has it.
     """
     if kernels is Kernels.NUMPY:
         return None
     if kernels is Kernels.C:
         return native.library(source)
-    if native.directory() is None:
+    if native.directory() is None and not native.refused():
         return native.kept(source)
     return native.attempted(source)
 

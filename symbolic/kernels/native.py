@@ -1,8 +1,8 @@
 """C source becomes a loaded library, kept in a cache of the user's for later runs.
 
 A library's file name holds a hash of all it is made from (source, compiler, flags, machine) and one of its
-own bytes: what is truncated, changed or foreign is not loaded but made again. Nothing is loaded from where
-another user can write.
+own bytes: what is truncated, changed or foreign is not loaded but made again. Nothing is loaded that another
+user can write or put something in the place of: a cache where that is so is told once and not used.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import os
 import platform
 import shlex
 import shutil
-import stat
 import subprocess
 import sys
 import sysconfig
@@ -28,6 +27,7 @@ from pathlib import Path
 import platformdirs
 
 from symbolic.kernels.built import FLAGS, built
+from symbolic.kernels.privacy import exposed, own_bytes, owners_known
 
 KEPT = 500
 """How many libraries are kept, of some 20 kB each; the ones longest unused go first."""
@@ -41,6 +41,7 @@ NONE = "no C compiler was found; install one (pip install 'orbitrace[cc]'), or s
 _log = logging.getLogger(__name__)
 _loaded: dict[str, ctypes.CDLL] = {}
 _failed: set[str] = set()
+_told: set[str] = set()
 
 
 class CompilerError(RuntimeError):
@@ -81,6 +82,7 @@ def forget() -> None:
     """Forget all libraries of this run, as a new one begins without."""
     _loaded.clear()
     _failed.clear()
+    _told.clear()
 
 
 @cache
@@ -115,28 +117,35 @@ def packaged() -> str | None:
 
 
 def directory() -> Path | None:
-    """Return the directory of kept libraries, made if need be; None where there is no safe one."""
+    """Return the directory of kept libraries, made if need be; None where there is no safe one.
+
+    One that others can write to is told once.
+    """
+    path, why = _place()
+    if why and why not in _told:
+        _told.add(why)
+        _log.warning("kernels are compiled for this run alone, not kept in %r: %s", str(path), why)
+    return None if why else path
+
+
+def refused() -> str:
+    """Return why the directory of kept libraries is not used, where others can write to it; else ""."""
+    return _place()[1]
+
+
+def _place() -> tuple[Path | None, str]:
+    """The directory of kept libraries if there can be one, and why it is not used."""
+    if not owners_known():
+        return None, ""
     try:
         path = platformdirs.user_cache_path("orbitrace", appauthor=False) / "kernels"
-        path.mkdir(mode=0o700, parents=True, exist_ok=True)
-        return path.resolve() if _private(path.resolve()) else None
+        path.parent.parent.mkdir(parents=True, exist_ok=True)
+        for each in (path.parent, path):  # of folders above `parents=True` takes no mode
+            each.mkdir(mode=0o700, exist_ok=True)
+        return path.resolve(), exposed(path.resolve())
     except (OSError, RuntimeError) as error:  # read-only, or a user without a home
         _log.debug("no cache of kernels: %s", error)
-        return None
-
-
-def _private(path: Path) -> bool:
-    """Whether only this user can write here, and nobody else can put something in its place."""
-    if not hasattr(os, "getuid"):
-        return False
-    own = path.stat()
-    if own.st_uid != os.getuid() or own.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-        return False
-    above = [p.stat() for p in path.parents]
-    owners = {0, os.getuid()}
-    return all(
-        s.st_uid in owners and (not s.st_mode & stat.S_IWOTH or s.st_mode & stat.S_ISVTX) for s in above
-    )
+        return None, ""
 
 
 def _key(source: str) -> str:
@@ -150,8 +159,8 @@ def _key(source: str) -> str:
 def _from_cache(key: str) -> ctypes.CDLL | None:
     for path in _files(key):
         try:
-            content = path.read_bytes()
-            if path.stem == f"{key}-{_digest(content)}":
+            content = own_bytes(path)
+            if content is not None and path.stem == f"{key}-{_digest(content)}":
                 found = ctypes.CDLL(str(path))
                 _touch(path)
                 return found
@@ -185,6 +194,7 @@ def _made(source: str) -> ctypes.CDLL:
     command, *options = known[0]
     try:
         with tempfile.TemporaryDirectory(dir=where, ignore_cleanup_errors=True) as made:
+            _check_temporary(Path(made).resolve())
             here, there = Path(made, "kernel.c"), Path(made, "kernel.so")
             here.write_text(source)
             asked = [command, *options, *FLAGS, "-o", str(there), str(here), "-lm"]
@@ -199,6 +209,12 @@ def _made(source: str) -> ctypes.CDLL:
             return found
     except (OSError, subprocess.TimeoutExpired) as error:
         raise CompilerError(f"{command} did not make a library that loads: {error}") from error
+
+
+def _check_temporary(folder: Path) -> None:
+    """Refuse to load from a temporary directory that others can change. Raises CompilerError."""
+    if owners_known() and (why := exposed(folder)):
+        raise CompilerError(f"there is no safe place to compile in: {why}; set TMPDIR to one of your own")
 
 
 def _keep(key: str, library: Path, where: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -9,8 +10,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from symbolic.quoting import LONGEST_QUOTE
-from symbolic.scenes.errors import InputError, cut, refused
+from symbolic.guarded import content
+from symbolic.scenes.errors import InputError, refused
 from symbolic.scenes.model.bench import nearest
 from symbolic.scenes.model.keys import model_keys
 from symbolic.scenes.model.scene import ModelScene
@@ -21,6 +22,12 @@ from symbolic.scenes.schema import Scene, schema_of
 Override = tuple[str, Value]
 """A key (dotted, or its last component alone) and its value (perhaps as text); None removes the key."""
 
+
+PLACE = re.compile(r"\(at (line \d+, column \d+|end of document)\)$")
+"""Where Python's reader of TOML says that a file is wrong."""
+
+QUOTING = re.compile(r"\(['\"]|haracter ['\"]")
+"""How it quotes keys and signs: a file that is none of ours is not told."""
 
 LARGEST_FILE = 32768
 """Most bytes of a scene file: Python's reader of TOML may take very long with larger ones."""
@@ -81,18 +88,11 @@ def _text(source: str) -> str:
     if not source.strip():
         raise refused("scene", source, names)
     try:
-        if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe may never come to an end
-            raise InputError("scene", f'file "{source}" is no regular file', f"it must be {names}")
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            found = f'file "{source}" is larger than {LARGEST_FILE} bytes'
-            raise InputError("scene", found, "it must be a TOML file like those built in")
-        return content.decode("utf-8-sig")
-    except (FileNotFoundError, ValueError) as error:
-        if path.is_file():
-            found = f'file "{source}" is not text in UTF-8'
-            raise InputError("scene", found, "it must be a TOML file") from error
+        return content(path, LARGEST_FILE).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        found = f'file "{source}" is not text in UTF-8'
+        raise InputError("scene", found, "it must be a TOML file") from None
+    except FileNotFoundError:
         if path.suffix == ".toml":
             found = f'is "{source}", and there is no such file'
             raise InputError("scene", found, f"`orbitrace new model {path.name}` writes one") from None
@@ -105,7 +105,12 @@ def _text(source: str) -> str:
 def _parsed(source: str, text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        why = "its tables are too deep" if isinstance(error, RecursionError) else str(error)
-        found = f'file "{source}" is not TOML: {cut(why, 3 * LONGEST_QUOTE)}'
-        raise InputError("scene", found, "it must hold lines like preload = 810") from error
+    except RecursionError:
+        why = "its tables are too deep"
+    except ValueError as error:
+        place = PLACE.search(str(error))
+        why = str(error) if place else "it has a number of too many digits"
+        if place and QUOTING.search(why):
+            why = f"it is wrong at {place[1]}"
+    found = f'file "{source}" is not TOML: {why}'
+    raise InputError("scene", found, "it must hold lines like preload = 810")

@@ -53,7 +53,7 @@ def read_matrices(
 
     Notes
     -----
-    .op4 and Abaqus' substructures need ``pip install 'orbitrace[files]'``. Units are those of the file: see
+    .op4 needs ``pip install 'orbitrace[files]'``. Units are those of the file: see
     `Matrices.first_frequency`.
     """
     called = {name: name for name in NAMES} | _names(names)

@@ -1,21 +1,50 @@
-"""Readers of matrices, one for each kind of file: name of a matrix to the matrix."""
+"""Readers of matrices, one for each kind of file: name of a matrix to the matrix.
+
+Each is given the bytes of a file, and holds what its header declares against them before it makes anything.
+"""
 
 from __future__ import annotations
 
+import io
+import logging
+import re
+import struct
+import warnings
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
-import scipy
 
+from symbolic.guarded import LARGEST, DamagedError, archive, content
+from symbolic.structures.abaqus import mtx
+from symbolic.structures.matlab import files, matlab
 from symbolic.structures.matrices import sparse
+from symbolic.structures.nastran import op4
 
 EXTRA = "pip install 'orbitrace[files]'"
 """What installs the readers of other programs' formats."""
+
+FAILURES = (
+    *(OSError, EOFError, ValueError, TypeError, LookupError, ArithmeticError, RuntimeError, MemoryError),
+    *(
+        AssertionError,
+        UnboundLocalError,
+        Warning,
+        files.MatReadError,
+        struct.error,
+        zipfile.BadZipFile,
+        zlib.error,
+    ),
+)
+"""What readers raise on what is no file of theirs."""
+
+PLACE = re.compile(r"\b(row|line) \d+")
+"""Where a library says that a file is wrong; what else it says may quote the file."""
+
+_log = logging.getLogger(__name__)
 
 
 def contents(path: Path) -> dict[str, Any]:
@@ -24,91 +53,66 @@ def contents(path: Path) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        For a file that is missing, of a kind not known here, or not what its ending says.
+        For a file that is missing, of a kind not known here, too large, or not what its ending says.
     """
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise ValueError(f"{str(path)!r} is no file of matrices; its name must end in {', '.join(READERS)}")
     try:
-        return dict(reader(path))
+        held = content(path)
     except FileNotFoundError:
         raise ValueError(f"file of matrices {str(path)!r} does not exist") from None
+    except OSError as error:
+        why = error.strerror or type(error).__name__
+        raise ValueError(f"{str(path)!r} cannot be read as a {path.suffix} file: {why}") from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # a reader that has doubts goes on with what it has
+            return {name: _sound(matrix) for name, matrix in reader(path, held).items()}
     except ModuleNotFoundError as error:
         raise ValueError(f"{path.name} needs the package {error.name}: {EXTRA}") from None
-    except (OSError, EOFError, ValueError, TypeError, KeyError, AssertionError, zipfile.BadZipFile) as error:
-        said = " ".join(str(error).split())[:120] or type(error).__name__
-        raise ValueError(f"{str(path)!r} cannot be read as a {path.suffix} file: {said}") from None
+    except FAILURES as error:
+        said = f"{str(path)!r} cannot be read as a {path.suffix} file: {_why(error)}"
+    raise ValueError(said)
 
 
-def numpy_archive(path: Path) -> Mapping[str, Any]:
+def _why(error: Exception) -> str:
+    """Why a file cannot be read, without any of what it holds."""
+    if isinstance(error, DamagedError):
+        return str(error)
+    _log.debug("what the reader of a file of matrices says", exc_info=error)
+    where = PLACE.search(str(error))
+    return "it is damaged or of another kind" + (f" ({where[0]})" if where else "")
+
+
+def _sound(matrix: Any) -> Any:
+    """A matrix, if it is one of numbers whose indices are within it, and of a size to be handled."""
+    if not hasattr(matrix, "dtype") or matrix.dtype.kind not in "biufc":
+        raise DamagedError("it has an array that is not of numbers")
+    if max(matrix.shape, default=0) > LARGEST // 8:
+        raise DamagedError("it has a matrix of more rows or columns than are read")
+    if hasattr(matrix, "indptr"):  # compiled code trusts these; SciPy's check leaves out what seems empty
+        if matrix.indptr[0] != 0 or (np.diff(matrix.indptr) < 0).any():
+            raise DamagedError("it has a sparse matrix whose rows or columns are out of order")
+        matrix.check_format(full_check=True)
+    return matrix
+
+
+def numpy_archive(path: Path, held: bytes) -> Mapping[str, Any]:
     """Return what numpy.savez or scipy.sparse.save_npz has written."""
-    with np.load(path, allow_pickle=False) as archive:
-        if "format" not in archive:
-            return {name: archive[name] for name in archive}
-    return {"": sparse.load_npz(path)}
+    found = archive(held)
+    if "format" not in found:
+        return found
+    sizes = [int(size) for size in found["shape"].ravel()]
+    if max(sizes) > sum(array.nbytes for array in found.values()):
+        raise DamagedError("it declares a matrix that is larger than what it holds")
+    return {"": sparse.load_npz(io.BytesIO(held))}
 
 
-def matlab(path: Path) -> Mapping[str, Any]:
-    """Return the variables of a MATLAB file up to version 7."""
-    return {k: v for k, v in scipy.io.loadmat(path).items() if not k.startswith("__")}
-
-
-def mtx(path: Path) -> Mapping[str, Any]:
-    """Return what a .mtx file holds: Matrix Market, or Abaqus in any of its three forms.
-
-    The forms of Abaqus are `*SUBSTRUCTURE MATRIX OUTPUT`, and of `*MATRIX OUTPUT` the formats COORDINATE
-    (row, column, value) and MATRIX INPUT (node, dof, node, dof, value; one triangle where it is symmetric).
-    """
-    with path.open(errors="replace") as lines:
-        head = lines.readline()
-    if head.startswith("%%MatrixMarket"):
-        return {"": scipy.io.mmread(path, spmatrix=False)}
-    if head.startswith("*"):
-        return _substructure(path)
-    rows = np.loadtxt(path, delimiter="," if "," in head else None, comments=("*", "%", "#"), ndmin=2)
-    if rows.shape[1] == 3:
-        return {"": _filled(rows[:, 0].astype(int) - 1, rows[:, 1].astype(int) - 1, rows[:, 2])}
-    if rows.shape[1] == 5:
-        pairs = np.concatenate([rows[:, :2], rows[:, 2:4]]).astype(int)
-        numbered = np.unique(pairs, axis=0, return_inverse=True)[1].ravel()
-        return {"": _filled(numbered[: len(rows)], numbered[len(rows) :], rows[:, 4])}
-    raise ValueError(f"its lines have {rows.shape[1]} numbers; 3 or 5 are known")
-
-
-def op4(path: Path) -> Mapping[str, Any]:
-    """Return the matrices of a Nastran OUTPUT4 file, names in capitals, by pyyeti."""
-    read: Mapping[str, Any] = _module("pyyeti.nastran.op4").read(str(path), into="dct", justmatrix=True)
-    return {name.upper(): matrix for name, matrix in read.items()}
-
-
-READERS: dict[str, Callable[[Path], Mapping[str, Any]]] = {
+READERS: dict[str, Callable[[Path, bytes], Mapping[str, Any]]] = {
     ".npz": numpy_archive,
     ".mat": matlab,
     ".mtx": mtx,
     ".op4": op4,
 }
 """The reader of each ending."""
-
-
-def _substructure(path: Path) -> Mapping[str, Any]:
-    found = _module("abaqus_mtx_parser").parse_mtx(str(path))
-    matrices = {"M": found.mass, "K": found.stiffness}
-    return {name: matrix for name, matrix in matrices.items() if matrix is not None}
-
-
-def _filled(row: Any, column: Any, value: Any) -> Any:
-    """A sparse matrix of entries; where only one triangle is there, the other is its mirror image."""
-    size = int(max(row.max(), column.max())) + 1
-    if row.min() < 0 or column.min() < 0:
-        raise ValueError("its indices begin below 1")
-    if (row >= column).all() or (row <= column).all():
-        below = row != column
-        row, column = np.r_[row, column[below]], np.r_[column, row[below]]
-        value = np.r_[value, value[below]]
-    return sparse.coo_array((value, (row, column)), shape=(size, size)).tocsr()
-
-
-def _module(name: str) -> ModuleType:
-    """A package that is installed only for its format; how it sets NumPy's printing is undone."""
-    with np.printoptions():
-        return import_module(name)

@@ -86,7 +86,7 @@ def _compiling() -> dict[str, str]:
         "compiler": f"{' '.join(command)}: {said.strip().splitlines()[0]}",
         "makes libraries": works,
         **brought,
-        "kept in": str(where) if where else "nowhere: no safe directory of this user's",
+        "kept in": str(where) if where else f"nowhere: {native.refused() or 'no directory can be made'}",
     }
 
 

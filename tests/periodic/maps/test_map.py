@@ -155,6 +155,11 @@ def test_defects_are_raised() -> None:
         ({"Omega": [1.0]}, "grid has 'Omega', which is continued in; it must be one or the other"),
         ({"F": []}, "grid has no values for F; it must have at least one"),
         ({"F": [1.0, math.nan]}, "grid has nan for F; its values must be finite"),
+        (
+            {"F": np.arange(40_000.0), "zeta": np.arange(40_000.0)},
+            "grid has 1600000000 cells; it must have at most 1000000",
+        ),
+        ({"F": [1.0, 10**400]}, "value of F is a whole number of too many digits; it must be below 1e308"),
         ({"F": [1.0, 1.0]}, "grid has 1 for F twice; its values must be different"),
         ({"F": "12"}, "grid has '12' for F; it must be a sequence of numbers"),
         ({"F": 1.0}, "grid has 1.0 for F; it must be a sequence of numbers"),

@@ -15,6 +15,8 @@ from periodic.collocation.meshmethod import scheme_for
 
 NAN, INFINITE = math.nan, math.inf
 A_METHOD = "it must be Collocation(), Shooting(), HarmonicBalance() or Equilibrium()"
+MAGNITUDE = "from 1e-100 to 1e+100, and so their difference"
+HUGE = "a number of too many digits"
 REFUSED_TRACES = [
     ({"parameter": "speed"}, "parameter is 'speed'; it must be one of Omega, zeta, F"),
     ({"parameter": ""}, "parameter is ''; it must be one of Omega, zeta, F"),
@@ -34,6 +36,11 @@ REFUSED_TRACES = [
     ({"at": (NAN,)}, "at is nan; it must lie within the bounds 0.4 to 1.6"),
     ({"at": "0.5"}, "at is '0.5'; it must be a number"),
     ({"start": "0.5"}, "start is '0.5'; it must be a number"),
+    *(
+        ({"bounds": ends}, f"bounds of Omega are {ends}; they must be each 0 or of a magnitude {MAGNITUDE}")
+        for ends in [(0.5, 1e300), (1e-300, 2e-300), (1e300, 1e-300), (0, 5e-324), (-1.7e308, 1.0)]
+    ),
+    ({"bounds": (0.5, 10**5000)}, f"bounds of Omega are {HUGE}; they must be two different finite numbers"),
     ({"bounds": "0.5"}, "bounds of Omega are 0.5; they must be two different finite numbers"),
     ({"values": 3}, "values is 3; it must give numbers by their names"),
     ({"determined": 3}, "determined is 3; it must give conditions by their names"),

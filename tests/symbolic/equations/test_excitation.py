@@ -101,3 +101,17 @@ def test_start_of_a_coordinate_chooses_the_rest() -> None:
         x = sym.coordinate("x", start=start)
         parts = sym.Mass(x, 1.0) + sym.Spring(x, -1.0) + sym.CubicSpring(x, 1.0) + sym.Damper(x, 0.1)
         assert sym.modes(sym.compile(parts)).state[0] == pytest.approx(math.copysign(1, start), rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [100_001, "1e6", 1e300, 10**400])
+def test_orders_that_are_too_high(order: Order) -> None:
+    """Assert that a harmonic turns at most 100000 times within a turn of Omega."""
+    with pytest.raises(ValueError, match="^order is .*; it must be .*, and at most 100000$"):
+        order_of(order)
+
+
+def test_harmonics_of_a_long_common_period() -> None:
+    """Assert the same within the common period of all orders, and that the highest is taken."""
+    assert fundamental([Fraction(1), Fraction(100_000)]) == 1
+    with pytest.raises(ValueError, match="^the order 100000 turns 200000 times in the common period of all"):
+        fundamental([Fraction(1, 2), Fraction(100_000)])

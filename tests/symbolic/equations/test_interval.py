@@ -100,3 +100,23 @@ def test_unit_of_the_excitation(unit: str, value: float) -> None:
     (other, *_) = per.trace(system(), "Omega", (0.36 * np.pi, 0.4 * np.pi), start=0.4 * np.pi)
     assert point.peak_to_peak("x") == pytest.approx(other.peak_to_peak("x"), rel=1e-12)
     assert point.maximum["x"] == pytest.approx(other.maximum["x"], rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [1e300, -1e300, 1e-300, 5e-324, 1.7e308, 1e101, 0.9e-100])
+def test_numbers_at_the_ends_of_doubles(value: float) -> None:
+    """Assert that numbers whose squares or reciprocals are none are refused, in models, traces and maps."""
+    allowed = "it must be 0, or of a magnitude from 1e-100 to 1e.100$"
+    with pytest.raises(ValueError, match=f"^k3 of x is .*; {allowed}"):
+        system(sym.CubicSpring(X, value))
+    found = system(sym.CubicSpring(X, 1.0))
+    with pytest.raises(ValueError, match=f"^parameter 'k3' is .*; {allowed}"):
+        per.trace(found, "Omega", (0.5, 0.6), values={"k3": value})
+    task = per.maps.Task(found, "Omega", (0.5, 0.6), numbers={"peak": per.maps.Highest(per.PeakToPeak("x"))})
+    with pytest.raises(ValueError, match=f"^parameter 'k3' is .*; {allowed}"):
+        per.design_map(task, {"k3": [1.0, value]}, 1, store=None)
+
+
+@pytest.mark.parametrize("value", [1e100, -1e100, 1e-100, 0.0])
+def test_the_largest_and_the_least_are_taken(value: float) -> None:
+    """Assert it of a parameter's nominal value."""
+    assert {p.name: p.value for p in system(sym.CubicSpring(X, value)).parameters}["k3"] == value

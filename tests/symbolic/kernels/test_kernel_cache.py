@@ -17,7 +17,7 @@ import pytest
 from support.models import Array, duffing_parts
 
 import symbolic as sym
-from symbolic.kernels import choice, kernel, native
+from symbolic.kernels import choice, kernel, native, privacy
 from symbolic.kernels.choice import ChosenKernel, Kernels
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
@@ -131,15 +131,101 @@ def test_damaged_library_is_made_again(cache: Path, damage: str) -> None:
     assert run.compiled and right(run)
 
 
-@pytest.mark.parametrize("place", ["cache", "above"])
-def test_nothing_is_loaded_from_where_others_write(cache: Path, place: str) -> None:
-    """Assert that a directory open to others is not used, and that C does without a cache."""
+OPEN = {"cache, all": ("kernels", 0o777), "cache, group": ("kernels", 0o770), "above, all": ("", 0o757)}
+
+
+@pytest.mark.parametrize("place", [*OPEN, "above, group"])
+def test_nothing_is_loaded_from_where_others_write(
+    cache: Path, place: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Assert that a directory open to others is not used, which is told once, and that C does without."""
     made(Kernels.C)
     native.forget()
-    (cache if place == "cache" else cache.parent).chmod(0o777)
-    assert native.directory() is None
+    name, mode = OPEN.get(place, ("", 0o775))
+    (cache.parent / name).chmod(mode)
+    with caplog.at_level(logging.WARNING):
+        assert native.directory() is None
+        assert not made(Kernels.AUTO).compiled
+        assert right(made(Kernels.C)) and right(made(Kernels.C, 4.0), 4.0)
+    (said,) = [record.message for record in caplog.records]
+    assert said.endswith(f"others can write to {str(cache.parent / name).rstrip('/')!r} (mode {mode:o})")
+    assert said.startswith(f"kernels are compiled for this run alone, not kept in {str(cache)!r}: ")
+    assert native.refused() and len(list(cache.glob("*.so"))) == 1  # as it was
+
+
+def test_a_group_writes_above_with_the_sticky_bit(cache: Path) -> None:
+    """Assert that a folder like /tmp may stand above: there nobody moves what is another's."""
+    made(Kernels.C)
+    cache.parent.chmod(0o1777)
+    assert native.directory() == cache and not native.refused()
+
+
+def test_folders_are_made_for_this_user_alone(cache: Path) -> None:
+    """Assert the modes of what is made, whatever the umask gives to a group."""
+    before = os.umask(0o002)
+    try:
+        assert native.directory() == cache
+    finally:
+        os.umask(before)
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (cache, cache.parent)] == [0o700, 0o700]
+
+
+@pytest.mark.parametrize("fault", ["group", "all", "link", "pipe", "owner"])
+def test_library_that_is_not_ours_alone(cache: Path, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a library of another owner or mode, or behind a link, is made again and not loaded."""
+    made(Kernels.C)
+    (file,) = [
+        path for path in cache.glob("*.so") if path.name.startswith(native._key(made(Kernels.C).source))
+    ]
+    native.forget()
+    if fault in ("group", "all"):
+        file.chmod(0o620 if fault == "group" else 0o602)
+    elif fault == "owner":
+        monkeypatch.setattr(privacy.os, "getuid", lambda: os.geteuid() + 1)
+        assert privacy.own_bytes(file) is None
+        return
+    else:
+        content = file.read_bytes()
+        file.unlink()
+        if fault == "link":
+            (cache.parent / "elsewhere.so").write_bytes(content)
+            file.symlink_to(cache.parent / "elsewhere.so")
+        else:
+            os.mkfifo(file)
     assert not made(Kernels.AUTO).compiled
     assert right(made(Kernels.C))
+    assert stat.S_ISREG(file.lstat().st_mode) and stat.S_IMODE(file.lstat().st_mode) == 0o600
+
+
+def test_a_cache_of_another_user(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it is not used, nor any below a folder of somebody else."""
+    assert native.directory() == cache
+    uid = os.getuid()
+    monkeypatch.setattr(privacy.os, "getuid", lambda: uid + 1)
+    assert native.refused() == f"{str(cache)!r} belongs to another user"
+
+
+def test_a_temporary_directory_of_others(
+    cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that nothing is loaded from one that others can change, and what is said."""
+    made(Kernels.C)
+    native.forget()
+    cache.chmod(0o777)
+    (tmp_path / "open").mkdir()
+    (tmp_path / "open").chmod(0o777)
+    monkeypatch.setattr(native.tempfile, "tempdir", str(tmp_path / "open"))
+    with pytest.raises(native.CompilerError, match="^there is no safe place to compile in: others can write"):
+        made(Kernels.C)
+
+
+def test_shared_source_where_a_cache_is_refused(cache: Path) -> None:
+    """Assert that AUTO compiles it for this run."""
+    assert shared("numpy") is None
+    cache.mkdir(parents=True)
+    cache.chmod(0o777)
+    assert shared("auto") == 42
+    assert list(cache.iterdir()) == []
 
 
 @pytest.mark.parametrize("obstacle", ["file", "no home"])

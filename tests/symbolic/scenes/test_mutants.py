@@ -109,5 +109,5 @@ def test_no_end_of_a_file(tmp_path: Path) -> None:
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)
     for source in (str(pipe), "/dev/zero") if Path("/dev/zero").exists() else (str(pipe),):
-        with pytest.raises(InputError, match="is no regular file; it must be one of"):
+        with pytest.raises(InputError, match=r"is no regular file\); it must be one of"):
             load(source)

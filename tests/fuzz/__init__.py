@@ -1,0 +1,1 @@
+"""Files of every kind, spoilt at random: each is read, or refused in one sentence, within bounds."""
