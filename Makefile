@@ -39,7 +39,7 @@ help: ## Show this list
 run: $(VENV)/.installed ## Trace the example disc through resonance
 	$(BIN)/orbitrace trace vitrea79-810N --sweep
 
-test: $(VENV)/.installed-dev ## Run the tests (6 minutes on two cores)
+test: $(VENV)/.installed-dev ## Run the tests
 	$(PYTEST) -rs --in-c -m "not (long or $(ANY_KIND))"
 
 browser distributed faults mutated drawn grids backends studies gallery: $(VENV)/.installed-dev ## Run the tests of a kind
