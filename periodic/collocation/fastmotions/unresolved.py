@@ -25,7 +25,8 @@ def lost(system: System, orbit: Orbit) -> float:
     """Return by how much the multiplier of the least damped of such vibrations comes out too small."""
     width = orbit.grid.width
     jacobian = jacobians(system, orbit) * width[:, None, None]
-    large = np.abs(jacobian @ jacobian).sum(axis=2).max(axis=1) > FAST**2
+    with np.errstate(over="ignore", invalid="ignore"):  # what is beyond all numbers is large
+        large = ~(np.abs(jacobian @ jacobian).sum(axis=2).max(axis=1) <= FAST**2)
     if not (large.any() and np.isfinite(jacobian).all()):
         return 0.0
     exponents = np.linalg.eigvals(jacobian[large]).astype(np.complex128)

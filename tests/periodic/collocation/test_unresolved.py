@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -86,3 +88,11 @@ def test_shooting_needs_no_mesh_for_it() -> None:
     point = orbit_of(two_modes(60.25), per.Shooting(segments=4))
     assert np.abs(point.multipliers) == pytest.approx(moduli(60.25, 0.7), abs=1e-7)
     assert point.orbit.mesh.ntst < 100
+
+
+def test_rates_beyond_all_numbers() -> None:
+    """Assert that a vibration so fast and damped that its rates overflow loses nothing, and warns of none."""
+    system = two_modes(1e120)
+    values = [0.7 if p.name == "Omega" else p.value for p in system.parameters]
+    orbit = orbit_of(two_modes(3.0), per.Collocation()).orbit
+    assert lost(system, replace(orbit, parameter=np.array(values))) == 0.0

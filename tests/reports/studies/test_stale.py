@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -61,3 +62,12 @@ def test_all_pages_are_looked_at(capsys: pytest.CaptureFixture[str]) -> None:
     main()
     count = sum(len(page.sections) for page in REPORTS)
     assert f" of {count} sections of reports are not by the engine" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", REPORTS, ids=lambda page: page.name)
+def test_tests_that_a_page_names_are_there(page: Page) -> None:
+    """Assert that each test or folder of tests that a report names exists."""
+    root = Path(__file__).parents[3]
+    text = (page.folder / "README.md").read_text("utf-8")
+    for name in re.findall(r"\btests/[\w/]+(?:\.py)?", text):
+        assert (root / name).exists(), name
