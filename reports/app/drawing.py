@@ -35,7 +35,10 @@ def legend(axes: Axes) -> None:
 
 
 def write(path: Path, drawn: Figure, axes: Axes, title: str) -> None:
-    """Write a figure as a PNG file, its axes under a title in any script that is no formula."""
+    """Write a figure as a PNG file, its axes under a title in any script; no text in it is a formula."""
+    named = [label for each in drawn.axes for label in (each.xaxis.label, each.yaxis.label)]
+    for text in (*named, *(text for box in drawn.legends for text in box.get_texts())):
+        text.set_parse_math(False)
     axes.set_title(title, fontsize="medium", parse_math=False)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)

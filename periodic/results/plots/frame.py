@@ -30,7 +30,8 @@ def fresh(axes: Axes | None, size: tuple[float, float] = (7.0, 4.5)) -> Axes:
 
 def dressed(axes: Axes, across: str, up: str, *, least: int = 1) -> Axes:
     """Name the axes, draw a grid, and above the curves a legend, if as many as `least` have names."""
-    axes.set(xlabel=across, ylabel=up)
+    axes.set_xlabel(across, parse_math=False)
+    axes.set_ylabel(up, parse_math=False)
     axes.grid(alpha=0.25)
     axes.set_axisbelow(True)
     named = dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
@@ -51,6 +52,11 @@ def dressed(axes: Axes, across: str, up: str, *, least: int = 1) -> Axes:
             columnspacing=1.2,
         )
     return axes
+
+
+def plain(name: str) -> str:
+    """Return a name as the legend of a picture takes it: what stands between dollars is no formula."""
+    return name.replace("$", r"\$")
 
 
 def headroom(axes: Axes, free: float) -> None:

@@ -58,6 +58,7 @@ class Labels(Artist):
             horizontalalignment="center",
             verticalalignment="center",
             arrowprops=leader,
+            parse_math=False,
         )
         annotation.set_in_layout(False)
         self._texts.append(annotation)

@@ -41,6 +41,7 @@ def mark(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> None:
     Ends are not marked. Where a value was asked for ("UZ") there is a ring without a text, unless it has a
     name.
     """
+    from periodic.results.plots.frame import plain
     from periodic.results.plots.labels import placed
 
     named = {line.get_label() for line in axes.get_lines()}
@@ -50,7 +51,7 @@ def mark(axes: Axes, points: Iterable[tuple[str, str, float, float]]) -> None:
         sign, meaning = KINDS.get(label, ("P", event))
         text = event or label if label in ("", Label.USER, Label.END) else label
         asked = label in ("", Label.USER)
-        name = (event or "asked for") if asked else f"{label} {meaning}".strip()
+        name = plain((event or "asked for") if asked else f"{label} {meaning}".strip())
         look: dict[str, Any] = {"marker": "o", "markerfacecolor": "none"} if asked else {"marker": sign}
         axes.plot([x], [y], color="black", linestyle="None", markersize=5.0, zorder=3, **look)
         axes.get_lines()[-1].set_label("" if name in named else name)

@@ -9,7 +9,7 @@ import numpy as np
 
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
-from periodic.results.plots.frame import dressed, fresh
+from periodic.results.plots.frame import dressed, fresh, plain
 from periodic.results.plots.units import Shown, Units, quantities
 from periodic.results.point import Point
 
@@ -66,7 +66,7 @@ def plot_orbit(
             )
     clock, axes = shown.unit("time", found.period), fresh(axes)
     for name, values in signals.items():
-        axes.plot(times / clock.size, values / unit.size, linewidth=1.8, label=name)
+        axes.plot(times / clock.size, values / unit.size, linewidth=1.8, label=plain(name))
     for phase in np.unique(np.mod(found.phases, found.mesh.period)):
         axes.axvline(
             phase / found.omega / clock.size, color="black", alpha=0.35, linewidth=0.7, linestyle=":"

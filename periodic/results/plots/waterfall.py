@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from periodic.results.branch import Branch
-from periodic.results.plots.frame import dressed, fresh
+from periodic.results.plots.frame import dressed, fresh, plain
 from periodic.results.plots.orbitplots import shown_of, spectrum
 from periodic.results.plots.units import Units
 
@@ -76,7 +76,7 @@ def plot_waterfall(
         drawn = axes.vlines(frequencies, base, tips, color=color, linewidth=1.4)
         drawn.set_label("" if stable in named else "stable" if stable else "unstable")
         named.add(stable)
-    axes.plot([], [], " ", label=f"longest line: {largest / unit.size:.3g} {unit.text}".rstrip())
+    axes.plot([], [], " ", label=plain(f"longest line: {largest / unit.size:.3g} {unit.text}".rstrip()))
     axes.set_xlim(left=0)
     return dressed(axes, f"frequency of {signal} (Hz)", across.label(branch.parameter))
 
