@@ -17,7 +17,7 @@ REINSTALL = "`pip install --force-reinstall --no-deps orbitrace`"
 
 
 def foreign(name: str) -> str:
-    """Return a sentence about another project's package of this name; empty where it is ours.
+    """Return a sentence about another project's package of this name; empty if ours or none is there.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def foreign(name: str) -> str:
     if file is not None and Path(file).is_file() and MARK in Path(file).read_bytes():
         return ""
     if found is None:
-        return f"{name} is missing; {REINSTALL}"
+        return ""
     where = file or next(iter(found.submodule_search_locations or ()), "?")
     if {"site-packages", "dist-packages"} & set(Path(where).parts):
         return f"{name} is another project's ({where}); `pip uninstall {name}`, then {REINSTALL}"

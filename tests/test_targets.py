@@ -41,8 +41,8 @@ def test_ci_runs_it(target: str) -> None:
 
 def test_expressions_leave_nothing_out() -> None:
     """Assert that what `make test` does not run is what `make apart` runs, long studies aside."""
-    assert '$(PYTEST) --in-c -m "not (long or $(ANY_KIND))"' in MAKEFILE
-    assert '$(PYTEST) --in-c -m "($(ANY_KIND)) and not long"' in MAKEFILE
+    assert '$(PYTEST) -rs --in-c -m "not (long or $(ANY_KIND))"' in MAKEFILE
+    assert '$(PYTEST) -rs --in-c -m "($(ANY_KIND)) and not long"' in MAKEFILE
 
 
 def test_rooms_run_with_both_back_ends() -> None:
