@@ -23,9 +23,11 @@ import periodic as per  # noqa: E402
 from periodic.tracing import trace as tracing  # noqa: E402
 from symbolic.kernels import native  # noqa: E402
 
-# A shell has Ctrl-C ignored in what it runs in the background; tests that send it need it heard.
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+# A shell has Ctrl-C ignored in what it runs in the background, and nohup a terminal that closes; tests that
+# send these need them heard.
+for number, heard in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, signal.SIG_DFL)):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        signal.signal(number, heard)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

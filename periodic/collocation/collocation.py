@@ -21,14 +21,15 @@ from periodic.correction.condition import SideCondition
 from periodic.correction.discretisation import Discretisation
 from periodic.correction.error import UNKNOWN, ErrorEstimate, Halving, deferred
 from periodic.correction.newton import Correction, Equations, LinearisedEquations, NewtonSettings, in_order
-from periodic.correction.outcome import EventsCrossedError
+from periodic.correction.outcome import FAILURES, EventsCrossedError
 from periodic.correction.problem import Problem
 from periodic.correction.refinement import Refinement
-from periodic.events import eventnodes, impacts
+from periodic.events import eventnodes, impacts, motions
 from periodic.events.eventnodes import Crossing, KinkSettings
 from periodic.events.eventrows import event_rows
-from periodic.events.modes import of_held, relays
+from periodic.events.modes import inconsistency, of_held, relays
 from periodic.events.resting import bounced, lengthened, neglected
+from periodic.events.rewrites.untouched import untouched
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
@@ -157,6 +158,19 @@ class Collocation(MeshMethod):
         unresolved = lost(system, orbit) if found.unresolved else 0.0
         multiplier = max(error.multiplier, unresolved, missing, rounding)
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
+
+    def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
+        """Return the mesh with the events of the orbit's own motion; None where one of them touches."""
+        if impacts.tied(system, orbit):
+            return None
+        try:
+            nodes = motions.passed(system, orbit, motions.FOLLOWED)
+        except FAILURES:
+            return None
+        own = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
+        if nodes is None or not untouched(system, own, nodes, orbit.mesh.period):
+            return None
+        return None if inconsistency(system, [event for event, _ in nodes]) else self.with_nodes(orbit, nodes)
 
     def settles(self, system: System) -> bool:
         """Return whether motions may stick or relays switch, whose modes integration in time finds."""

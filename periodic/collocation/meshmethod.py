@@ -24,13 +24,11 @@ from periodic.correction.newton import Correction
 from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import eventnodes, motions
 from periodic.events.eventnodes import KinkSettings
-from periodic.events.impacts import tied
-from periodic.events.modes import completed, group, inconsistency, of_held, of_kind, relays
+from periodic.events.modes import completed, group, of_held, of_kind, relays
 from periodic.events.relaypassages import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.rewrites.permuted import permuted
 from periodic.events.rewrites.sites import Node
-from periodic.events.rewrites.untouched import untouched
 from periodic.events.violations import Breach, Violation, refusals, violations, word
 from periodic.linear.operator import LinearSolver
 from periodic.linear.variation import Variations
@@ -156,23 +154,10 @@ class MeshMethod(Discretisation):
     def reordered(self, system: System, orbit: Orbit, phases: Array) -> tuple[Mesh, Array] | None:
         """Return the mesh with the event nodes in their new order; None where that is no series of swaps."""
         nodes = permuted(system, orbit, phases)
-        return None if nodes is None else self._with(orbit, nodes)
+        return None if nodes is None else self.with_nodes(orbit, nodes)
 
-    def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
-        """Return the mesh with the events of the orbit's own motion; None where one of them touches."""
-        if tied(system, orbit):
-            return None
-        try:
-            nodes = motions.passed(system, orbit, motions.FOLLOWED)
-        except FAILURES:
-            return None
-        own = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
-        if nodes is None or not untouched(system, own, nodes, orbit.mesh.period):
-            return None
-        return None if inconsistency(system, [event for event, _ in nodes]) else self._with(orbit, nodes)
-
-    def _with(self, orbit: Orbit, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
-        """The mesh of an orbit with other event nodes, and their phases."""
+    def with_nodes(self, orbit: Orbit, nodes: Sequence[Node]) -> tuple[Mesh, Array]:
+        """Return the mesh of an orbit with other event nodes, and their phases."""
         events, places = tuple(event for event, _ in nodes), np.array([place for _, place in nodes])
         return redistribute(orbit, orbit.mesh.ntst, events, places, self.shortest), places
 

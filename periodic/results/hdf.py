@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 SLACK = 100_000
 """Bytes that texts may take more in memory than in a file; numbers are not packed."""
 
+NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable"
+"""How the name of a dimension's scale begins that is no variable."""
+
 FILTERS = {1, 2, 3}
 """Deflate, shuffle and Fletcher's checksum: those that the HDF5 library has in itself."""
 
@@ -72,9 +75,20 @@ def _check(file: Any, most: int) -> None:
             raise DamagedError("it leads into other files")
         if not {made.get_filter(k)[0] for k in range(made.get_nfilters())} <= FILTERS:
             raise DamagedError("it is compressed in a way that needs another library")
-        size += math.prod(array.shape or ()) * array.dtype.itemsize + _said(array.attrs)
+        size += _said(array.attrs) + (0 if _length_only(array) else _bytes(array))
         if size > most:
             raise DamagedError("it is too short for its arrays")
+
+
+def _bytes(array: Any) -> int:
+    """How many bytes an array takes in memory."""
+    return int(math.prod(array.shape or ()) * array.dtype.itemsize)
+
+
+def _length_only(array: Any) -> bool:
+    """Whether an array stands for a dimension's length, by netCDF's convention: without data, and not read."""
+    name = array.attrs.get("NAME", b"")
+    return isinstance(name, bytes) and name.startswith(NO_VARIABLE) and not array.id.get_storage_size()
 
 
 def _said(attributes: Any) -> int:

@@ -20,6 +20,7 @@ from periodic.correction.solver import Solver
 from periodic.orbit.orbit import LEAST_SPAN
 from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
+from periodic.system.precision import CONVERGED
 
 
 def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | None:
@@ -52,11 +53,28 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     if not back.ok or not np.isfinite(back.error.motion):
         return None
     allowed = AT_WORST * (back.error.orbit + new.error.orbit) * max(new.orbit.span(), LEAST_SPAN)
-    if distance(solver.problem, new.orbit, back.orbit) > allowed:
+    if distance(solver.problem, new.orbit, back.orbit) > allowed or not _one(solver, new, back):
         return None
     turn = _turn(points)
     assert turn is not None
     return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
+
+
+def _one(solver: Solver, new: Solution, back: Solution) -> bool:
+    """Whether two orbits that agree within their errors are one: on one mesh Newton leads both to the same.
+
+    Sheets that lie nearer to each other than their errors, as at a low accuracy, are two there too.
+    """
+    if new.orbit.mesh.events != back.orbit.mesh.events:
+        return False
+    newton = solver.tolerance.newton
+    close = replace(newton, tolerance=min(CONVERGED, newton.tolerance), close=0.0)
+    sign = float(np.sign(new.tangent.parameter))
+    guesses = [next(solver.transfers(new.orbit, back.orbit.mesh, new.orbit.phases), None), back.orbit]
+    each = [solver.at_parameter(guess, sign, close) for guess in guesses if guess is not None]
+    allowed = np.sqrt(CONVERGED) * max(new.orbit.span(), LEAST_SPAN)
+    ok = len(each) == 2 and all(found.ok for found in each)
+    return ok and distance(solver.problem, each[0].orbit, each[1].orbit) <= allowed
 
 
 def _turn(points: Sequence[Point]) -> int | None:

@@ -31,10 +31,6 @@ class WordError(RejectedError):
     """A step to an orbit that violates its word."""
 
 
-class UnsolvedError(RejectedError):
-    """A step at whose end Newton found no orbit."""
-
-
 class BeyondError(RejectedError):
     """A step to an orbit that the method's finest mesh does not resolve."""
 
@@ -143,7 +139,7 @@ class Stepper:
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
             where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
-            raise UnsolvedError(f"{new.outcome.value}{where}")
+            raise RejectedError(f"{new.outcome.value}{where}")
         found = method.change(system, base.orbit, new.orbit)
         if found is None or not found.strict:
             return new, None

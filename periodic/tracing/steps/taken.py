@@ -25,7 +25,7 @@ from periodic.results.stop import Reason, Stop
 from periodic.tracing.state import State
 from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, standing
-from periodic.tracing.steps.stepper import BeyondError, Stepper, UnsolvedError, WordError
+from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
 from periodic.tracing.steps.stepsize import ArclengthControl
 
 NEARLY = 1e-2
@@ -106,7 +106,6 @@ class Steps:
         over = self._over_changes(base, ds, sought)
         if over is not None:
             return over
-        failed = 0
         longest = np.inf  # the next step is no longer where a longer one has just failed
         while True:
             try:
@@ -120,11 +119,10 @@ class Steps:
                 )
                 return Step(new, further, found, self._course(base, length), tried.change, ds)
             except RejectedError as rejected:
-                failed = failed + 1 if isinstance(rejected, UnsolvedError) and base.orbit.mesh.events else 0
                 beyond = isinstance(rejected, BeyondError)
                 unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
-                longest = ds = shortened(ds, rejected.shorter, failed, least)
+                longest = ds = ds * rejected.shorter
                 if unread or not ds >= least:
                     reason = Reason.INACCURATE if beyond else Reason.SMALL_STEP
                     return Refused(Stop(reason, str(rejected)), unread)
@@ -177,13 +175,3 @@ class Steps:
     @cached_property
     def _stepper(self) -> Stepper:
         return Stepper(self.solver, self.control)
-
-
-def shortened(ds: float, shorter: float, failed: int, least: float) -> float:
-    """Return the step to be tried after one that was rejected, Newton having failed so often in a row.
-
-    Beside events that meet segments grow as roots of the way along the branch: a step that Newton follows may
-    be shorter by decades. So each further failure shortens by one more power; none passes the least step.
-    """
-    found = ds * shorter ** max(failed, 1)
-    return least if found < least <= ds * shorter else found

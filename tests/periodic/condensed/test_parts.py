@@ -124,8 +124,9 @@ def test_slips_of_one_step_are_errors_of_time_steps() -> None:
     """Assert that a slip of one step is left out, and one of two steps is kept."""
     slip = [Changed(0, STUCK, 1, 1.0, 10), Changed(0, 1, STUCK, 1.1, 11)]
     longer = [Changed(0, STUCK, 1, 2.0, 20), Changed(0, 1, STUCK, 2.2, 22)]
-    joint = SimpleNamespace(index=0, slides=True, up=0, down=1, column=0)
-    motion: Any = SimpleNamespace(events=[*slip, *longer], joints=[joint])
+    joint = SimpleNamespace(index=0, slides=True, switch=0, up=0, down=1, column=0)
+    sides = [np.zeros(1)] * 24
+    motion: Any = SimpleNamespace(events=[*slip, *longer], joints=[joint], sides=sides, system=None)
     assert settling._lasting(motion) == longer
 
 
@@ -134,7 +135,7 @@ def test_slips_of_one_step_are_errors_of_time_steps() -> None:
 )
 def test_stops_of_one_step_where_the_motion_passes(limits: tuple[float, float], passes: bool) -> None:
     """Assert that a stop is a passage where rates on both sides have one sign, or nothing."""
-    joint = SimpleNamespace(index=0, slides=True, up=0, down=1, column=0)
+    joint = SimpleNamespace(index=0, slides=True, switch=0, up=0, down=1, column=0)
     stop, over, back = (
         Changed(0, 1, STUCK, 1.0, 0),
         Changed(0, STUCK, -1, 1.1, 1),
@@ -147,6 +148,7 @@ def test_stops_of_one_step_where_the_motion_passes(limits: tuple[float, float], 
             states=[None] * 3,
             phase=np.zeros(3),
             sides=[np.zeros(1)] * 3,
+            system=None,
             values=lambda *_: list(limits),
         )
         assert settling._lasting(motion) == (left if passes else [stop, release])

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from periodic.condensed.timestepping import Holding, Step, _width
+from periodic.condensed.timestepping import Holding, Step
 
 
 @pytest.mark.parametrize("exponent", [0.0, -2.0, complex(-0.1, 3.0)])
@@ -46,8 +46,3 @@ def test_holding_over_steps_of_two_lengths() -> None:
     now, before = Holding(1.0, np.array([0.9])), Holding(3.0, np.array([0.5]))
     assert not now.gives_way(before)  # 0.9 + 0.4 / 4 = 1.0
     assert Holding(1.0, np.array([0.91])).gives_way(before)
-
-
-def test_widths_that_differ_in_the_last_digits_are_one() -> None:
-    """Assert ten digits."""
-    assert _width(0.1 + 1e-12) == _width(0.1) != _width(0.1 + 1e-10)

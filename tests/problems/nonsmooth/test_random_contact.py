@@ -29,7 +29,7 @@ from periodic.events.rewrites.table import REVERSAL
 from periodic.orbit.orbit import Orbit
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System
-from periodic.tracing import continuation
+from periodic.tracing.steps import taken
 
 
 def wrong(case: Case, branch: per.Branch, seed: int) -> list[str]:
@@ -173,7 +173,7 @@ def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: py
     Also where the touch that is foreseen within it, which is its end, is not known to be that.
     """
     case = drawn("chains", 1019)
-    monkeypatch.setattr(continuation, "special_points", _never_final)
+    monkeypatch.setattr(taken, "special_points", _never_final)
     if ends_below is not None:
         monkeypatch.setattr(per.Collocation, "ends_below", ends_below)
     branch = traced(case)
