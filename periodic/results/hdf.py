@@ -86,7 +86,7 @@ def _bytes(array: Any) -> int:
 
 
 def _length_only(array: Any) -> bool:
-    """Whether an array stands for a dimension's length, by netCDF's convention: without data, and not read."""
+    """Whether an array is netCDF's mark of a dimension's length: it has no data, and is not read."""
     name = array.attrs.get("NAME", b"")
     return isinstance(name, bytes) and name.startswith(NO_VARIABLE) and not array.id.get_storage_size()
 
