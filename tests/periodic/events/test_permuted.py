@@ -9,7 +9,6 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.meshmethod import MeshMethod
 from periodic.correction.predictor import spaced
 from periodic.events.rewrites.permuted import permuted
 from periodic.orbit.orbit import Orbit
@@ -45,7 +44,7 @@ def test_one_step_over_two_swaps(rubbing: sym.CompiledSystem, branch: per.Branch
     assert len(over) >= 2
     with pytest.MonkeyPatch.context() as patched:
         for way in ("reordered", "rewritten"):
-            patched.setattr(MeshMethod, way, lambda *given: None)
+            patched.setattr(per.Collocation, way, lambda *given: None)
         stopping = per.trace(rubbing, "Omega", (0.4, 0.6), start=0.4, tol=1e-6, at=(0.49,))
     assert len(branch) < len(stopping)
     assert branch.stop == stopping.stop

@@ -9,7 +9,6 @@ import pytest
 
 import periodic as per
 import symbolic as sym
-from periodic.collocation.meshmethod import MeshMethod
 from periodic.events.rewrites.sites import Node
 from periodic.events.rewrites.untouched import untouched
 from periodic.orbit.mesh import EventNode
@@ -87,7 +86,7 @@ def test_steps_over_sticks_that_begin(rubbing: sym.CompiledSystem) -> None:
     bounds, at = (0.5, 0.62), (0.6,)
     branch = per.trace(rubbing, "Omega", bounds, start=0.62, tol=1e-6, at=at)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(MeshMethod, "rewritten", lambda *given: None)
+        patched.setattr(per.Collocation, "rewritten", lambda *given: None)
         stopping = per.trace(rubbing, "Omega", bounds, start=0.62, tol=1e-6, at=at)
     both = [[len(point.orbit.mesh.events) for point in b] for b in (branch, stopping)]
     assert len(branch) < len(stopping) and both[0][0] == both[1][0] and both[0][-1] == both[1][-1]
