@@ -26,6 +26,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
+from periodic.tracing.steps.foresight import Foresight
 from periodic.tracing.steps.stepbounds import bound_ratios
 from periodic.tracing.steps.stepsize import ArclengthControl
 
@@ -43,14 +44,14 @@ class Over:
 
 
 def over_changes(
-    solver: Solver, control: ArclengthControl, base: Solution, ds: float, course: Course
+    foresight: Foresight, control: ArclengthControl, base: Solution, ds: float, course: Course
 ) -> Over | None:
     """Return the end of a step in which the word changes without a touch, if there is one.
 
     Parameters
     ----------
-    solver : Solver
-        The problem and how it is solved.
+    foresight : Foresight
+        What tells changes of pattern ahead, of the solver.
     control : ArclengthControl
         The bounds of a step.
     base : Solution
@@ -65,9 +66,10 @@ def over_changes(
     Over or None
         None where the step is to be taken in parts.
     """
-    if solver.problem.free != (solver.problem.index,) or not base.orbit.mesh.events:
+    problem = foresight.solver.problem
+    if problem.free != (problem.index,) or not base.orbit.mesh.events:
         return None
-    way = _Way(solver, control, base, {0.0: base})
+    way = _Way(foresight, control, base, {0.0: base})
     for part in PARTS:
         if not way.changes(part * ds):
             return None
@@ -85,18 +87,22 @@ class _Way:
     has led to an orbit that is only too far off.
     """
 
-    solver: Solver
+    foresight: Foresight
     control: ArclengthControl
     base: Solution
     known: dict[float, Solution]
     read: bool = True
 
+    @property
+    def solver(self) -> Solver:
+        """The problem and how it is solved."""
+        return self.foresight.solver
+
     def changes(self, distance: float) -> bool:
         """Whether the word changes within a distance, and not by a touch as far as is foreseen."""
-        guess = tangent(self.solver.problem, self.base, distance)
-        if not in_order(guess):
+        if not in_order(tangent(self.solver.problem, self.base, distance)):
             return True
-        change = self.solver.discretisation.change(self.solver.problem.system, self.base.orbit, guess)
+        change = self.foresight.change(self.base, distance)
         return change is not None and not change.touches
 
     def over(self, ds: float, course: Course) -> Over | None:

@@ -45,10 +45,8 @@ class Reached:
     change: Change
 
 
-def standing(solver: Solver, base: Solution, ds: float) -> Reached | None:
-    """Return the base itself as the end of a step, where a switch touches that it would pass."""
-    guess = tangent(solver.problem, base, ds)
-    change = solver.discretisation.change(solver.problem.system, base.orbit, guess)
+def standing(base: Solution, change: Change | None) -> Reached | None:
+    """Return the base itself as the end of a step, where a switch touches that would pass in it."""
     if change is None or not change.strict or change.part > CONVERGED:
         return None
     return Reached(base, 0.0, change)

@@ -19,6 +19,7 @@ from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
 from periodic.refinement.adaptation import carried, is_refined, refined, remeshed
 from periodic.tracing.collapse import collapsed
+from periodic.tracing.steps.foresight import Foresight
 from periodic.tracing.steps.patternchange import Reached, reached
 from periodic.tracing.steps.stepbounds import bound_ratios
 from periodic.tracing.steps.stepsize import ArclengthControl
@@ -57,10 +58,13 @@ class Stepper:
         The problem and how it is solved.
     control : ArclengthControl
         Step control.
+    foresight : Foresight
+        What tells changes of pattern ahead.
     """
 
     solver: Solver
     control: ArclengthControl
+    foresight: Foresight
 
     def step(self, base: Solution, ds: float) -> Attempt:
         """Take one step.
@@ -129,13 +133,12 @@ class Stepper:
     def _end(self, base: Solution, ds: float) -> tuple[Solution, Reached | None]:
         """The end of a step, and the change of pattern that it ends at, foreseen or found."""
         solver, system, method = self.solver, self.solver.problem.system, self.solver.discretisation
-        guess = tangent(solver.problem, base, ds)
-        foreseen = method.change(system, base.orbit, guess)
+        foreseen = self.foresight.change(base, ds)
         if foreseen is not None:
             at = reached(solver, base, None, ds, foreseen)
             if at is not None:
                 return at.end, at
-        guess = spaced(base.orbit, guess)
+        guess = spaced(base.orbit, tangent(solver.problem, base, ds))
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
             where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""

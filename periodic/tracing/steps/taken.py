@@ -23,6 +23,7 @@ from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.results.stop import Reason, Stop
 from periodic.tracing.state import State
+from periodic.tracing.steps.foresight import Foresight
 from periodic.tracing.steps.overchanges import over_changes
 from periodic.tracing.steps.patternchange import Reached, standing
 from periodic.tracing.steps.stepper import BeyondError, Stepper, WordError
@@ -100,7 +101,7 @@ class Steps:
         ds, begin, origin = state.ds, state.begun.value, base
         control = self.control.down_to(state.least)
         sought = Sought(self._values(begin), state.last.value, self.tests, state.course)
-        at_grazing = standing(self.solver, base, ds) if state.steps == 0 else None
+        at_grazing = standing(base, self._foresight.change(base, ds)) if state.steps == 0 else None
         if at_grazing is not None:
             return Step(base, ds, [], Course(), at_grazing)
         over = self._over_changes(base, ds, sought)
@@ -131,7 +132,7 @@ class Steps:
         """A step in which the word changes and nothing is to be located, if it is one."""
         if sought.tests:
             return None
-        over = over_changes(self.solver, self.control, base, ds, sought.course)
+        over = over_changes(self._foresight, self.control, base, ds, sought.course)
         if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
             return None
         if self.unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
@@ -174,4 +175,8 @@ class Steps:
 
     @cached_property
     def _stepper(self) -> Stepper:
-        return Stepper(self.solver, self.control)
+        return Stepper(self.solver, self.control, self._foresight)
+
+    @cached_property
+    def _foresight(self) -> Foresight:
+        return Foresight(self.solver)

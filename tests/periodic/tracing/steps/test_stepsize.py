@@ -13,7 +13,7 @@ from support.surfaces import along
 from periodic.orbit.mesh import EventNode
 from periodic.tracing import collapse
 from periodic.tracing.continuation import Continuation
-from periodic.tracing.steps import leveltest, overchanges, stepbounds
+from periodic.tracing.steps import foresight, leveltest, overchanges, stepbounds
 from periodic.tracing.steps.stepsize import ArclengthControl, rounded
 from periodic.tracing.steps.taken import NEARLY, Steps
 from periodic.tracing.steps.wayacross import matched
@@ -125,21 +125,22 @@ def test_steps_over_changes_are_tried_in_halves(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(overchanges._Way, "over", over)
     monkeypatch.setattr(overchanges._Way, "changes", lambda way, ds: ds > 0.01)
-    solver: Any = SimpleNamespace(problem=SimpleNamespace(free=(0,), index=0))
+    problem = SimpleNamespace(free=(0,), index=0)
+    ahead: Any = SimpleNamespace(solver=SimpleNamespace(problem=problem))
     base: Any = SimpleNamespace(orbit=SimpleNamespace(mesh=SimpleNamespace(events=(1,))))
     given: Any = None
-    assert overchanges.over_changes(solver, given, base, 0.4, given) == "over"
+    assert overchanges.over_changes(ahead, given, base, 0.4, given) == "over"
     assert tried == [0.4, 0.2, 0.1]
     tried.clear()
-    assert overchanges.over_changes(solver, given, base, 0.2, given) == "over" and tried == [0.2, 0.1]
+    assert overchanges.over_changes(ahead, given, base, 0.2, given) == "over" and tried == [0.2, 0.1]
     tried.clear()
-    assert overchanges.over_changes(solver, given, base, 1.0, given) is None and tried == [1.0, 0.5, 0.25]
+    assert overchanges.over_changes(ahead, given, base, 1.0, given) is None and tried == [1.0, 0.5, 0.25]
     tried.clear()
-    assert overchanges.over_changes(solver, given, base, 0.01, given) is None and not tried
-    solver.problem.free = (0, 1)
-    assert overchanges.over_changes(solver, given, base, 0.2, given) is None
-    base.orbit.mesh.events, solver.problem.free = (), (0,)
-    assert overchanges.over_changes(solver, given, base, 0.2, given) is None
+    assert overchanges.over_changes(ahead, given, base, 0.01, given) is None and not tried
+    problem.free = (0, 1)
+    assert overchanges.over_changes(ahead, given, base, 0.2, given) is None
+    base.orbit.mesh.events, problem.free = (), (0,)
+    assert overchanges.over_changes(ahead, given, base, 0.2, given) is None
 
 
 @pytest.mark.parametrize(
@@ -208,3 +209,23 @@ def test_step_beyond_a_change(
     assert own.state["ds"] == pytest.approx(ds, rel=1e-14)
     assert own.state["least"] == pytest.approx(least, rel=1e-14)
     assert (own.state["last"], own.state["kept"]) == (found.solution, 1)
+
+
+def test_what_is_foreseen_is_read_once() -> None:
+    """Assert that a second question for the same base and length reads nothing, and another one does."""
+    asked: list[float] = []
+
+    def change(system: Any, orbit: Any, guess: float) -> str:
+        asked.append(guess)
+        return f"change at {guess}"
+
+    solver: Any = SimpleNamespace(
+        problem=SimpleNamespace(system=None), discretisation=SimpleNamespace(change=change)
+    )
+    ahead = foresight.Foresight(solver)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(foresight, "tangent", lambda problem, base, ds: ds)
+        base, other = (SimpleNamespace(orbit=None) for _ in range(2))
+        said = [ahead.change(at, ds) for at, ds in ((base, 0.1), (base, 0.1), (base, 0.2), (other, 0.2))]
+    assert said == ["change at 0.1", "change at 0.1", "change at 0.2", "change at 0.2"]
+    assert asked == [0.1, 0.2, 0.2]
