@@ -20,6 +20,7 @@ from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
+from periodic.system.precision import SMALLEST
 
 CROSSING = {Label.FOLD: 1, Label.DOUBLING: 1, Label.BRANCH: 1, Label.TORUS: 2, Label.HOPF: 2}
 """How many multipliers pass the unit circle, or eigenvalues the imaginary axis, at special points."""
@@ -118,7 +119,7 @@ class Entry:
 
 def growth(multipliers: Complex, equilibrium: bool) -> np.ndarray:
     """Return log |mu|, or of an equilibrium the real parts over the largest eigenvalue."""
-    size, tiny = np.abs(multipliers), float(np.finfo(float).tiny)
+    size, tiny = np.abs(multipliers), SMALLEST
     if equilibrium:
         return multipliers.real / max(float(size.max(initial=0.0)), tiny)
     return np.log(np.maximum(size, tiny))

@@ -13,7 +13,7 @@ from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
 from periodic.stability.winding import meetings
-from periodic.system.precision import LARGEST
+from periodic.system.precision import LARGEST, SMALLEST
 
 
 def noise(solution: Solution) -> float:
@@ -48,7 +48,7 @@ def _products(found: Complex) -> Complex:
     sizes = np.abs(found)
     if sizes.max(initial=0.0) <= np.sqrt(LARGEST):
         return np.asarray(found[first] * found[second])
-    known = np.maximum(sizes, np.finfo(float).tiny)
+    known = np.maximum(sizes, SMALLEST)
     logarithms, phases = np.log(known), found / known
     both = np.minimum(logarithms[first] + logarithms[second], np.log(LARGEST))
     return np.asarray(phases[first] * phases[second] * np.exp(both))

@@ -20,6 +20,7 @@ from periodic.linear.unknowns import Increment
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
+from periodic.system.precision import EPSILON
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class CondensedOperator:
         """Estimate of the states' relative rounding error: that of the phase of the fastest mode."""
         response = self.given.response
         turned = float(np.abs(response.modes.exponents).max(initial=0.0)) * response.period
-        return float(np.finfo(float).eps * turned * np.sqrt(self.orbit.mesh.ntst))
+        return float(EPSILON * turned * np.sqrt(self.orbit.mesh.ntst))
 
     @cached_property
     def system(self) -> Coupled:

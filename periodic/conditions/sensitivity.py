@@ -17,6 +17,7 @@ from periodic.orbit.construction import as_read_by
 from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.orbit.row import Row
 from periodic.system import System, index_of
+from periodic.system.precision import SMALLEST
 
 FARTHEST_MOVE = 1e-3
 """How far Newton's step may lead from an orbit, in parts of its peak to peak and of what is determined."""
@@ -86,7 +87,7 @@ def _check_met(orbit: Orbit, step: Increment, determined: Sequence[str]) -> None
     """Refuse an orbit that Newton's step still moves: it fulfils its equations or conditions elsewhere."""
     for name, change in zip(determined, step.parameters, strict=False):
         value = orbit.parameters[name]
-        if not abs(change) <= FARTHEST_MOVE * max(abs(value), np.finfo(float).tiny):
+        if not abs(change) <= FARTHEST_MOVE * max(abs(value), SMALLEST):
             raise ValueError(
                 f"{name} of the orbit is {value:.6g}, where its condition is not met; the orbit must be one "
                 f"that trace found with it (a labelled point, or determined={{{name!r}: ...}})"

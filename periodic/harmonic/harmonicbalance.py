@@ -30,6 +30,7 @@ from periodic.orbit.shallow import shallow
 from periodic.refinement.demand import AIM
 from periodic.stability.multipliers import Spectrum
 from periodic.system import System, check_continuous
+from periodic.system.precision import SMALLEST
 
 WAYS = (1.0, 0.5, 0.25)
 """Parts of the way from the present to the needed number of harmonics, tried in turn."""
@@ -219,7 +220,7 @@ def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
     present, amplitudes = orbit.harmonics, orbit.amplitudes
     if not np.isfinite(error):
         return 2 * present
-    floor = np.finfo(float).tiny
+    floor = SMALLEST
     top, last = amplitudes.max(), max(float(amplitudes[-max(present // 4, min(2, present)) :].max()), floor)
     rate = max(float(np.log(max(top, floor) / last)) / present, 0.01)
     change = np.log(max(error, floor) / goal) / rate

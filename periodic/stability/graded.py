@@ -21,7 +21,7 @@ from periodic.linear.bordering import GROWTH
 from periodic.orbit.scheme import Array
 from periodic.stability.multipliers import LOST_FLOW, Complex, Spectrum
 from periodic.stability.product import MULTIPLIED_UP, multipliers
-from periodic.system.precision import EPSILON
+from periodic.system.precision import EPSILON, SMALLEST
 
 
 @runtime_checkable
@@ -108,4 +108,4 @@ def _stray(steps: Array, flow: Array) -> float:
     """How far the flow at a joint is from what its step makes of that before it, relative to it."""
     brought = np.einsum("jnm,jm->jn", steps, flow[:-1])
     apart = np.linalg.norm(brought - flow[1:], axis=1)
-    return float((apart / np.maximum(np.linalg.norm(flow[1:], axis=1), np.finfo(float).tiny)).max())
+    return float((apart / np.maximum(np.linalg.norm(flow[1:], axis=1), SMALLEST)).max())

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from periodic.linear.unknowns import Increment
 from periodic.orbit.scheme import Array
-from periodic.system.precision import CONVERGED
+from periodic.system.precision import CONVERGED, SMALLEST
 
 Complex = NDArray[np.complex128]
 
@@ -246,10 +246,6 @@ def apart(one: Array, two: Array) -> float:
     first = abs(two.trace() - one.trace())
     second = abs(np.vdot(two, two.T) - np.vdot(one, one.T)) / 2
     return float(max(first, second))
-
-
-SMALLEST = float(np.finfo(float).tiny)
-"""Length below which nothing is left of a motion."""
 
 
 def _rotations(begin: Complex, end: Complex) -> Array:

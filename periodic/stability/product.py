@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from periodic.orbit.scheme import Array
-from periodic.system.precision import EPSILON, LARGEST
+from periodic.system.precision import EPSILON, LARGEST, SMALLEST
 
 APART = np.log(100.0)
 """Multipliers whose moduli differ by this factor (a logarithm) belong to different blocks."""
@@ -32,9 +32,6 @@ SETTLED = 1e-11
 
 TURNING = SETTLED**0.5
 """What is left there for good where blocks are one: of a pair that turns. What is less is rounding."""
-
-TINY = float(np.finfo(float).tiny)
-"""What grows by less in an interval is gone, as where a motion begins to stick."""
 
 LARGEST_LOGARITHM = np.log(LARGEST)
 """Larger multipliers (a logarithm) are given as this one."""
@@ -56,7 +53,7 @@ def multipliers(steps: Array, known: float = EPSILON) -> NDArray[np.complex128]:
             basis, packed[j] = _orthogonal(step @ basis)
         triangles = np.triu(packed)
         sizes = np.abs(np.diagonal(triangles, axis1=1, axis2=2))
-        growth = np.log(np.maximum(sizes, TINY)).sum(axis=0)
+        growth = np.log(np.maximum(sizes, SMALLEST)).sum(axis=0)
         turn = begun.T @ basis
         cuts = np.flatnonzero(growth[:-1] - growth[1:] > APART) + 1
         below = np.array([np.abs(turn[cut:, :cut]).max() for cut in cuts])
@@ -95,17 +92,17 @@ def _joined(steps: Array) -> Array:
 def _of_block(factors: Array, turn: Array) -> NDArray[np.complex128]:
     """Eigenvalues of turn @ factors[-1] ... factors[0], largest modulus first."""
     if len(turn) == 1:
-        sizes = np.maximum(np.abs(factors[:, 0, 0]), TINY)
+        sizes = np.maximum(np.abs(factors[:, 0, 0]), SMALLEST)
         total = float(np.log(sizes).sum())
         sign = turn[0, 0] * np.prod(np.sign(factors[:, 0, 0]))
         return np.array([sign * np.exp(min(total, LARGEST_LOGARITHM))], dtype=np.complex128)
     product, logarithm = np.eye(len(turn)), 0.0
     for factor in factors:
         product = factor @ product
-        size = max(float(np.abs(product).max()), TINY)
+        size = max(float(np.abs(product).max()), SMALLEST)
         product, logarithm = product / size, logarithm + float(np.log(size))
     values = np.linalg.eigvals(turn @ product)
     sizes = np.abs(values)
-    known = np.log(np.maximum(sizes, TINY)) + logarithm
-    values = values * np.exp(np.minimum(known, LARGEST_LOGARITHM) - np.log(np.maximum(sizes, TINY)))
+    known = np.log(np.maximum(sizes, SMALLEST)) + logarithm
+    values = values * np.exp(np.minimum(known, LARGEST_LOGARITHM) - np.log(np.maximum(sizes, SMALLEST)))
     return values[np.argsort(-np.abs(values), kind="stable")].astype(np.complex128)

@@ -19,6 +19,9 @@ MOST_ITERATIONS = 12
 EXTREME = 1e100
 """Largest magnitude of an end of a range, its reciprocal the least: cubes of both are finite."""
 
+SMALLEST = float(np.finfo(float).tiny)
+"""Least number with all its digits: a length or a factor below it is none, and nothing is divided by it."""
+
 LARGEST = 1e300
 """What is larger is given as this number; it may still be added up, and the square of its root is finite."""
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from periodic.system.precision import SMALLEST
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -67,7 +69,7 @@ def smooth(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     from scipy.interpolate import PchipInterpolator
 
-    spans = [max(float(np.ptp(values)), np.finfo(float).tiny) for values in (x, y)]
+    spans = [max(float(np.ptp(values)), SMALLEST) for values in (x, y)]
     chords = np.hypot(np.diff(x) / spans[0], np.diff(y) / spans[1])
     length = np.concatenate([[0.0], np.cumsum(np.maximum(chords, 1e-9))])
     parts = np.arange(len(x) - 1)[:, None] + np.arange(PER_SEGMENT) / PER_SEGMENT

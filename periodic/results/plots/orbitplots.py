@@ -12,6 +12,7 @@ from periodic.orbit.scheme import Array
 from periodic.results.plots.frame import dressed, fresh, plain
 from periodic.results.plots.units import Shown, Units, quantities
 from periodic.results.point import Point
+from periodic.system.precision import SMALLEST
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -162,7 +163,7 @@ def plot_spectrum(
     orders, amplitudes = spectrum(found, signal, harmonics)
     unit, axes = shown.unit(signal, amplitudes), fresh(axes)
     heights = amplitudes / unit.size
-    floor = max(heights.max(initial=0.0) * 1e-9, np.finfo(float).tiny)
+    floor = max(heights.max(initial=0.0) * 1e-9, SMALLEST)
     axes.vlines(orders, floor, np.maximum(heights, floor), color="C0", linewidth=2.5)
     axes.plot(orders, np.maximum(heights, floor), "o", color="C0", markersize=4)
     axes.locator_params("x", integer=True)
