@@ -34,6 +34,18 @@ def main():
 if __name__ == "__main__":
     main()
 """
+BEGIN = """
+import os
+import signal
+from periodic.maps.executors import Processes
+def main():
+    where = Processes(2)
+    where.submit(abs, 1)
+    print(*where._pool._processes, flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+if __name__ == "__main__":
+    main()
+"""
 
 
 def started(folder: Path, store: Path, wait: float, executor: int = 1) -> subprocess.Popen[bytes]:
@@ -85,6 +97,21 @@ def test_processes_end_with_the_one_that_is_killed(folder: Path, tmp_path: Path)
     assert theirs and running.pid not in theirs
     running.send_signal(signal.SIGKILL)
     running.wait()
+    limit = time.monotonic() + 30
+    while any(map(there, theirs)) and time.monotonic() < limit:
+        time.sleep(0.1)
+    assert not any(map(there, theirs))
+
+
+def test_processes_end_whose_parent_ended_while_they_started(tmp_path: Path) -> None:
+    """Assert that processes end as well that have not begun yet when the one that asked is killed."""
+    script = tmp_path / "begin.py"
+    script.write_text(BEGIN)
+    running = subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, text=True)
+    assert running.stdout is not None
+    with running.stdout as said:
+        theirs = set(map(int, said.readline().split()))
+    assert running.wait(timeout=60) == -signal.SIGKILL and len(theirs) == 2
     limit = time.monotonic() + 30
     while any(map(there, theirs)) and time.monotonic() < limit:
         time.sleep(0.1)
