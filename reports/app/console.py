@@ -65,7 +65,7 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: str) -> 
     for heading in headings:
         shown.add_column(_text(heading), justify="left" if heading == left else "right", no_wrap=not terminal)
     for row in rows:
-        shown.add_row(*map(_text, row))
+        shown.add_row(*map(_cell, row))
     Console(highlight=False, width=None if terminal else WIDE).print(shown)
 
 
@@ -74,3 +74,10 @@ def _text(text: str) -> Text:
     from rich.text import Text
 
     return Text(plain(text))
+
+
+def _cell(text: str) -> Text:
+    """A text of several lines as it is, where names have none of their own."""
+    from rich.text import Text
+
+    return Text("\n").join(map(_text, text.split("\n")))
