@@ -49,10 +49,22 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
+def plain(text: str) -> str:
+    """Return a text on one line, with line ends, escapes and all else that a terminal obeys written out."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
 def printable(text: str) -> str:
-    """Return a text of a file as a terminal may show it: without what it would obey, and not too long."""
-    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    """Return a text of a file as a terminal may show it: plain, and not too long."""
+    shown = plain(text)
     return shown if len(shown) <= 2 * LONGEST else shown[: 2 * LONGEST - 3] + "..."
+
+
+def line(name: str, value: Any) -> str:
+    """Return a line of text, perhaps an empty one, that is plain. Raises ValueError for anything else."""
+    if not isinstance(value, str) or not value.isprintable():
+        raise ValueError(f"{name} is {shown(value)}; it must be one line of text")
+    return value
 
 
 def number(name: str, value: Any) -> float:
@@ -102,7 +114,9 @@ def one_of(name: str, value: Any, known: Collection[str]) -> str:
 
 
 def named(name: str, value: Any, what: str) -> Mapping[str, Any]:
-    """Return a mapping whose keys are texts, none of them empty. Raises ValueError for anything else."""
+    """Return a mapping whose keys are lines of text, none of them empty. Raises ValueError for any other."""
     if not isinstance(value, Mapping) or not all(isinstance(key, str) and key for key in value):
         raise ValueError(f"{name} is {value!r}; it must give {what} by their names")
+    for key in value:
+        line(f"a name in {name}", key)
     return value

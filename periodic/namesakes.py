@@ -38,5 +38,5 @@ def foreign(name: str) -> str:
         return ""
     where = file or next(iter(found.submodule_search_locations or ()), "?")
     if {"site-packages", "dist-packages"} & set(Path(where).parts):
-        return f"{name} is another project's ({where}); `pip uninstall {name}`, then {REINSTALL}"
-    return f"{name} is not orbitrace's but {where}; rename that, or keep it off Python's path"
+        return f"{name} is another project's ({where!r}); `pip uninstall {name}`, then {REINSTALL}"
+    return f"{name} is not orbitrace's but {where!r}; rename that, or keep it off Python's path"

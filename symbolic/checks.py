@@ -98,6 +98,13 @@ def text(field: str, value: object) -> str:
     return value
 
 
+def line(field: str, value: object) -> str:
+    """Return a line of text, perhaps an empty one, that no terminal obeys. Raises ValueError."""
+    if not isinstance(value, str) or not value.isprintable():
+        raise refusal(field, value, "one line of text")
+    return value
+
+
 def _number(value: Any) -> float:
     """The value as a float; NaN for what is no number."""
     if isinstance(value, str | bytes | bool | np.complexfloating):

@@ -66,7 +66,7 @@ def test_overwritten_package_is_told(name: str, other: str, site: Path) -> None:
     """Assert one sentence from the other package, from `orbitrace` and from the command line."""
     file = overwritten(site, name)
     cure = f"`pip uninstall {name}`, then `pip install --force-reinstall --no-deps orbitrace`"
-    told = f"{name} is another project's ({file}); {cure}"
+    told = f"{name} is another project's ({str(file)!r}); {cure}"
     assert f"UserWarning: {told}\n" in python(f"import {other}", site).stderr
     for program in (f"from orbitrace import {name}", "import orbitrace; orbitrace.trace; orbitrace.scene"):
         done = python(program, site)
@@ -80,7 +80,8 @@ def test_script_that_is_called_as_a_package(site: Path, tmp_path: Path) -> None:
     """Assert that a user's own module under the name of a package is told by its path."""
     (tmp_path / "symbolic.py").write_text("x = 1\n")
     done = python("import periodic", tmp_path, site)
-    assert f"symbolic is not orbitrace's but {tmp_path / 'symbolic.py'}; rename that, or keep" in done.stderr
+    file = str(tmp_path / "symbolic.py")
+    assert f"symbolic is not orbitrace's but {file!r}; rename that, or keep" in done.stderr
 
 
 def test_folder_of_reports_is_not_asked(site: Path, tmp_path: Path) -> None:

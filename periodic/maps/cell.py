@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from periodic.checks import named, plain
+
 Cell = tuple[float, ...]
 """Values (SI) of the parameters that a map varies, in its order."""
 
@@ -39,6 +41,10 @@ class Outcome:
     points: int = 0
     newton: int = 0
     seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        named("numbers", self.numbers, "numbers")
+        object.__setattr__(self, "reason", plain(self.reason))  # of a file, or what a user's function raised
 
     def plain(self) -> dict[str, Any]:
         """Return it as plain data."""

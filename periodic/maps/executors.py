@@ -81,7 +81,9 @@ class Processes:
             from loky import ProcessPoolExecutor
 
             _tracked()
-            self._pool = ProcessPoolExecutor(self.count, env=THREADS, initializer=_dependent)
+            self._pool = ProcessPoolExecutor(
+                self.count, env=THREADS, initializer=_dependent, initargs=(os.getpid(),)
+            )
         return self._pool.submit(function, *arguments)
 
     def close(self) -> None:
@@ -129,12 +131,15 @@ def _tracked() -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _dependent() -> None:
-    """Leave Ctrl-C and a closed terminal to the process that has the map, and end when that has ended."""
+def _dependent(parent: int) -> None:
+    """Leave Ctrl-C and a closed terminal to the process that has the map, and end when that has ended.
+
+    It tells its number: whoever asks for the parent here may find another, as it may have ended by now.
+    """
     for name in ("SIGINT", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
+    threading.Thread(target=_watch, args=(parent,), daemon=True).start()
 
 
 def _watch(parent: int) -> None:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from periodic.checks import printable
 from periodic.maps.cell import Cell, Outcome
+from periodic.maps.dataset import TOLD
 from periodic.results.brancharrays import DAMAGE
 from periodic.results.database import bounded
 from periodic.results.described import differences
@@ -132,9 +132,8 @@ class Store:
         if not isinstance(before, dict):
             raise MapFileError(_foreign(self.path))
         if found := differences(before, self._made):
-            said = printable("; and with ".join(found))
             raise MapFileError(
-                f"store is {str(self.path)!r}, which holds a map made with {said}; "
+                f"store is {str(self.path)!r}, which holds a map made with {'; and with '.join(found)}; "
                 f"choose another, or resume=False to replace it"
             )
 
@@ -142,6 +141,10 @@ class Store:
         """What became of the cells of some rows. Raises MapFileError where they say something else."""
         try:
             outcomes = [Outcome.of(plain) for row in rows for plain in row]
+            asked = tuple(f"{name} " for name in self._made["numbers"])
+            for name in (name for outcome in outcomes for name in outcome.numbers):
+                if not f"{name} ".startswith(asked):
+                    raise ValueError(f"{name} is no number of the map")
             return {outcome.cell: outcome for outcome in outcomes if not outcome.lost}
         except DAMAGE as error:
             raise MapFileError(_foreign(self._journal)) from error
@@ -244,11 +247,22 @@ def loaded(path: Path) -> xr.Dataset:
         held = content(path, LARGEST)
         if sound(held):
             with np.errstate(all="ignore"), opened(held) as data:
-                if data.attrs.get("format") == FORMAT:
-                    return data.load()
+                if data.attrs.get("format") == FORMAT and _told(data.load()):
+                    return data
     except (OSError, *DAMAGE) as error:
         raise MapFileError(_foreign(path)) from error
     raise MapFileError(_foreign(path))
+
+
+def _told(data: xr.Dataset) -> bool:
+    """Whether a map says what became of its cells, in lines that a terminal shows and does not obey."""
+    columns = list(data.variables.values())
+    said = [
+        text for attrs in (data.attrs, *(c.attrs for c in columns)) for pair in attrs.items() for text in pair
+    ]
+    held = [text for column in columns if column.dtype.kind in "OU" for text in column.values.ravel()]
+    texts = (*data.variables, *data.dims, *said, *held)
+    return set(TOLD) <= set(data) and all(text.isprintable() for text in texts if isinstance(text, str))
 
 
 def _said(there: xr.Dataset, path: Path) -> Any:

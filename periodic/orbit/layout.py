@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from periodic.checks import line
 from periodic.orbit.scheme import Array
 from periodic.system import System, VariableLike, frequency_factor_of, frequency_held_of, frequency_of
 
@@ -24,11 +25,20 @@ class Quantity:
         Its name and its unit in SI.
     scale : float
         SI value of one internal unit.
+
+    Raises
+    ------
+    ValueError
+        For a name or a unit that is no line of text: both are printed, and written into files.
     """
 
     name: str
     unit: str = ""
     scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        line("name of a quantity", self.name)
+        line(f"unit of {self.name!r}", self.unit)
 
 
 class Source(Enum):

@@ -18,6 +18,7 @@ from periodic.orbit.layout import Layout, Quantity
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.shallow import shallow
 from periodic.results.checkpoint import Checkpoint
+from periodic.results.guarded import DamagedError
 from periodic.results.point import Point, known_of, multipliers_of
 from periodic.results.ragged import Arrays, Tables, orbit_tables, orbits_of, scheme_said
 from periodic.results.record import Record
@@ -170,8 +171,7 @@ def record_of(arrays: Arrays, attributes: Mapping[str, Any]) -> Record:
     names = ("layout", "labels", "stop", "stop_backwards", "versions", "columns", "checkpoints", "made")
     said = {**attributes, **{name: json.loads(attributes[name]) for name in names}}
     layout, back = _layout(said["layout"]), said["stop_backwards"]
-    if not all(isinstance(said[name], dict) for name in ("labels", "versions", "made")):
-        raise ValueError("labels, versions or made are not by name")
+    _check_names(said, layout, arrays["event"])
     orbits = orbits_of(arrays, said, layout)
     labels = {text: _label(text, critical) for text, critical in said["labels"].items()}
     return Record(
@@ -187,6 +187,19 @@ def record_of(arrays: Arrays, attributes: Mapping[str, Any]) -> Record:
         backwards=int(said["backwards"]),
         made=said["made"],
     )
+
+
+def _check_names(said: Mapping[str, Any], layout: Layout, events: np.ndarray) -> None:
+    """Refuse names that are none, or that a terminal would obey; those of quantities their layout refuses."""
+    if not all(isinstance(said[name], dict) for name in ("labels", "versions", "made")):
+        raise ValueError("labels, versions or made are not by name")
+    if said["parameter"] not in [q.name for q in layout.parameters]:
+        raise DamagedError("it is over a parameter that it has not")
+    made = [name for group in ("events", "columns") for name in said["made"].get(group, ())]
+    versions = [text for pair in said["versions"].items() for text in pair]
+    for name in (*made, *versions, *said["columns"], *map(str, events)):
+        if not isinstance(name, str) or not name.isprintable():
+            raise DamagedError("it has a name that is not one line of text")
 
 
 def _layout(said: dict[str, Any]) -> Layout:

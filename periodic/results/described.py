@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from periodic.checks import printable
 from periodic.results.files import digest
 
 IS, CODE = "is", "code"
@@ -146,7 +147,7 @@ def differences(before: Any, now: Any, free: Sequence[str] = ()) -> list[str]:
         apart = [d for d in _apart(before.get(name), now.get(name), name) if d[0] not in free]
         if apart:
             old, new = (", ".join(_text_of(d[0], name, d[k]) for d in apart) for k in (1, 2))
-            found.append(f"{name} {old}; now they are {new}")
+            found.append(printable(f"{name} {old}; now they are {new}"))
     return found
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from periodic.checks import plain
+
 
 class Reason(Enum):
     """Named reasons; `numerical` tells those that cut a branch short of what was asked."""
@@ -66,6 +68,9 @@ class Stop:
 
     reason: Reason
     detail: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "detail", plain(self.detail))  # of a file, or with names that a user gave
 
     def __str__(self) -> str:
         return f"{self.reason.value}: {self.detail}"

@@ -6,6 +6,9 @@ from pathlib import Path
 
 import typer
 
+BARE = "_-.,:/@%+~"
+"""Signs that stand for themselves in a shell, besides letters and digits."""
+
 
 def scene_files(incomplete: str) -> list[str]:
     """Return the built-in scenes, and the TOML files and folders, that begin so."""
@@ -55,7 +58,12 @@ def starts(incomplete: str) -> list[str]:
 
 
 def _begin(names: list[str], incomplete: str) -> list[str]:
-    return [name for name in names if name.startswith(incomplete)]
+    """The names that begin so, without those that a shell would not take as they are: bash runs `$(name)`."""
+    return [name for name in names if name.startswith(incomplete) and _bare(name)]
+
+
+def _bare(name: str) -> bool:
+    return all(letter.isalnum() or letter in BARE for letter in name)
 
 
 def _files(incomplete: str, ending: str) -> list[str]:

@@ -53,8 +53,22 @@ Own = Annotated[
 
 
 def say(sentence: str) -> None:
-    """Say something on standard error."""
-    typer.echo(f"orbitrace: {sentence}", err=True)
+    """Say something on standard error, in one line that a terminal shows and does not obey."""
+    from periodic.checks import plain
+
+    typer.echo(f"orbitrace: {plain(sentence)}", err=True)
+
+
+def tell(*lines: str) -> None:
+    """Print lines, which a terminal shows and does not obey whatever names and files have put into them."""
+    from periodic.checks import plain
+
+    typer.echo("\n".join(map(plain, lines)))
+
+
+def tell_written(files: Sequence[Path]) -> None:
+    """Print which files there are now."""
+    tell("written: " + ", ".join(map(str, files)))
 
 
 def pairs(changes: Sequence[str] | None) -> tuple[tuple[str, str], ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import typer
+from .options import tell
 
 
 def scenes() -> None:
@@ -13,4 +13,4 @@ def scenes() -> None:
     names = scene_names()
     width = max(map(len, names))
     for name in names:
-        typer.echo(f"{name:{width}}  {load(name).title}")
+        tell(f"{name:{width}}  {load(name).title}")

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import casadi as ca
 
+from symbolic.checks import text
 from symbolic.equations.terms import Motion, Place, Relay, Slider, State, struck
 from symbolic.equations.variables import Parameter, SwitchInfo
 from symbolic.equations.workbench import Workbench
@@ -153,7 +154,13 @@ class Assembly(Workbench):
             -1 where only a falling passage is a kink, +1 for a rising one, 0 for both.
         levels : tuple of float
             Falling values; each marks the same kink more sharply than the one before.
+
+        Raises
+        ------
+        ValueError
+            For a name that is no line of text.
         """
+        text("name of a switch", name)
         self.switches.append((SwitchInfo(name, direction, levels), expression))
 
     def reset(self, name: str, expression: ca.SX, to: dict[State, ca.SX]) -> None:

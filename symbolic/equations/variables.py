@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from symbolic.checks import finite, positive, refusal, text, typed, whole
+from symbolic.checks import finite, line, positive, refusal, text, whole
 from symbolic.equations.interval import ANY, NOT_NEGATIVE, POSITIVE, Interval
 
 ANGULAR = {"rev/min": 2 * math.pi / 60, "Hz": 2 * math.pi, "rad/s": 1.0}
@@ -86,7 +86,7 @@ class Parameter:
     Raises
     ------
     ValueError
-        For a value that is not finite, and a name that is empty or no text.
+        For a value that is not finite, and a name or unit that is no line of text.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         text("name of a parameter", self.name)
-        typed(f"unit of {self.name!r}", self.unit, str, "a text")
+        line(f"unit of {self.name!r}", self.unit)
         object.__setattr__(self, "value", finite(f"parameter {self.name!r}", self.value))
         object.__setattr__(self, "symbol", ca.SX.sym(self.name))
 
@@ -149,8 +149,8 @@ class Coordinate:
     Raises
     ------
     ValueError
-        For a scale that is not a positive number, a start that is not finite, and a name that is empty, no
-        text or has a '.
+        For a scale that is not a positive number, a start that is not finite, a name or unit that is no line
+        of text, and a name that is empty or has a '.
     """
 
     name: str
@@ -161,7 +161,7 @@ class Coordinate:
     def __post_init__(self) -> None:
         if "'" in text("name of a coordinate", self.name):
             raise refusal("name of a coordinate", self.name, "without ', which marks velocities")
-        typed(f"unit of {self.name!r}", self.unit, str, "a text")
+        line(f"unit of {self.name!r}", self.unit)
         if self.scale is not None:
             positive(f"scale of coordinate {self.name!r}", self.scale)
         object.__setattr__(self, "start", finite(f"start of coordinate {self.name!r}", self.start))

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from symbolic.checks import refusal, typed
+from symbolic.checks import refusal, text, typed
 from symbolic.equations.excitation import Excitation, Order
 from symbolic.equations.interval import ANY, Interval
 from symbolic.equations.numbers import Numbers
@@ -396,8 +396,9 @@ class Workbench:
         Raises
         ------
         ValueError
-            For a name that another output has.
+            For a name that another output has, and one that is no line of text.
         """
+        text("name of an output", name)
         if any(name == variable.name for variable, _ in self.outputs):
             raise ValueError(f"output {name!r} is defined twice; give contact pairs names of their own")
         self.outputs.append((Variable(name, unit), expression))

@@ -15,6 +15,7 @@ from symbolic.arrays import Array
 from symbolic.checks import mapping, positive, refusal, text, whole
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.branches import jumps_with
+from symbolic.equations.interval import NOT_NEGATIVE
 from symbolic.equations.model import Part
 from symbolic.equations.terms import Place
 from symbolic.equations.variables import Coordinate
@@ -124,7 +125,11 @@ class Structure(Part):
             mass, stiffness = self.rayleigh
         except (TypeError, ValueError):
             raise refusal("rayleigh", self.rayleigh, "two numbers (a, b)") from None
-        return ModalDamping(ratio, mass, stiffness)
+        found = ModalDamping(ratio, mass, stiffness)
+        for name, given in (("damping", ratio), ("rayleigh", self.rayleigh)):
+            for number in np.atleast_1d(given):
+                NOT_NEGATIVE.check(name, float(number))
+        return found
 
     @cached_property
     def _known(self) -> dict[float, Matrices]:

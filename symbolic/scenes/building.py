@@ -41,7 +41,7 @@ from symbolic.parts.mechanics.springs import Coupling, CubicSpring, Damper, Spri
 from symbolic.scenes.axes import RPM
 from symbolic.scenes.errors import InputError, listed, refused, shown
 from symbolic.scenes.laws import HERTZ, PALMGREN, contact_laws
-from symbolic.scenes.model.scene import ModelScene
+from symbolic.scenes.model.scene import ModelScene, refusing
 from symbolic.scenes.schema import AnyContact, DiscScene, Film, Oscillator, OscillatorScene, Scene
 from symbolic.system.compile import compile
 from symbolic.system.compiled import CompiledSystem
@@ -51,12 +51,13 @@ def build(scene: Scene, *, condense: bool = True) -> CompiledSystem:
     """Return the system of a scene. Its states, unknowns and outputs are those that its parts need.
 
     condense: whether structures bring their places alone, or all that small motion about rest needs. Raises
-    InputError where the environment asks for kernels that cannot be.
+    InputError where the environment asks for kernels that cannot be, and for numbers that no model may have.
     """
     if isinstance(scene, ModelScene):
         return scene.system(_kernels(), condense=condense)
-    model = disc_model(scene) if isinstance(scene, DiscScene) else oscillator_model(scene)
-    return compile(model, _kernels())
+    with refusing():
+        model = disc_model(scene) if isinstance(scene, DiscScene) else oscillator_model(scene)
+        return compile(model, _kernels())
 
 
 def _kernels() -> Kernels:

@@ -217,7 +217,7 @@ def _rows(table: str, content: Callable[[bytes, Random], bytes], held: bytes, ra
 
 
 def _made() -> dict[str, object]:
-    return {"of": "a map", "number": 1.5}
+    return {"of": "a map", "number": 1.5, "numbers": {"peak": 1, "folds": 2}}
 
 
 def map_files(folder: Path) -> list[bytes]:

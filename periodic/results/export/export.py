@@ -38,7 +38,7 @@ def export(branch: Branch, path: str | Path, *, samples: int = 256) -> list[Path
         The file; it ends in .csv (a second file, FILE-orbits.csv, has the orbits), .mat (MATLAB, Octave),
         .h5 or .hdf5, .uff or .unv (UFF58). One that is there is replaced. Folders are made. A name or label
         that a spreadsheet would take for a formula, as one that begins with =, +, - or @, has an apostrophe
-        before it in CSV: ``'=x [m]``.
+        before it in CSV and UFF58: ``'=x [m]``.
     samples : int
         Values of each signal over the period, evenly in time, the end of the period left out.
 

@@ -16,7 +16,8 @@ def write_hdf5(path: Path, content: Content) -> list[Path]:
     """Write /points/NAME (points,) and /orbits/NAME (points, samples), each with the attribute `units`.
 
     Multipliers stand in /points/multipliers_real and /points/multipliers_imag (points, n); times in
-    /orbits/t. A name that holds a slash, which HDF5 takes for a path, has a division sign in its place.
+    /orbits/t. A name that holds a slash, which HDF5 takes for a path, has a division sign in its place, and
+    one that is taken, as t or ".", an underscore more.
     """
     import h5py
 
@@ -29,11 +30,15 @@ def write_hdf5(path: Path, content: Content) -> list[Path]:
         points["multipliers_real"] = content.multipliers.real
         points["multipliers_imag"] = content.multipliers.imag
         _add(points, content.numbers)
-        _add(orbits, {"t": ("s", content.times), **content.signals})
+        _add(orbits, {"t": ("s", content.times)})
+        _add(orbits, content.signals)
     return [path]
 
 
 def _add(group: h5py.Group, quantities: Quantities) -> None:
     for name, (unit, values) in quantities.items():
-        added = group.create_dataset(name.replace("/", "\N{DIVISION SLASH}"), data=values)
+        free = name.replace("/", "\N{DIVISION SLASH}")
+        while free in group:
+            free += "_"
+        added = group.create_dataset(free, data=values)
         added.attrs["units"] = unit

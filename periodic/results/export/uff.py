@@ -11,6 +11,7 @@ import numpy as np
 from periodic.orbit.scheme import Array
 from periodic.results.export.content import Content
 from periodic.results.files import replacing
+from periodic.results.textcell import text_cell
 
 GENERAL, TIME_RESPONSE = 0, 1
 """Function types of data set 58."""
@@ -21,6 +22,9 @@ KINDS = {"m": 8, "N": 9, "m/s": 11, "m/s^2": 12, "Pa": 15}
 
 SI = 1
 """Code of the units of data set 164."""
+
+WIDTHS = {"id1": 80, "id2": 80, "id3": 80, "rsp_ent_name": 10}
+"""Characters of fields that have another number than 20."""
 
 EXTRA = "pip install 'orbitrace[uff]'"
 """What installs the package that writes the format."""
@@ -53,8 +57,8 @@ def _amplitudes(content: Content) -> Iterator[dict[str, Any]]:
         yield _set(
             k + 1, column, across, up,
             id2=f"over {content.parameter}", func_type=GENERAL, abscissa_spacing=0,
-            abscissa_axis_lab=content.parameter[:20], abscissa_axis_units_lab=unit[:20] or "NONE",
-            ordinate_spec_data_type=KINDS.get(of, UNKNOWN), ordinate_axis_units_lab=of[:20] or "NONE",
+            abscissa_axis_lab=content.parameter, abscissa_axis_units_lab=unit or "NONE",
+            ordinate_spec_data_type=KINDS.get(of, UNKNOWN), ordinate_axis_units_lab=of or "NONE",
         )  # fmt: skip
 
 
@@ -66,15 +70,21 @@ def _orbits(content: Content) -> Iterator[dict[str, Any]]:
         for k, (name, (of, values)) in enumerate(content.signals.items()):
             yield _set(
                 k + 1, name, times, values[point],
-                id2=where[:80], func_type=TIME_RESPONSE, abscissa_spacing=1, z_axis_value=float(value),
+                id2=where, func_type=TIME_RESPONSE, abscissa_spacing=1, z_axis_value=float(value),
                 load_case_id=point, abscissa_spec_data_type=TIME, abscissa_axis_lab="time",
-                abscissa_axis_units_lab="s", z_axis_axis_lab=content.parameter[:20],
-                ordinate_spec_data_type=KINDS.get(of, UNKNOWN), ordinate_axis_units_lab=of[:20] or "NONE",
+                abscissa_axis_units_lab="s", z_axis_axis_lab=content.parameter,
+                ordinate_spec_data_type=KINDS.get(of, UNKNOWN), ordinate_axis_units_lab=of or "NONE",
             )  # fmt: skip
 
 
 def _set(node: int, name: str, x: Array, y: Array, **entries: Any) -> dict[str, Any]:
     """A data set 58 of a signal."""
-    labels = {"id1": name[:80], "id3": "orbitrace", "ordinate_axis_lab": name[:20], "rsp_ent_name": name[:10]}
+    labels = {"id1": name, "id3": "orbitrace", "ordinate_axis_lab": name, "rsp_ent_name": name, **entries}
+    texts = {key: _text(key, item) for key, item in labels.items() if isinstance(item, str)}
     degree = {"rsp_node": node, "rsp_dir": 0, "ref_node": 0, "ref_dir": 0, "orddenom_spec_data_type": UNKNOWN}
-    return {"type": 58, "binary": 0, **labels, **degree, "x": np.array(x), "data": np.array(y), **entries}
+    return {"type": 58, "binary": 0, **degree, **labels, **texts, "x": np.array(x), "data": np.array(y)}
+
+
+def _text(field: str, text: str) -> str:
+    """A text as a field takes it; "    -1", wherever it stands, would end the data set."""
+    return text_cell(" ".join(text.split()))[: WIDTHS.get(field, 20)]

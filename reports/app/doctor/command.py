@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..options import DONE, STOPPED_EARLY
+from ..options import DONE, STOPPED_EARLY, tell
 
 Json = Annotated[bool, typer.Option("--json", help="Print the same as JSON, and nothing else.")]
 
@@ -24,10 +24,10 @@ def doctor(as_json: Json = False) -> int:
 
     found = facts()
     if not as_json:
-        typer.echo(table(found))
+        tell(*table(found))
     checked = checks()
     if as_json:
         typer.echo(json.dumps({**found, "checks": [record(check) for check in checked]}, indent=2))
     else:
-        typer.echo(table({"numbers": {check.name: str(check) for check in checked}}))
+        tell(*table({"numbers": {check.name: str(check) for check in checked}}))
     return DONE if all(check.right for check in checked) else STOPPED_EARLY

@@ -9,14 +9,14 @@ from ..doctor.machine import Facts
 from ..doctor.numbers import Check
 
 
-def table(facts: Facts) -> str:
+def table(facts: Facts) -> list[str]:
     """Return groups of names and what there is, one a line."""
     width = max(len(name) for group in facts.values() for name in group)
     lines = []
     for title, group in facts.items():
         if group:
             lines += [title, *(f"  {name:{width}}  {value}" for name, value in group.items())]
-    return "\n".join(lines)
+    return lines
 
 
 def record(check: Check) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..completion import branch_files
-from ..options import DONE, count
+from ..options import DONE, count, tell_written
 
 Source = Annotated[
     str,
@@ -44,5 +44,5 @@ def export(branch: Source, file: File, samples: Samples = "256") -> int:
     except OSError as error:
         allowed = "it must be a file that can be written"
         raise InputError("FILE", f'is "{file}" ({error.strerror})', allowed) from error
-    typer.echo("written: " + ", ".join(map(str, files)))
+    tell_written(files)
     return DONE

@@ -19,6 +19,8 @@ from ..options import (
     pairs,
     say,
     take_parts,
+    tell,
+    tell_written,
 )
 
 if TYPE_CHECKING:
@@ -102,7 +104,7 @@ def _show(found: Study, files: list[Path]) -> None:
     from ..linear.text import table, verdict
 
     headings, rows = table(found)
-    typer.echo(found.scene.title)
+    tell(found.scene.title)
     console.table(headings, rows, left=headings[0])
-    typer.echo("\n".join(verdict(found)))
-    typer.echo("written: " + ", ".join(str(file) for file in files))
+    tell(*verdict(found))
+    tell_written(files)

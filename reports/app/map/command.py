@@ -22,6 +22,8 @@ from ..options import (
     count,
     pairs,
     say,
+    tell,
+    tell_written,
 )
 from ..trace.command import Accuracy, Dial, From, To
 
@@ -115,13 +117,13 @@ def _told(task: Task, data: xr.Dataset, keys: dict[str, str], folder: Path) -> N
     files = [folder / MAP]
     if drawable(keys, data):
         files += write(folder, {"map.png": lambda path: draw(path, task.scene.title, data, keys)})
-    typer.echo(task.scene.title)
+    tell(task.scene.title)
     if "peak" in data:
         peak = data["peak"]
-        typer.echo(f"peak from {float(peak.min()):.6g} to {float(peak.max()):.6g} {peak.attrs['units']}")
+        tell(f"peak from {float(peak.min()):.6g} to {float(peak.max()):.6g} {peak.attrs.get('units', '')}")
     done = int((data["status"] == "done").sum())
-    typer.echo(f"{done} of {data['status'].size} cells, {float(data['seconds'].sum()):.1f} s of work")
-    typer.echo("written: " + ", ".join(map(str, files)))
+    tell(f"{done} of {data['status'].size} cells, {float(data['seconds'].sum()):.1f} s of work")
+    tell_written(files)
 
 
 def _verdict(data: xr.Dataset) -> int:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..completion import part_names, starts
-from ..options import DONE, Own, take_parts
+from ..options import DONE, Own, take_parts, tell
 
 Name = Annotated[
     str | None,
@@ -32,7 +32,7 @@ def parts(name: Name = None, own: Own = None) -> int:
     from ..parts.text import every, one
 
     take_parts(own)
-    typer.echo(every() if name is None else one(name))
+    tell(*(every() if name is None else one(name)).splitlines())
     return DONE
 
 
@@ -40,5 +40,5 @@ def new(kind: Start, file: File) -> int:
     """Write the commented start of a scene of your own."""
     from ..parts.start import write_start
 
-    typer.echo(f"written: {write_start(kind, file)}; run it with: orbitrace trace {file}")
+    tell(f"written: {write_start(kind, file)}; run it with: orbitrace trace {file}")
     return DONE

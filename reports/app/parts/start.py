@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from symbolic.scenes.errors import InputError, refused
+from symbolic.scenes.errors import InputError, plain, refused
 from symbolic.scenes.model.catalogue import KIND, Entry, catalogue
 from symbolic.scenes.names import built_in, scene_names
 
@@ -45,8 +45,9 @@ def _named(kind: str) -> str:
 
 def _commented(kind: str, file: Path) -> Iterator[str]:
     text = START if kind == MODEL else built_in(_named(kind))
-    yield f"# orbitrace trace {file}    traces its orbits\n"
-    yield f"# orbitrace linear {file}   shows its small motions about rest\n"
+    name = plain(str(file))
+    yield f"# orbitrace trace {name}    traces its orbits\n"
+    yield f"# orbitrace linear {name}   shows its small motions about rest\n"
     if tomllib.loads(text).get(KIND) == MODEL:
         yield "# orbitrace parts [NAME]   lists the parts, or shows one with all its keys\n"
         yield "# Numbers are in SI, or all without dimension.\n"

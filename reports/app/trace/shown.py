@@ -11,6 +11,7 @@ from periodic import Branch, Point
 from symbolic.scenes.schema import Scene
 
 from ..console import status, table
+from ..options import tell, tell_written
 from ..trace.summary import special_table
 from ..view import Column, view_of
 
@@ -40,18 +41,16 @@ def _reading(column: Column, point: Point) -> str:
 def show(scene: Scene, branch: Branch, files: Sequence[Path]) -> None:
     """Print the special points, the reason of the stop and the files."""
     headings, rows = special_table(scene, branch)
-    print(scene.title)
+    tell(scene.title)
     if rows:
         table(headings, rows, left="label") if sys.stdout.isatty() else _plain(headings, rows)
     count, steps = len(branch), branch.newton_iterations
-    print(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
-    for remark in branch.remarks:
-        print(f"note: {remark}")
-    print(f"stop: {branch.ending}")
-    print("written: " + ", ".join(str(file) for file in files))
+    tell(f"{count} points, {steps} Newton iterations, {branch.elapsed:.2f} s")
+    tell(*(f"note: {remark}" for remark in branch.remarks), f"stop: {branch.ending}")
+    tell_written(files)
 
 
 def _plain(headings: list[str], rows: list[list[str]]) -> None:
     widths = [max(map(len, column)) for column in zip(headings, *rows, strict=True)]
     for row in (headings, *rows):
-        print("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
+        tell("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))

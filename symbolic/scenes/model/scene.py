@@ -29,7 +29,7 @@ class CoordinateTable(Table):
     """A coordinate; with a count, a vector of them, called by the name and a number from 1."""
 
     name: str = Field(min_length=1, max_length=60, description=TEXT)
-    unit: str = Field("m", max_length=30, description="a text")
+    unit: str = Field("m", max_length=30, description="one line of text")
     scale: float | None = Field(None, gt=0, description="a positive number (SI)")
     start: float = Field(0.0, description="a number (SI)")
     count: int | None = Field(None, ge=1, le=1000, description="a whole number from 1 to 1000")
@@ -46,7 +46,7 @@ class SharedTable(Table):
     """A parameter that several parts share."""
 
     value: float = Field(description="a number (SI)")
-    unit: str = Field("", max_length=30, description="a text")
+    unit: str = Field("", max_length=30, description="one line of text")
 
 
 class ModelRange(Range):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,8 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 from periodic.maps import store as stores
+from periodic.results import netcdf
+from periodic.results.files import digest
 
 pytestmark = pytest.mark.faults
 
@@ -31,6 +35,19 @@ from support.maps import GRID, Counted, task
 def main():
     number = Counted(Path(sys.argv[1]), wait=float(sys.argv[3]))
     per.design_map(task(f=number), GRID, int(sys.argv[4]), store=sys.argv[2], chunk=2)
+if __name__ == "__main__":
+    main()
+"""
+BEGIN = """
+import os
+import signal
+import sqlite3
+from periodic.maps.executors import Processes
+def main():
+    where = Processes(2)
+    where.submit(abs, 1)
+    print(*where._pool._processes, flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
 if __name__ == "__main__":
     main()
 """
@@ -91,6 +108,21 @@ def test_processes_end_with_the_one_that_is_killed(folder: Path, tmp_path: Path)
     assert not any(map(there, theirs))
 
 
+def test_processes_end_whose_parent_ended_while_they_started(tmp_path: Path) -> None:
+    """Assert that processes end as well that have not begun yet when the one that asked is killed."""
+    script = tmp_path / "begin.py"
+    script.write_text(BEGIN)
+    running = subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE, text=True)
+    assert running.stdout is not None
+    with running.stdout as said:
+        theirs = set(map(int, said.readline().split()))
+    assert running.wait(timeout=60) == -signal.SIGKILL and len(theirs) == 2
+    limit = time.monotonic() + 30
+    while any(map(there, theirs)) and time.monotonic() < limit:
+        time.sleep(0.1)
+    assert not any(map(there, theirs))
+
+
 def there(process: int) -> bool:
     """Whether a process runs, if only to wait."""
     try:
@@ -109,6 +141,48 @@ def test_finished_map_is_read(folder: Path, tmp_path: Path) -> None:
     assert first.identical(second) and len(cells(folder)) == 12
     per.design_map(given, GRID, 1, store=store, resume=False)
     assert len(cells(folder)) == 24
+
+
+@pytest.mark.parametrize("where", ["reason", "unit", "name", "attribute", "nothing of a cell"])
+def test_map_that_a_terminal_would_obey(where: str, tmp_path: Path) -> None:
+    """Assert that a finished map with an escape sequence in a text is refused, its seal made anew."""
+    store = tmp_path / "map.nc"
+    per.design_map(task(), GRID, 1, store=store)
+    data = xr.load_dataset(store, engine="h5netcdf", decode_times=False)
+    if where == "reason":
+        data["reason"][:] = "\x1b[31m"
+    elif where == "unit":
+        data["peak"].attrs["units"] = "\x1b[31m"
+    elif where == "name":
+        data = data.rename({"peak": "\x1b[31m"})
+    elif where == "nothing of a cell":
+        data = data.drop_vars("status")
+    else:
+        data.attrs["title"] = "a\nb"
+    store.write_bytes(netcdf.packed(data))
+    with pytest.raises(per.maps.MapFileError, match="another file or damaged") as caught:
+        per.design_map(task(), GRID, 1, store=store)
+    assert str(caught.value).isprintable()
+
+
+def test_journal_with_other_numbers(tmp_path: Path) -> None:
+    """Assert that a journal of the same map with numbers that the map has not is refused."""
+    store, journal = tmp_path / "map.nc", tmp_path / "map.nc.journal"
+
+    def press(progress: per.maps.Progress) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(per.maps.MapInterrupted):
+        per.design_map(task(), GRID, 1, store=store, chunk=3, progress=press)
+    with closing(sqlite3.connect(journal)) as base:
+        (said,) = base.execute("SELECT content FROM chunks WHERE number = 1").fetchone()
+        said = said.replace('"peak"', '"other"')
+        base.execute(
+            "UPDATE chunks SET content = ?, digest = ? WHERE number = 1", (said, digest(said.encode()))
+        )
+        base.commit()
+    with pytest.raises(per.maps.MapFileError, match=r"map\.nc\.journal', which is another file or damaged"):
+        per.design_map(task(), GRID, 1, store=store, chunk=3)
 
 
 def test_interrupted_map_has_what_there_is(tmp_path: Path) -> None:

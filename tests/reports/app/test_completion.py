@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from symbolic.scenes.names import built_in
+
 PROGRAM = """
 import sys
 from reports.app.cli import main
@@ -53,6 +55,18 @@ def test_offered(line: str, offered: list[str], tmp_path: Path) -> None:
     for name in ("mine.toml", "branch.nc", "sub/other.nc", "sub/.hidden.nc"):
         (tmp_path / name).touch()
     assert completed(line, tmp_path)[0] == offered
+
+
+def test_what_a_shell_would_run_is_not_offered(tmp_path: Path) -> None:
+    """Assert that no file, and no key of a scene, is offered that bash would not take as it stands."""
+    for name in ("$(reboot).toml", "`id`.toml", "a;b.toml", "a b.toml", "a\x1b[31m.toml", "plain.toml"):
+        (tmp_path / name).touch()
+    assert completed("trace ./", tmp_path)[0] == ["./plain.toml"]
+    scene = built_in("gear-pair").replace("[parameters]", '[parameters]\n"$(reboot)" = 1.0')
+    assert scene != built_in("gear-pair")
+    (tmp_path / "own.toml").write_text(scene)
+    offered = completed("trace own.toml --set parameters.", tmp_path)[0]
+    assert offered and not [key for key in offered if "$" in key]
 
 
 def test_names_of_scenes_import_nothing_large(tmp_path: Path) -> None:

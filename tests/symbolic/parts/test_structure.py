@@ -111,6 +111,14 @@ def test_sparse_matrices_are_as_good_as_dense_ones() -> None:
         ({"at": {"tip": "end"}}, "the index of place 'tip' is 'end'; it must be a whole number from 0 to 1"),
         ({"damping": -0.1}, "damping is -0.1; it must be a finite number of at least 0"),
         ({"rayleigh": 0.1}, "rayleigh is 0.1; it must be two numbers (a, b)"),
+        (
+            {"rayleigh": (1e300, 0.0)},
+            "rayleigh is 1e+300; it must be 0, or of a magnitude from 1e-100 to 1e+100",
+        ),
+        (
+            {"damping": [0.1, 1e-200]},
+            "damping is 1e-200; it must be 0, or of a magnitude from 1e-100 to 1e+100",
+        ),
         ({"modes": 3}, "modes is 3; it must be a whole number from 1 to 2"),
         ({"scale": 0.0}, "scale of 'structure' is 0.0; it must be a positive number"),
     ],

@@ -302,6 +302,14 @@ def test_oscillator_without_spring() -> None:
     assert said == "oscillator.stiffness is 0; it must be greater than 0 where cubic is not"
 
 
+@pytest.mark.parametrize(("key", "value"), [("damping", 5e-324), ("stiffness", 1e-300)])
+def test_number_that_no_model_may_have(key: str, value: float) -> None:
+    """Assert that what a table allows and a part does not is refused as bad input, when it is built."""
+    scene = load("duffing", [(f"oscillator.{key}", value)])
+    with pytest.raises(InputError, match="it must be 0, or of a magnitude from 1e-100 to 1e\\+100"):
+        build(scene)
+
+
 def test_number_in_place_of_table() -> None:
     """Assert that a number in place of a table is refused with the keys of the table."""
     assert sentence("dry-810N", ("damping", "1")) == "damping is 1; it must be a table with ratio"
