@@ -23,9 +23,11 @@ from coverage import Coverage
 from functions import Functions
 
 PACKAGES = ("symbolic", "periodic")
-ROOMS = ("periodic", "symbolic", "problems", "howto")
-"""Folders of tests: not those of the command line and of texts, which run the packages from afar."""
+DEFINED = "interface"
+"""The folder of tests that look at what modules define, rather than run it."""
 
+ROOMS = ("periodic", "symbolic", "problems", "howto", DEFINED)
+"""Folders of tests: not those of the command line and of texts, which run the packages from afar."""
 
 LONGEST = 1.0
 """CPU seconds after which a test is stopped as it is measured; what it has executed until then counts."""

@@ -1,0 +1,50 @@
+"""The public interface is the one written down, and what is built once is not changed afterwards."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from interface.text import PACKAGES, interface
+
+CHANGED = {
+    "symbolic": {
+        *("Assembly", "Excitation", "State", "Unknown", "Motion", "Place", "Workbench", "Follower"),
+        *("Counted", "ChosenKernel", "Junction", "_Reduced", "Sketch"),
+    },
+    "periodic": {
+        *("_Pieces", "NativeSteps", "Motion", "_Oscillating", "_Border", "_Pair", "_Grazing", "_Peak"),
+        *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Start", "Foresight", "_Way"),
+    },
+}
+"""The dataclasses that change as they are used: those of all others are values."""
+
+
+def dataclasses_of(package: str) -> Iterator[type]:
+    """Every dataclass that a package defines."""
+    root = importlib.import_module(package)
+    for found in pkgutil.walk_packages(root.__path__, f"{package}."):
+        for value in vars(importlib.import_module(found.name)).values():
+            own = inspect.isclass(value) and value.__module__ == found.name
+            if own and "__dataclass_params__" in vars(value):
+                yield value
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_interface_is_the_one_written_down(package: str) -> None:
+    """Assert that no name, default or bound has changed (`PYTHONPATH=tests python -m interface`)."""
+    written = Path(__file__).with_name(f"{package}.txt").read_text("utf-8")
+    assert interface(package).splitlines() == written.splitlines()
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_values_are_frozen(package: str) -> None:
+    """Assert that only what has a state can be changed."""
+    every = dataclasses_of(package)
+    found = {made.__name__ for made in every if not vars(made)["__dataclass_params__"].frozen}
+    assert found == CHANGED[package]
