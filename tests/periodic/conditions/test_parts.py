@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -122,7 +123,7 @@ def test_limits_as_test_functions() -> None:
     assert {test.label for test in (lower, upper)} == {per.Label.END}
 
     def at(value: float) -> Any:
-        orbit = SimpleNamespace(parameter=np.array([0.8, 0.05, value]))
+        orbit = replace(along(lambda tau: np.sin(tau)[:, None]), parameter=np.array([0.8, 0.05, value]))
         return SimpleNamespace(problem=SimpleNamespace(full=system, expand=lambda it: it), orbit=orbit)
 
     assert [lower.value(at(-3.0)), upper.value(at(5.0))] == pytest.approx([3e-12, -5e-12], rel=1e-3)
