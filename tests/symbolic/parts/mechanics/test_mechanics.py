@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -13,6 +15,7 @@ from reference.integration import path
 
 import periodic as per
 import symbolic as sym
+from symbolic.equations.assembly import Assembly
 
 Array = NDArray[np.float64]
 Force = Callable[[float, float, float], float]
@@ -249,3 +252,31 @@ def test_refused_in_one_sentence(make: Callable[[], object], said: str) -> None:
     with pytest.raises(ValueError) as caught:
         make()
     assert str(caught.value) == said
+
+
+@pytest.mark.parametrize(
+    ("profile", "value", "slope"),
+    [
+        (sym.Harmonic(0.5, 2, 0.3), lambda t: 0.5 * math.cos(2 * t + 0.3), lambda t: -math.sin(2 * t + 0.3)),
+        (
+            sym.FourierSeries((0.2, 0.0, -0.1), (0.0, 0.4), mean=0.7),
+            lambda t: 0.7 + 0.2 * math.cos(t) - 0.1 * math.cos(3 * t) + 0.4 * math.sin(2 * t),
+            lambda t: -0.2 * math.sin(t) + 0.3 * math.sin(3 * t) + 0.8 * math.cos(2 * t),
+        ),
+    ],
+)
+def test_profiles_and_their_slopes(
+    profile: Any, value: Callable[[float], float], slope: Callable[[float], float]
+) -> None:
+    """Assert a periodic function and its derivative in the angle, by hand."""
+    assembly = Assembly()
+    terms = profile.terms(assembly)
+    given = [symbol for _, symbols in assembly.numbers.named().values() for symbol in symbols]
+    numbers = ca.vertcat(*given), ca.DM([0.5, 0.3] if len(given) == 2 else [0.2, 0.4, -0.1])
+    for theta in (0.0, 0.4, 2.0):
+        both = ca.vertcat(terms.value, terms.slope)
+        for order, waves in assembly.excitation.waves.items():
+            turned = float(order) * theta
+            both = ca.substitute(both, ca.vertcat(*waves), ca.DM([math.sin(turned), math.cos(turned)]))
+        both = ca.substitute(both, *numbers)
+        assert np.array(ca.DM(both)).ravel() == pytest.approx([value(theta), slope(theta)], abs=1e-14)
