@@ -22,7 +22,7 @@ from periodic.condensed.variations import CondensedVariations
 from periodic.linear.variation import Tangent
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Scheme
-from periodic.system import STUCK
+from periodic.system import HELD, STUCK
 
 
 def test_orbit_moved_along_a_linearised_motion() -> None:
@@ -316,6 +316,7 @@ def test_intervals_of_a_condensed_orbit() -> None:
         (STUCK, 1, {10: 1}, False),
         (STUCK, 1, {10: -1}, True),
         (STUCK, STUCK, {10: 1}, False),
+        (HELD, -1, {10: 1}, False),
         (1, -1, {}, False),
     ],
 )

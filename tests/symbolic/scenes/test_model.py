@@ -493,3 +493,18 @@ def test_parameter_as_number_or_table(tmp_path: Path, given: str, value: float, 
     text = TEXT.replace('stiffness = {value = 2.5, unit = "N/m"}', f"stiffness = {given}")
     found = scene(tmp_path, text).parameters["stiffness"]
     assert (found.value, found.unit) == (value, unit)
+
+
+@pytest.mark.parametrize(
+    ("variation", "said"),
+    [
+        ('{kind = "Fourier", cosines = [0.1]}', 'is "Fourier"; it must be {}; nearest is "FourierSeries"'),
+        ("{kind = 3, cosines = [0.1]}", "is 3; it must be {}; there is FourierSeries, Harmonic and Samples"),
+    ],
+)
+def test_kind_of_a_table_in_a_part(tmp_path: Path, variation: str, said: str) -> None:
+    """Assert that a kind that is none is refused with those there are."""
+    given = 'variation = {kind = "FourierSeries", cosines = [0.1, 0.0, 0.05], sines = [0.2]}'
+    found = sentence(tmp_path, TEXT.replace(given, f"variation = {variation}"))
+    among = said.format("FourierSeries, Harmonic or Samples")
+    assert found == f"[[part]] 6 (Backlash) variation kind {among}"
