@@ -132,7 +132,7 @@ def linear(line: dict[str, Any], states: int) -> System:
 
 
 def test_mean_rows_beside_a_linear_part() -> None:
-    """Assert x = S f in the rows of states that no equation holds, S = direct - Re outputs inputs / exponents.
+    """Assert x = S f in the rows of states that no equation holds, S = direct - Re outputs inputs/exponents.
 
     Of three states the first is held by an equation, 2 x0 - 3 f + 1 +- 1 over two phases; places are the
     others, of which x1 = S00 f0 and x2 = S10 f0, with the unknown f0 their force.
@@ -142,12 +142,8 @@ def test_mean_rows_beside_a_linear_part() -> None:
     d_algebraic = np.zeros((2, 4, 1))
     d_algebraic[:, 0, 0], d_algebraic[:, 3, 0] = -3.0, 1.0
     residual = np.array([[2.0, 9.0, 9.0, 5.0], [0.0, 9.0, 9.0, 7.0]])
-    line = {
-        "residual": residual,
-        "d_state": d_state,
-        "d_algebraic": d_algebraic,
-        "d_rate": np.zeros((2, 4, 3)),
-    }
+    d_rate = np.zeros((2, 4, 3))
+    line = {"residual": residual, "d_state": d_state, "d_algebraic": d_algebraic, "d_rate": d_rate}
     modes = SimpleNamespace(
         direct=np.array([[1.0], [2.0]]),
         outputs=np.array([[2.0 + 1j], [4.0]]),
