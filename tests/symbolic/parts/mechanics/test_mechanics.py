@@ -123,6 +123,37 @@ CASES = {
 }
 
 
+def balance(system: sym.CompiledSystem, accelerations: Callable[..., tuple[float, ...]]) -> Array:
+    """The residual at random places and speeds, with the accelerations (SI) that are given for them."""
+    rng, omega = np.random.default_rng(1), float(system.omega(system.nominal))
+    names, scale = [s.name for s in system.states], np.array([s.scale for s in system.states])
+    places = [names.index(name) for name in names if not name.endswith("'")]
+    rates = [names.index(f"{names[k]}'") for k in places]
+    phase = rng.uniform(0, 2 * math.pi, 20)
+    state = rng.uniform(-1.2, 1.2, (len(phase), len(names)))
+    rate = np.zeros_like(state)
+    rate[:, places] = state[:, rates]
+    for k, (tau, x) in enumerate(zip(phase, state, strict=True)):
+        motion = [value for i, j in zip(places, rates, strict=True) for value in (x[i], omega * x[j])]
+        rate[k, rates] = np.array(accelerations(W * tau / omega, *motion)) / omega**2
+    none = np.zeros((len(phase), 0))
+    found: Array = system.residual(rate / scale, state / scale, none, phase, system.nominal)
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_equation_of_motion(name: str) -> None:
+    """Assert the acceleration under the force written by hand, at random places, speeds and phases."""
+    case = CASES[name]
+    system = sym.compile(sym.combine([sym.Mass(X, M), sym.Damper(X, C), *case.parts]))
+
+    def by_hand(theta: float, x: float, v: float) -> tuple[float]:
+        return ((case.force(theta, x, v) - C * v) / M,)
+
+    assert np.abs(balance(system, by_hand)).max() < 1e-12
+    assert np.abs(balance(system, lambda *at: (by_hand(*at)[0] + 1e-3,))).max() > 1e-4
+
+
 def first(system: sym.CompiledSystem) -> per.Point:
     """The orbit at W to which the motion settles."""
     motion = sym.simulate(system, settle=80)
@@ -188,6 +219,18 @@ def test_part_between_coordinates(name: str) -> None:
 
     found = path(rates, begin, 2 * math.pi / W, max_step=0.02)
     np.testing.assert_allclose(found[:, -1], begin, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", BETWEEN)
+def test_equations_of_motion_of_two(name: str) -> None:
+    """Assert the accelerations of both masses under forces written by hand, at random places and phases."""
+    spring, force = BETWEEN[name]
+
+    def by_hand(theta: float, x: float, v: float, y: float, w: float) -> tuple[float, float]:
+        u = force(x - y)
+        return (F * math.cos(theta) - K * x - C * v - u) / M, (u - 1.5 * y - 0.3 * w) / 2
+
+    assert np.abs(balance(pair(spring), by_hand)).max() < 1e-12
 
 
 def test_vector_of_coordinates() -> None:
