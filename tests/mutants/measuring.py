@@ -26,7 +26,7 @@ PACKAGES = ("symbolic", "periodic")
 DEFINED = "interface"
 """The folder of tests that look at what modules define, rather than run it."""
 
-ROOMS = ("periodic", "symbolic", "problems", "howto", DEFINED)
+ROOMS = ("periodic", "symbolic", "problems", "howto", "fuzz", DEFINED)
 """Folders of tests: not those of the command line and of texts, which run the packages from afar."""
 
 LONGEST = 1.0
