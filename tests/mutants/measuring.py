@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 import tempfile
 import time
 from collections import defaultdict
@@ -101,7 +102,8 @@ class Meter:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
-        """Begin to count; fixtures may take longer."""
+        """Begin to count, with nothing kept from tests before; fixtures may take longer."""
+        forget()
         self.coverage.switch_context(item.nodeid)
         self.began = time.process_time()
         with forks.stopped_after(3 * LONGEST):
@@ -137,6 +139,15 @@ class Meter:
         part = self.place.with_suffix(".part")
         part.write_text(text, "utf-8")
         part.rename(self.place)
+
+
+def forget() -> None:
+    """Clear what functions of the packages keep, so that each test executes all that it asks for."""
+    for name, module in list(sys.modules.items()):
+        if name.partition(".")[0] in PACKAGES:
+            for value in list(vars(module).values()):
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
 
 
 @cache
