@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from interface.refusals import parts, refusals, settings
 from interface.text import PACKAGES, interface
 
 CHANGED = {
@@ -48,3 +49,25 @@ def test_values_are_frozen(package: str) -> None:
     every = dataclasses_of(package)
     found = {made.__name__ for made in every if not vars(made)["__dataclass_params__"].frozen}
     assert found == CHANGED[package]
+
+
+def written(kind: str, name: str) -> list[str]:
+    """The lines of a file about one object."""
+    lines, found = Path(__file__).with_name(f"{kind}.txt").read_text("utf-8").splitlines(), list[str]()
+    own = False
+    for line in lines:
+        own = line.startswith(f"{name}.") or (own and line.startswith(" "))
+        found += [line] if own else []
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(settings()))
+def test_settings_take_and_refuse_what_is_written_down(name: str) -> None:
+    """Assert which values each field takes, and the sentence for each of the others."""
+    assert list(refusals(name, settings()[name])) == written("settings", name)
+
+
+@pytest.mark.parametrize("name", sorted(parts()))
+def test_parts_take_and_refuse_what_is_written_down(name: str) -> None:
+    """Assert which values each field takes, and the sentence for each of the others."""
+    assert list(refusals(name, parts()[name])) == written("parts", name)
