@@ -28,7 +28,7 @@ DEFINED = "interface"
 """The folder of tests that look at what modules define, rather than run it."""
 
 ROOMS = ("periodic", "symbolic", "problems", "howto", "fuzz/test_attacks.py", DEFINED)
-"""Folders of tests, or files: not those of the command line and of texts, which run the packages from afar."""
+"""Folders and files of tests: not those of the command line and texts, which run the packages from afar."""
 
 LONGEST = 1.0
 """CPU seconds after which a test is stopped as it is measured; what it has executed until then counts."""
