@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.surfaces import Surfaces, along, joint
 
-from periodic.events.rewrites import first, meetings, table, twins
+from periodic.events.rewrites import first, meetings, merging, table, twins
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.sideconditions import Length, Limit
 from periodic.events.switchpolynomials import Extremum
@@ -291,3 +291,54 @@ def test_part_of_the_way_to_a_size(power: float, part: float) -> None:
     assert row.part(4.0, 0.0, 2.0) == exact
     assert [row.size_below(size) for size in (3.0, 2.0, 1.5, 1.0, 0.5)] == [2.0, 1.0, 1.0, 1.0, 0.5]
     assert row.least == 1.0
+
+
+@pytest.mark.parametrize(
+    "kinds", [(Kind.SLIDER, Kind.SLIDING), (Kind.SLIDING, Kind.SLIDER), (Kind.SLIDER,) * 2]
+)
+def test_stops_that_merge_and_part(kinds: tuple[Kind, Kind]) -> None:
+    """Assert one event node for two stops, that of friction if there is one, and two for one, either way."""
+    system: Any = Surfaces([joint(0, 0, kinds[0]), joint(1, 3, kinds[1])], [[1.0]] * 6)
+    one, other = EventNode(0, 1, modes=((0, STUCK),)), EventNode(3, -1, modes=((3, STUCK), (9, 1)))
+    found = merging.Meeting(0, 2, (0, 1), {0: 1, 3: -1}, ((0,), (3,)))
+    ((both,),) = merging._other(system, [one, other], found)
+    first, second = (other, one) if kinds[0] is Kind.SLIDER and kinds[1] is Kind.SLIDING else (one, other)
+    assert both == EventNode(first.switch, first.direction, modes=(*first.modes, *second.modes))
+    stops = EventNode(0, 1, modes=((0, STUCK),)), EventNode(3, -1, modes=((3, STUCK),))
+    together = EventNode(3, -1, modes=((0, STUCK), (3, STUCK)))
+    assert list(merging._other(system, [together], found)) == [list(stops), list(stops[::-1])]
+
+
+def test_sliders_in_parallel_stop_at_their_friction() -> None:
+    """Assert that of joints of one guard that of friction stops, the others with it, in its own direction."""
+    system: Any = Surfaces([joint(0, 0, Kind.SLIDER), joint(1, 3)], [[1.0]] * 6)
+    stop = merging._stop(system, (0, 3), {0: 1, 3: -1}, 1)
+    assert stop == EventNode(3, -1, modes=((0, STUCK), (3, STUCK)))
+    assert merging._stop(system, (0,), {0: -1}, 1) == EventNode(0, -1, modes=((0, STUCK),))
+
+
+@pytest.mark.parametrize(
+    ("modes", "found"),
+    [
+        ((((0, STUCK),), ((3, STUCK),)), [0, 3]),
+        ((((0, STUCK), (3, STUCK)),), [0, 3]),
+        ((((0, STUCK), (9, 1)),), []),
+        ((((3, STUCK),),), []),
+        (((),), []),
+    ],
+)
+def test_guards_that_stop_where_nothing_else_happens(modes: Any, found: list[int]) -> None:
+    """Assert the guards that are held, where each event node holds its own and changes nothing more."""
+    events = [EventNode((0, 3)[k], 1, modes=each) for k, each in enumerate(modes)]
+    assert merging._stopped(events, range(len(events))) == found
+
+
+@pytest.mark.parametrize(
+    ("node", "friction", "stops", "segments"),
+    [(4, 4, (5, 6), (4, 5)), (4, 6, (4, 5), (4, 5)), (4, 4, (5,), (4,)), (4, 5, (4,), (4,))],
+)
+def test_segments_between_stops_that_meet(
+    node: int, friction: int, stops: tuple[int, ...], segments: tuple[int, ...]
+) -> None:
+    """Assert those between the first event node and the last, by the nodes at which they begin."""
+    assert merging.Meeting(node, friction, stops, {}, ()).segments == segments
