@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+import symbolic as sym
 from interface.refusals import parts, refusals, settings
+from interface.scenes import scene
 from interface.text import PACKAGES, interface
 
 CHANGED = {
@@ -71,3 +73,12 @@ def test_settings_take_and_refuse_what_is_written_down(name: str) -> None:
 def test_parts_take_and_refuse_what_is_written_down(name: str) -> None:
     """Assert which values each field takes, and the sentence for each of the others."""
     assert list(refusals(name, parts()[name])) == written("parts", name)
+
+
+@pytest.mark.parametrize("name", sym.scene_names())
+def test_scenes_are_what_is_written_down(name: str) -> None:
+    """Assert quantities, rest, switches and drawing of each scene of the package, to 6 digits."""
+    lines = Path(__file__).with_name("scenes.txt").read_text("utf-8").splitlines()
+    begin = lines.index(f"[{name}]") + 1
+    end = next((k for k in range(begin, len(lines)) if lines[k].startswith("[")), len(lines))
+    assert list(scene(name)) == lines[begin:end]
