@@ -19,10 +19,12 @@ BENCHMARK := --benchmark-autosave --benchmark-compare --benchmark-timer=time.pro
 # The rooms of periodic/ whose tests `--in-c` runs in C where there is a compiler: tests/support/rooms.py.
 KERNEL_ROOMS := bifurcations collocation condensed correction linear
 
-# Of the mutants: how many, which draw, and the commit since which files have changed (all, if empty).
+# Of the mutants: how many, which draw, the commit since which files have changed (all, if empty), and the
+# seconds of the processor for the tests of one (those of tests/mutants/run.py, if empty).
 COUNT ?= 110
 SEED ?= 2029
 SINCE ?=
+LIMIT ?=
 
 # Of a study: which sections, or those whose engine has changed; all, if empty.
 SECTION ?=
@@ -66,9 +68,9 @@ survey: $(VENV)/.installed-dev ## Trace and judge models with contact drawn at r
 fuzz: $(VENV)/.installed-dev ## Read spoilt files of every kind (COUNT of each, by default 10000)
 	PYTHONPATH=tests $(ONE_THREAD) $(BIN)/python -m fuzz --count $(if $(filter file,$(origin COUNT)),10000,$(COUNT))
 
-mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE)
+mutants: $(VENV)/.installed-mutants ## Change the code at random, see that tests notice (COUNT, SEED, SINCE, LIMIT)
 	$(ONE_THREAD) $(BIN)/python tests/mutants/run.py --count $(COUNT) --seed $(SEED) \
-	  $(if $(SINCE),--since $(SINCE),--page tests/mutants/README.md)
+	  $(if $(LIMIT),--limit $(LIMIT)) $(if $(SINCE),--since $(SINCE),--page tests/mutants/README.md)
 
 bench: $(VENV)/.installed-dev ## Run the benchmarks, compare with the last record
 	$(ONE_THREAD) $(BIN)/python -m pytest reports/benchmarks -q -rs -W default::pytest.PytestWarning $(BENCHMARK)

@@ -319,26 +319,6 @@ def fits(chosen: list[Crossing], orbit: Orbit) -> bool:
     return None not in matched and len(chosen) == len(orbit.phases)
 
 
-def genuine(system: System, orbit: Orbit) -> bool:
-    """Whether the switch passes its level at every event node in the node's direction.
-
-    It does not once a pair of passages has vanished.
-    """
-    if not orbit.mesh.events:
-        return True
-    at = orbit.nodes[orbit.mesh.starts]
-    d_state, d_phase, _ = system.switch_gradient(at, orbit.phases, orbit.parameter)
-    rates = orbit.node_rates[orbit.mesh.starts]
-    special = _elsewhere(system)
-    for i, event in enumerate(orbit.mesh.events):
-        slope = d_phase[i, event.switch] + d_state[i, event.switch] @ rates[i]
-        if event.switch in special:
-            slope = impacts.slope_before(system, orbit, i)
-        if slope * event.direction <= 0:
-            return False
-    return True
-
-
 def placed(system: System, orbit: Orbit, chosen: list[Crossing]) -> tuple[tuple[EventNode, ...], Array]:
     """Return event nodes and exact phases of crossings for a new mesh, the first phase in [0, period)."""
     phases = np.array([_exact(system, orbit, c) for c in chosen])

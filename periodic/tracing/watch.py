@@ -79,6 +79,9 @@ class Watch:
         self._check_others()
 
     def _check_others(self) -> None:
+        special: object = self.special
+        if not isinstance(special, Sequence):
+            raise ValueError(f"special is {special!r}; it must be a tuple of TestFunction(label=, value=)")
         for test in self.special:
             if not isinstance(test, TestFunction):
                 raise ValueError(f"special has {test!r}; it must be a TestFunction(label=, value=)")

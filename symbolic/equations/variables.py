@@ -175,7 +175,9 @@ parameter, coordinate = Parameter, Coordinate
 
 
 def apart(field: str, one: Coordinate, other: Coordinate | None) -> None:
-    """Refuse one coordinate for both ends, or both directions, of a part. Raises ValueError."""
+    """Refuse one coordinate for both ends, or directions, of a part, and what is none. Raises ValueError."""
+    if other is not None:
+        typed(field, other, Coordinate, "a Coordinate, as symbolic.coordinate returns it")
     if one is other:
         raise ValueError(f"{field} is {one.name!r} too; it must be another coordinate")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from functions import Functions
-from measuring import PACKAGES, files, function, stored
+from measuring import DEFINED, PACKAGES, files, function, stored
 
 PRIOR = 0.02
 """How likely a test is to notice a change of whatever it executes, beside its share of the module changed."""
@@ -28,6 +28,9 @@ DOUBT = 0.3
 
 NAMED = 8.0
 """How much more likely a test file is to execute a function whose name is in its text."""
+
+LOOKED = 1.0
+"""How likely a test that looks at what modules define is to notice a change of a definition."""
 
 AGAIN = 0.7
 """How much less likely to notice a test's next case is than the one before, which has not noticed."""
@@ -88,9 +91,9 @@ class Covering:
     def tests(self, module: Path, line: int) -> list[str]:
         """Return the tests that execute a line, the most promising first, then those that may.
 
-        Of a line that is executed at import, those that execute a line which uses what it names. Tests that
-        may are those of the module's room of which not all is known, and those that execute anything in the
-        module where none is known to execute the line.
+        Of a line that is executed at import, those that look at what modules define and those that execute a
+        line which uses what it names. Tests that may are those of the module's room of which not all is
+        known, and those that execute anything in the module where none is known to execute the line.
         """
         functions = Functions(self.clone / module)
         if functions.runs(line):
@@ -98,6 +101,7 @@ class Covering:
         else:
             sure = self._using(module, functions, line)
         found = {test.name: _likely(module, test) for test in sure}
+        found |= {} if functions.runs(line) else dict.fromkeys(self._looking(), LOOKED)
         names = functions.called(line)
         for test in self._beside(module, not sure, names):
             more = NAMED if self._mentions(test.name, names) else 1.0
@@ -123,6 +127,9 @@ class Covering:
                 using = self._executing(path, other, other.using(names))
                 found |= {test.name: test for test in using}
         return list(found.values())
+
+    def _looking(self) -> list[str]:
+        return [name for name in self.all if Path("tests", DEFINED) in Path(name.partition("::")[0]).parents]
 
     def _beside(self, module: Path, none: bool, names: set[str]) -> Iterator[Executed]:
         """Yield the tests that may execute a line; none: whether none is known to."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 import tempfile
 import time
 from collections import defaultdict
@@ -23,9 +24,11 @@ from coverage import Coverage
 from functions import Functions
 
 PACKAGES = ("symbolic", "periodic")
-ROOMS = ("periodic", "symbolic", "problems", "howto")
-"""Folders of tests: not those of the command line and of texts, which run the packages from afar."""
+DEFINED = "interface"
+"""The folder of tests that look at what modules define, rather than run it."""
 
+ROOMS = ("periodic", "symbolic", "problems", "howto", "fuzz/test_attacks.py", DEFINED)
+"""Folders and files of tests: not those of the command line and texts, which run the packages from afar."""
 
 LONGEST = 1.0
 """CPU seconds after which a test is stopped as it is measured; what it has executed until then counts."""
@@ -39,8 +42,9 @@ WHOLE = 10.0
 
 def files(clone: Path) -> list[Path]:
     """Return the test files of a clone, relative to it, the rooms of the packages first."""
-    tests = clone / "tests"
-    return [path.relative_to(clone) for room in ROOMS for path in sorted((tests / room).rglob("test_*.py"))]
+    rooms = (clone / "tests" / room for room in ROOMS)
+    each = (sorted(room.rglob("test_*.py")) if room.is_dir() else [room] for room in rooms if room.exists())
+    return [path.relative_to(clone) for found in each for path in found]
 
 
 def stored(clone: Path, folder: Path, test: Path) -> Path:
@@ -99,7 +103,8 @@ class Meter:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
-        """Begin to count; fixtures may take longer."""
+        """Begin to count, with nothing kept from tests before; fixtures may take longer."""
+        forget()
         self.coverage.switch_context(item.nodeid)
         self.began = time.process_time()
         with forks.stopped_after(3 * LONGEST):
@@ -135,6 +140,15 @@ class Meter:
         part = self.place.with_suffix(".part")
         part.write_text(text, "utf-8")
         part.rename(self.place)
+
+
+def forget() -> None:
+    """Clear what functions of the packages keep, so that each test executes all that it asks for."""
+    for name, module in list(sys.modules.items()):
+        if name.partition(".")[0] in PACKAGES:
+            for value in list(vars(module).values()):
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
 
 
 @cache

@@ -12,7 +12,7 @@ from symbolic.checks import refusal
 from symbolic.equations.assembly import Assembly
 from symbolic.equations.interval import POSITIVE
 from symbolic.equations.model import Part
-from symbolic.equations.variables import Coordinate, Value, above_zero, several
+from symbolic.equations.variables import Coordinate, Value, above_zero, apart, several
 from symbolic.parts.friction.load import NormalLoad, check_limit, limit_of
 from symbolic.parts.mechanics.ends import deflection, resist
 
@@ -163,6 +163,7 @@ class Iwan(Part):
 def slide(assembly: Assembly, part: Jenkins | Iwan, k: ca.SX, limit: ca.SX, name: str) -> None:
     """Add one slider: its force, its state and the row of it."""
     q, to = part.q, part.to
+    apart("to", q, to)
     name = _unused(assembly, name, q.name if to is None else f"{q.name} - {to.name}", part.owner)
     scale = assembly.motion(q).position.scale
     creep = ca.SX(CREEP)

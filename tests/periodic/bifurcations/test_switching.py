@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -13,10 +14,14 @@ from reference import squeeze
 from support.kept import kept
 from support.mathieu import Mathieu
 from support.numpy_systems import Array, LinearOscillator
+from support.surfaces import along
 from support.traces import RPM, disc_system
 
 import periodic as per
 import symbolic as sym
+from periodic.bifurcations import switching
+from periodic.linear.unknowns import parameter_only
+from periodic.orbit.mesh import EventNode
 from periodic.system import index_of
 from symbolic.integration.flow import Flow, Trajectory
 from symbolic.motion.linear import modes
@@ -195,3 +200,29 @@ def test_cascade() -> None:
             places = [p.parameter for p in branches.labelled("PD")]
             assert places == pytest.approx([orbit.parameters["F"]] * len(places), rel=1e-6)
     assert 0.1005 < begun < orbit.parameters["F"] < 0.1085
+
+
+def test_doubled_direction_of_an_orbit_with_event_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it has the opposite sign in the second period, and moves no event node of either."""
+    orbit = along(
+        lambda tau: np.sin(tau)[:, None], [(EventNode(0, 1), 0.5), (EventNode(0, -1), 3.0)], intervals=8
+    )
+    once = replace(parameter_only(orbit, 0.0), nodes=orbit.nodes, stages=orbit.stages)
+    asked: dict[str, Any] = {}
+
+    def switched(system: Any, twice: Any, direction: Any, *others: Any) -> Any:
+        asked.update(twice=twice, direction=direction, others=others)
+        return twice
+
+    monkeypatch.setattr(switching, "away", lambda system, orbit, sign, autonomous: once)
+    monkeypatch.setattr(switching, "switched", switched)
+    monkeypatch.setattr(switching, "as_read_by", lambda system, orbit: orbit)
+    switching.doubled(None, orbit, "Omega", distance=0.5)  # type: ignore[arg-type]
+    twice, direction = asked["twice"], asked["direction"]
+    assert direction.phases.tolist() == [0.0] * len(twice.phases) and len(twice.phases) == 4
+    n = len(orbit.nodes) - 1
+    assert direction.nodes[:n] == pytest.approx(orbit.nodes[:-1])
+    assert direction.nodes[n:] == pytest.approx(-orbit.nodes)
+    assert direction.stages[n:] == pytest.approx(-orbit.stages)
+    assert direction.profile is direction.nodes and direction.parameters.tolist() == [0.0]
+    assert asked["others"] == ("Omega", {}, 0.5)

@@ -16,10 +16,13 @@ from periodic.condensed.condensedcollocation import CondensedCollocation
 from periodic.condensed.memory import KEPT, SOLVING, Memory
 from periodic.condensed.modal.moments import SERIES_UP_TO, Moments
 from periodic.condensed.refinement import CondensedRefinement
+from periodic.condensed.timestep import Step
 from periodic.condensed.timestepping import Changed
+from periodic.condensed.variations import CondensedVariations
 from periodic.linear.variation import Tangent
+from periodic.orbit.row import Row
 from periodic.orbit.scheme import Scheme
-from periodic.system import STUCK
+from periodic.system import HELD, STUCK
 
 
 def test_orbit_moved_along_a_linearised_motion() -> None:
@@ -304,3 +307,89 @@ def test_intervals_of_a_condensed_orbit() -> None:
     assert (method.ntst, method.ntst_min) == (12, 6)
     for tolerance in (1e-2, 1e-6, 1e-11):
         assert method._scheme_at(tolerance).ncol == min(scheme_for(tolerance).ncol + 1, 7)
+
+
+@pytest.mark.parametrize(
+    ("held", "after", "signs", "back"),
+    [
+        (STUCK, -1, {10: 1}, True),
+        (STUCK, 1, {10: 1}, False),
+        (STUCK, 1, {10: -1}, True),
+        (STUCK, STUCK, {10: 1}, False),
+        (HELD, -1, {10: 1}, False),
+        (1, -1, {}, False),
+    ],
+)
+def test_slip_that_friction_takes_back(
+    held: int, after: int, signs: dict[int, int], back: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that friction which held a slider, and lets go the other way as it slips, takes the slip back.
+
+    Friction is in column 1 before and after the step of the slip, to which a slider in column 0 begins up.
+    """
+    asked = []
+
+    def holding(system: Any, switch: int, friction: list[int]) -> dict[int, int]:
+        asked.append(friction)
+        return signs if friction else {}
+
+    monkeypatch.setattr(settling, "holding", holding)
+    slider: Any = SimpleNamespace(slides=False, switch=3, column=0)
+    friction = SimpleNamespace(slides=True, switch=10, column=1)
+    sides = [np.array([9, 9]), np.array([STUCK, held]), np.array([1, after]), np.array([9, 9])]
+    motion: Any = SimpleNamespace(sides=sides, joints=[friction, slider], system=None)
+    assert settling._goes_back(motion, slider, Changed(0, STUCK, 1, 1.0, 1)) is back
+    assert asked == [[10] if held == STUCK else []]
+    assert not settling._goes_back(motion, friction, Changed(0, STUCK, 1, 1.0, 1))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("values", "near", "pair"),
+    [
+        ([3.0, 0.5, 1.9, 0.2], None, (1, 2)),
+        ([3.0, 0.5, 1.9, 0.2], (3.0, 0.25), (0, 3)),
+        ([3.0, 0.5, 1.9, 0.2], (0.25, 3.0), (0, 3)),
+        ([0.6 + 0.8j, 0.5, 0.6 - 0.8j, 1.7], None, (0, 2)),
+        ([0.6 + 0.8j, 0.5, 0.6 - 0.8j, 1.7], (0.6 - 0.7j, 0.6 + 0.7j), (0, 2)),
+        ([0.99 + 0.1j, 1.0, 0.9, 1.05], None, (1, 3)),
+    ],
+)
+def test_pair_of_multipliers(
+    values: list[complex], near: tuple[complex, complex] | None, pair: tuple[int, int]
+) -> None:
+    """Assert the pair of which the product is nearest to 1, or that nearest to another, in either order.
+
+    Of a complex multiplier only its conjugate makes a pair. The gradient is that of the product.
+    """
+
+    def multiplier(which: int, factor: complex, free: tuple[int, ...]) -> Row:
+        return Row(0.0, np.full((1, 1), float(which)), np.array([complex(factor).real, 0.0]))
+
+    given: Any = SimpleNamespace(multipliers=np.array(values, dtype=complex), multiplier=multiplier)
+    known = None if near is None else np.array([np.real(near), np.imag(near)])
+    row, found = CondensedVariations.pair(given, known, (0,))
+    i, j = pair
+    assert found.tolist() == [
+        np.real([values[i], values[j]]).tolist(),
+        np.imag([values[i], values[j]]).tolist(),
+    ]
+    assert row.value == pytest.approx((values[i] * values[j]).real - 1)
+    assert row.nodes[0, 0] == i + j
+    assert row.outer[0] == pytest.approx((complex(values[i]) + complex(values[j])).real)
+
+
+@pytest.mark.parametrize("exponent", [0.0, -0.3, 0.2 + 1.0j])
+def test_time_step_of_a_mode(exponent: complex) -> None:
+    """Assert z+ = e^{xh} z + (e^{xh} - 1)/x b f and the output, also of a mode that nothing holds."""
+    modes: Any = SimpleNamespace(
+        exponents=np.array([exponent], dtype=complex),
+        inputs=np.array([[2.0 + 1.0j]]),
+        outputs=np.array([[3.0 - 1.0j]]),
+        direct=np.array([[0.25]]),
+    )
+    step = Step.over(0.5, modes)
+    mean = (np.exp(0.5 * exponent) - 1) / exponent if exponent else 0.5
+    assert step.grown == pytest.approx([np.exp(0.5 * exponent)])
+    assert step.kicked[0, 0] == pytest.approx(mean * (2 + 1j))
+    assert step.local[0, 0] == pytest.approx((mean * (2 + 1j) * (3 - 1j)).real + 0.25)
+    assert step.width == 0.5

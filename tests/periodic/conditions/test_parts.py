@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from support.numpy_systems import LinearOscillator
 from support.surfaces import along
 
 import periodic as per
-from periodic.conditions import extremes
+from periodic.conditions import augmented, extremes
 from periodic.conditions.functionals import Component, apart, output_index
 from periodic.orbit.gradients import collocation_points
+from periodic.orbit.row import Row
 from periodic.tracing.watch import _rising, slack
 
 
@@ -110,3 +113,51 @@ def test_start_within_the_limits() -> None:
     for value in (1.0 - 1.1e-12, 2.0 + 2.1e-12, 0.0):
         with pytest.raises(ValueError, match="F is .* at the start; its limits are 1.0 to 2.0"):
             watch.check(system, begun(value))
+
+
+def test_limits_as_test_functions() -> None:
+    """Assert that each is 0 where the parameter is beyond its limit by rounding, and named by its side."""
+    system = LinearOscillator()
+    lower, upper = per.Watch(limits={"F": (-3.0, 5.0)}).tests()
+    assert [test.name for test in (lower, upper)] == ["lower limit of F", "upper limit of F"]
+    assert {test.label for test in (lower, upper)} == {per.Label.END}
+
+    def at(value: float) -> Any:
+        orbit = replace(along(lambda tau: np.sin(tau)[:, None]), parameter=np.array([0.8, 0.05, value]))
+        return SimpleNamespace(problem=SimpleNamespace(full=system, expand=lambda it: it), orbit=orbit)
+
+    assert [lower.value(at(-3.0)), upper.value(at(5.0))] == pytest.approx([3e-12, -5e-12], rel=1e-3)
+    assert [lower.value(at(0.0)), upper.value(at(0.0))] == pytest.approx([3.0, -5.0], rel=1e-11)
+
+
+@pytest.mark.parametrize(("multiplier", "slope"), [(1.0, 2.0), (-1.0, 0.5)])
+def test_singular_with_a_side_condition(
+    multiplier: float, slope: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert g and its gradient of K = [slope] beside [4]: g b c = -s1 s2 in the singular directions.
+
+    By hand for the matrix diag(slope, 4), whose least singular direction is the first: bordered there by +-1,
+    g = -slope, v = e_1 and w = e_1; the gradient of K is taken with the sign that g has.
+    """
+    asked: dict[str, Any] = {}
+
+    def gradient(right: Any, left: Any, source: Row, free: tuple[int, ...]) -> Row:
+        asked.update(right=right, left=left, source=source, free=free)
+        return Row(0.25, np.full((1, 1), 3.0), np.array([7.0]), np.full((1, 1, 1), 5.0))
+
+    closed = SimpleNamespace(
+        matrix=np.array([[slope, 0.0]]), functional=lambda row: row.outer, gradient=gradient
+    )
+    monkeypatch.setattr(augmented, "variations", lambda *_: SimpleNamespace(repeating=lambda mu: closed))
+    held = SimpleNamespace(
+        linearise=lambda *_: Row(0.0, np.zeros((1, 1)), np.array([0.0, 4.0]), np.zeros((1, 1, 1)))
+    )
+    given: Any = SimpleNamespace(free=(1,), conditions=[held])
+    orbit: Any = SimpleNamespace(equilibrium=False)
+    found = augmented._Singular(multiplier, given).linearise(None, orbit, (0,))  # type: ignore[arg-type]
+    assert found.value == pytest.approx(-slope - 0.25)
+    assert found.stages is not None
+    assert [found.nodes[0, 0], found.outer[0], found.stages[0, 0, 0]] == [-3.0, -7.0, -5.0]
+    assert np.abs(asked["right"]) == pytest.approx([1.0, 0.0])
+    assert np.abs(asked["left"]) == pytest.approx([1.0])
+    assert asked["source"].outer == pytest.approx([0.0, 0.0]) and asked["free"] == (0,)

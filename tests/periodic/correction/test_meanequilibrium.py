@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ import pytest
 import periodic as per
 import symbolic as sym
 from periodic.condensed.condensedcollocation import mesh_method
-from periodic.correction.meanequilibrium import resting
+from periodic.correction import meanequilibrium
+from periodic.correction.meanequilibrium import _Balance, _balanced, resting
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
 from periodic.orbit.scheme import Scheme
@@ -120,3 +122,83 @@ def test_springs_that_hold_a_structure_are_where_it_is_held() -> None:
     line = system.linearise(0 * x, x, np.zeros((1, len(system.algebraics))), np.zeros(1), system.nominal)
     forces = [k for k, row in enumerate(np.abs(line.d_state[0]).max(axis=1)) if row > 0]
     assert len(forces) == 2
+
+
+def linear(line: dict[str, Any], states: int) -> System:
+    """A system whose linearisation is given, per phase."""
+    given = SimpleNamespace(**{name: np.asarray(value) for name, value in line.items()})
+    each = [SimpleNamespace()] * states
+    return cast(System, SimpleNamespace(states=each, linearise=lambda *_: given))
+
+
+def test_mean_rows_beside_a_linear_part() -> None:
+    """Assert x = S f in the rows of states that no equation holds, S = direct - Re outputs inputs/exponents.
+
+    Of three states the first is held by an equation, 2 x0 - 3 f + 1 +- 1 over two phases; places are the
+    others, of which x1 = S00 f0 and x2 = S10 f0, with the unknown f0 their force.
+    """
+    d_state = np.zeros((2, 4, 3))
+    d_state[:, 0, 0] = 2.0
+    d_algebraic = np.zeros((2, 4, 1))
+    d_algebraic[:, 0, 0], d_algebraic[:, 3, 0] = -3.0, 1.0
+    residual = np.array([[2.0, 9.0, 9.0, 5.0], [0.0, 9.0, 9.0, 7.0]])
+    d_rate = np.zeros((2, 4, 3))
+    line = {"residual": residual, "d_state": d_state, "d_algebraic": d_algebraic, "d_rate": d_rate}
+    modes = SimpleNamespace(
+        direct=np.array([[1.0], [2.0]]),
+        outputs=np.array([[2.0 + 1j], [4.0]]),
+        inputs=np.array([[3.0 + 0j]]),
+        exponents=np.array([-1.0 + 0j]),
+    )
+    part = cast(LinearPart, SimpleNamespace(modes=lambda p: modes, states=(1, 2), forces=(0,)))
+    balance = _Balance.of(linear(line, 3), np.zeros(1), part)
+    assert balance.flexibility.tolist() == [[7.0], [14.0]]
+    rows, jacobian = balance.rows(np.array([0.1, 0.2, 0.3, 0.4]))
+    assert rows == pytest.approx([1.0, 0.2 - 7 * 0.4, 0.3 - 14 * 0.4, 6.0])
+    exact = [[2.0, 0.0, 0.0, -3.0], [0.0, 1.0, 0.0, -7.0], [0.0, 0.0, 1.0, -14.0], [0.0, 0.0, 0.0, 1.0]]
+    assert jacobian.tolist() == exact
+    d_rate[:, 0, 0], d_state[:, 0, 0] = 1.0, 0.0  # a rate alone holds no less
+    assert balance.rows(np.zeros(4))[0] == pytest.approx([1.0, 0.0, 0.0, 6.0])
+    d_rate[:, 0, 0] = 0.0
+    with pytest.raises(np.linalg.LinAlgError, match="a row of an own state is empty"):
+        balance.rows(np.zeros(4))
+
+
+@pytest.mark.parametrize(
+    ("residual", "point", "balanced"),
+    [
+        ([0.0], [0.0], True),
+        ([0.9e-9, -0.9e-9], [0.0], True),
+        ([0.0, -1.1e-9], [0.0], False),
+        ([2.9e-9], [1.0, -2.0], True),
+        ([3.1e-9], [1.0, -2.0], False),
+        ([], [], True),
+    ],
+)
+def test_what_is_balanced(residual: list[float], point: list[float], balanced: bool) -> None:
+    """Assert a residual below 1e-9 of the largest state or unknown, and of 1 more."""
+    assert _balanced(np.array(residual), np.array(point)) is balanced
+
+
+@pytest.mark.parametrize(("bears", "rests"), [(1.0, True), (0.3, True), (1e-3, True), (1e-5, False)])
+def test_load_that_is_added_in_steps(bears: float, rests: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a step that fails is halved, one that succeeds doubled, down to 1e-4 of the load.
+
+    Newton's method converges where no more than a part of the load is added at once.
+    """
+    missing, loads = np.array([8.0]), [0.0]
+
+    def solved(balance: Any, point: Any, load: Any) -> Any:
+        borne = 1.0 - float(load[0]) / 8.0
+        if borne - loads[-1] > bears * (1 + 1e-12):
+            return None
+        loads.append(borne)
+        return np.array([borne])
+
+    monkeypatch.setattr(meanequilibrium, "_solved", solved)
+    found = meanequilibrium._loaded(cast(_Balance, None), np.zeros(1), missing)
+    assert (found is not None) is rests
+    if found is not None:
+        assert loads[-1] == 1.0 and found.tolist() == [1.0] and (np.diff(loads) > 0).all()
+        first = 0.5 ** math.ceil(-math.log2(bears))
+        assert loads[1] == first

@@ -281,3 +281,38 @@ def test_way_on_which_the_branch_is_straight(
     on_branch = errors._OnBranch(problem_of(), lambda _: there, 1.0)  # type: ignore[arg-type, return-value]
     given: Any = None
     assert on_branch._there(found, given) is (there if straight else None)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("ratio", "straight"), [(1.0, True), (1.9, True), (2.0, False), (0.51, True), (0.5, False), (-1.0, False)]
+)
+def test_way_on_which_a_branch_is_straight(ratio: float, straight: bool) -> None:
+    """Assert that d parameter / d arclength changes by less than twice on it."""
+    orbit = wave()
+
+    def linearised(rate: float) -> Any:
+        return SimpleNamespace(kernel=change(orbit, 0.0, (), (rate,)), orbit=orbit)
+
+    there = linearised(3.0 * ratio)
+    problem = SimpleNamespace(system=None, free=(0,))
+    on = errors._OnBranch(problem, lambda orbit: there, 1.0)  # type: ignore[arg-type]
+    moved = replace(on, solve=lambda given: there)
+    patched: Any = moved
+    object.__setattr__(patched, "_moved", lambda found, by: orbit)
+    assert (patched._there(linearised(3.0), change(orbit, 0.0)) is there) is straight
+
+
+def test_way_to_where_the_parameter_is_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the kernel scaled to it; none where it is more than a tenth of the unit, or an excursion."""
+    orbit = wave()
+    found: Any = SimpleNamespace(kernel=change(orbit, 2.0, (), (0.5,)), orbit=orbit)
+    on: Any = errors._OnBranch(SimpleNamespace(units=lambda orbit: 1.0), None, 1.0)  # type: ignore[arg-type]
+    object.__setattr__(on, "_length", lambda found: 4.0)
+    way = on._along(found, 0.01)
+    assert way is not None and way.parameter == pytest.approx(0.01) and way.nodes == pytest.approx(0.04)
+    assert on._along(found, -0.0125) is not None  # 4 * 0.0125 = 0.1 * 0.5
+    assert on._along(found, 0.0126) is None and on._along(found, -0.0126) is None
+    monkeypatch.setattr(errors, "stretched", lambda orbit, way: 1.1)
+    assert on._along(found, 0.01) is None
+    still: Any = SimpleNamespace(kernel=change(orbit, 2.0, (), (0.0,)), orbit=orbit)
+    assert on._along(still, 0.0) is None

@@ -12,7 +12,7 @@ from support.traces import duffing, duffing_system
 
 import periodic as per
 from periodic.display.htmltables import table
-from periodic.display.sketch import Line, Mark, sketch
+from periodic.display.sketch import Frame, Line, Mark, sketch
 
 
 def parsed(text: str) -> ElementTree.Element:
@@ -81,3 +81,35 @@ def test_sketch_keeps_within_its_frame() -> None:
     width = float(re.findall(r"viewBox='0 0 (\d+)", text)[0])
     assert all(0 <= float(pair.split(",")[0]) <= width for pair in str(line.get("points")).split())
     assert sketch([], [], "", "") == "" and table(["a"], []) == ""
+
+
+def test_sketch_by_hand() -> None:
+    """Assert every length of the picture of 380 by 210 with margins 58, 14, 14 and 36: frame 308 by 160."""
+    given = [
+        Line(np.array([0.0, 10.0]), np.array([1.0, 3.0])),
+        Line(np.array([5.0]), np.array([2.0]), dashed=True),
+    ]
+    text = sketch(given, [Mark(5.0, 2.0, "LP"), Mark(10.0, 3.0, "BP")], "x", "y")
+    root = parsed(text)
+    (box,) = root.iter("rect")
+    assert [box.get(key) for key in ("x", "y", "width", "height")] == ["54", "10", "316", "168"]
+    solid, dashed = root.iter("polyline")
+    assert (solid.get("points"), dashed.get("points")) == ("58.0,174.0 366.0,14.0", "212.0,94.0")
+    assert (solid.get("stroke-dasharray"), dashed.get("stroke-dasharray")) == (None, "5 3")
+    assert (solid.get("stroke-width"), solid.get("fill")) == ("1.7", "none")
+    dots = [(dot.get("cx"), dot.get("cy"), dot.get("r")) for dot in root.iter("circle")]
+    assert dots == [("212.0", "94.0", "2.6"), ("366.0", "14.0", "2.6")]
+    texts = [(t.get("x"), t.get("y"), t.get("text-anchor"), t.text) for t in root.iter("text")]
+    assert texts == [
+        ("217.0", "90.0", "start", "LP"),
+        ("361.0", "10.0", "end", "BP"),
+        ("58", "191", "start", "0"),
+        ("366", "191", "end", "10"),
+        ("51", "178", "end", "1"),
+        ("51", "18", "end", "3"),
+        ("212", "205", "middle", "x"),
+        (None, None, "middle", "y"),
+    ]
+    (turned,) = (t.get("transform") for t in root.iter("text") if t.get("transform"))
+    assert turned == "translate(12 94) rotate(-90)"
+    assert Frame((0.0, 2.0), (4.0, 2.0)).at(1.0, 2.0) == (58 + 308 / 4, 94.0)

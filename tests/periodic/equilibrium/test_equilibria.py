@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -454,3 +455,13 @@ def test_long_steps_round_no_corner(place: float) -> None:
     assert [point.parameter for point in branch.labelled("BP")] == [pytest.approx(place, abs=1e-9)]
     states = [point.maximum["x"] for point in branch]
     assert states == pytest.approx(np.sin(3 * branch.values), abs=1e-9)
+
+
+def test_guess_is_where_an_orbit_begins() -> None:
+    """Assert that of a motion that does not close its first state is the guess, with its own unknowns."""
+    system = equations(lambda x, p: {"x": p.a - x.x}, {"x": 0.25}, a=1.0)
+    method = per.Equilibrium()
+    still = method.guess(system, system.nominal, None)
+    assert still.equilibrium and still.nodes[:, 0].tolist() == [0.25, 0.25]
+    moving = replace(still, nodes=np.array([[0.5], [0.75]]), equilibrium=False)
+    assert method.guess(system, system.nominal, moving).nodes[:, 0].tolist() == [0.5, 0.5]

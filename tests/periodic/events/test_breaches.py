@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from support.surfaces import Surfaces, along, joint
 
 from periodic.events import twinguards, violations
 from periodic.events.switchpolynomials import SwitchPolynomials
-from periodic.events.violations import Breach
+from periodic.events.violations import Breach, Violation
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.scheme import Array
 from periodic.system import HELD, PLUS, STUCK, Kind
@@ -167,3 +168,51 @@ def test_friction_that_is_held_about_a_node() -> None:
     assert twinguards.held_at(system, events, 0, [8]) == [8]
     orbit = along(sine, [(event, 0.5 + k) for k, event in enumerate(events)], intervals=24)
     assert [twinguards.held_in(system, orbit, k) for k in (0, 4, 8, 12)] == [[0], [0, 3], [3], []]
+
+
+@pytest.mark.parametrize(
+    ("mode", "values", "breach"),
+    [
+        (STUCK, (0.0, 5.0, -5.0), False),
+        (STUCK, (0.1, 0.0, 0.0), True),
+        (1, (5.0, 0.0, 5.0), False),
+        (1, (0.0, 5.0, 0.0), True),
+        (-1, (5.0, 5.0, 0.0), False),
+        (-1, (0.0, 0.0, 5.0), True),
+    ],
+)
+def test_mode_that_an_event_of_another_joint_brings(
+    mode: int, values: tuple[float, float, float], breach: bool
+) -> None:
+    """Assert that a joint that is held with another has its guard at 0 there, one let go its release.
+
+    Joint 3 (4, 5) changes at an event node of joint 0; the states are constant, its switches the values.
+    """
+    system = Surfaces([joint(), joint(1, 3)], [[0.0]] * 6, [0.5, 0.5, 0.5, *values])
+    event = EventNode(0, -1, modes=((0, STUCK), (3, mode)))
+    orbit = along(lambda tau: np.sin(tau)[:, None], [(event, 1.0), (EventNode(1, 1), 3.0)], intervals=8)
+    dense = SwitchPolynomials(system, orbit)  # type: ignore[arg-type]
+    found = violations._unforced(dense, 0, system.surfaces[0])
+    assert found == ([Violation(Breach.MODE, 3, 0, mode, 1.0)] if breach else [])
+    other = violations._unforced(dense, 0, system.surfaces[1])
+    assert other == [Violation(Breach.MODE, 0, 0, STUCK, 1.0)]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "torn"),
+    [(-1.0, 2.0, True), (2.0, 3.0, False), (-2.0, -1.0, False), (0.0, 1.0, True)],
+)
+def test_joint_that_another_tears_off(before: float, after: float, torn: bool) -> None:
+    """Assert that it is within its limit in the modes before the event, and past it in those after."""
+    system: Any = Surfaces([joint(), joint(1, 3)], [[0.0]] * 6, guards_depend=True)
+
+    def switch(state: Any, phase: Any, parameter: Any, side: Any = None) -> Any:
+        release = np.where(np.broadcast_to(side, (len(state), 2))[:, 0] == 1, before, after)
+        return np.column_stack([np.ones((len(state), 4)), release, np.ones(len(state))])
+
+    system.switch = switch
+    nodes = [(EventNode(0, -1, modes=((0, STUCK), (3, 1))), 1.0), (EventNode(1, 1), 3.0)]
+    orbit = along(lambda tau: np.sin(tau)[:, None], nodes, intervals=8)
+    dense: Any = SimpleNamespace(system=system, orbit=orbit, knots=np.ones((8, 5, 6)))
+    found = violations._unforced(dense, 0, system.surfaces[0])
+    assert found == ([] if torn else [Violation(Breach.MODE, 3, 0, 1, 1.0)])

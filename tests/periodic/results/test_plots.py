@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -261,3 +263,30 @@ def test_rolling_bearing_tells_time() -> None:
     orbit = branch[0].orbit
     cage = speed * 40.1 / (40.1 + 63.9)
     assert orbit.period == pytest.approx(2 * np.pi / (8 * cage), rel=1e-12)
+
+
+def test_orders_and_critical_speeds_of_a_diagram(axes: Axes) -> None:
+    """Assert each line up to the highest frequency, its name at its end, and marks where it is crossed."""
+    diagram: Any = SimpleNamespace(
+        speeds=np.array([10.0, 20.0, 30.0, 40.0]),
+        frequencies=np.array([[30.0, 60.0]] * 4),
+        damping=np.array([[0.1, 0.1], [0.1, 0.1], [0.1, -0.1], [0.1, -0.1]]),
+        critical=lambda order: np.array([30.0, 60.0]) / order,
+    )
+    per.plots.campbell(diagram, axes, orders=(1.0, 2.0), units={"speed": "rad/s", "frequency": "rad/s"})
+    named = {text.get_text(): text.get_position() for text in axes.texts}
+    assert named == {"1x": (40.0, 40.0), "2x": (30.0, 60.0)}
+    lines = axes.get_lines()
+    drawn = [
+        (line.get_linestyle(), line.get_marker(), np.asarray(line.get_xydata()).tolist()) for line in lines
+    ]
+    assert [at for style, _, at in drawn if style == "--"] == [
+        [[10.0, 10.0], [20.0, 20.0], [30.0, 30.0], [40.0, 40.0]],
+        [[10.0, 20.0], [20.0, 40.0], [30.0, 60.0]],
+    ]
+    assert [at for _, mark, at in drawn if mark == "o"] == [
+        [[30.0, 30.0], [60.0, 60.0]],
+        [[15.0, 30.0], [30.0, 60.0]],
+    ]
+    assert [at for _, mark, at in drawn if mark == "x"] == [[[30.0, 60.0], [40.0, 60.0]]]
+    assert axes.get_xlim() == (10.0, 40.0)

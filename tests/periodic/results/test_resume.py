@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -234,3 +235,13 @@ def test_interrupt_while_the_journal_is_written(tmp_path: Path, monkeypatch: pyt
         assert len(known) == len(interrupted.value.branch) <= len(expected)
         assert known.values == pytest.approx(expected.values[: len(known)], rel=1e-12)
         (tmp_path / f"{which}").unlink()
+
+
+def test_journal_of_a_single_step(tmp_path: Path) -> None:
+    """Assert that what a trace had done after its first step is recovered: names, scales and points."""
+    branch = cut(1)
+    with Journal(tmp_path / "one", replace(branch, points=())) as journal:
+        journal.add(branch.points, branch.stop, branch.checkpoints[0] if branch.checkpoints else None)
+    found = per.recovered(tmp_path / "one")
+    assert found.values.tolist() == branch.values.tolist() and found.parameter == branch.parameter
+    assert [found.layout, found.made] == [branch.layout, branch.made]

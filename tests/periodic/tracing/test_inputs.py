@@ -197,3 +197,26 @@ def test_negative_frequencies_are_refused() -> None:
         ValueError, match=r"^bounds is \(-1, 3\); 'Omega', a frequency, must not be negative$"
     ):
         per.trace(sym.scene("duffing"), "Omega", (-1, 3))
+
+
+@pytest.mark.parametrize("low", [-1e-3, -0.5, -2.0])
+def test_frequencies_are_not_negative(low: float) -> None:
+    """Assert that a range of a frequency that begins below 0 is refused, and that of a force is not."""
+    with pytest.raises(
+        ValueError, match=f"^bounds is .{low:g}, 2.; 'Omega', a frequency, must not be negative$"
+    ):
+        per.trace(sym.scene("duffing"), "Omega", (low, 2.0))
+    few = per.ArclengthControl(max_points=1)
+    assert len(per.trace(sym.scene("duffing"), "F", (low, 2.0), start=1.0, control=few)) == 1
+
+
+@pytest.mark.parametrize(
+    ("start", "at", "said"), [(0.4999, (), "start is 0.4999"), (None, (2.0001,), "at is 2.0001")]
+)
+def test_values_outside_the_bounds(start: float | None, at: tuple[float, ...], said: str) -> None:
+    """Assert that a start and a value asked for lie within the bounds, their ends included."""
+    few = per.ArclengthControl(max_points=1)
+    with pytest.raises(ValueError, match=said):
+        per.trace(sym.scene("duffing"), "Omega", (0.5, 2.0), start=start, at=at, control=few)
+    branch = per.trace(sym.scene("duffing"), "Omega", (0.5, 2.0), start=2.0, at=(0.5, 2.0), control=few)
+    assert branch[-1].parameter == 2.0

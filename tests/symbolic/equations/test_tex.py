@@ -9,6 +9,7 @@ import pytest
 from support.traces import duffing_system
 
 import symbolic as sym
+from symbolic.equations.tex.products import Product, one, scaled, written
 
 F = sym.functions
 X = sym.coordinate("x")
@@ -126,3 +127,48 @@ def test_sum_of_parts() -> None:
         1 + parts[0]  # type: ignore[operator]
     with pytest.raises(TypeError):
         -1 + sym.Model(tuple(parts))  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("terms", "said"),
+    [
+        ([], "0"),
+        ([Product(0.0, {"x": 1.0})], "0"),
+        ([Product(-1.0)], "-1"),
+        ([Product(2.0, {"x": 1.0}), Product(-3.0, {"y": 2.0})], r"2 \, x - 3 \, y^{2}"),
+        ([Product(2.0, {"x": 1.0}), Product(-3.0, {"x": 1.0})], "-x"),
+        ([Product(2.0, {"x": 1.0}), Product(-2.0, {"x": 1.0})], "0"),
+        ([Product(1.0, {"x": 1.0, "y": -2.0})], r"\frac{x}{y^{2}}"),
+        ([Product(3.0, {"y": -1.0})], r"\frac{3}{y}"),
+        ([Product(1.0, {"y": -0.5, "x": 0.5})], r"\frac{\sqrt{x}}{\sqrt{y}}"),
+        ([Product(1.0, {r"\left(a + b\right)": 0.5})], r"\sqrt{a + b}"),
+        ([Product(1.0, {r"\left(a\right) \left(b\right)": 0.5})], r"\sqrt{\left(a\right) \left(b\right)}"),
+        ([Product(1.0, {"a + b": 2.0})], r"\left(a + b\right)^{2}"),
+        ([Product(1.0, {"x_{1}^{2}": 3.0})], r"\left(x_{1}^{2}\right)^{3}"),
+        ([Product(1.0, {r"\left(a + b\right)": 2.0})], r"\left(a + b\right)^{2}"),
+        ([Product(1.0, {"x^{2}": 3.0})], r"\left(x^{2}\right)^{3}"),
+        ([Product(1.0, {r"\dot{x}": 2.0, "k_{12}": 3.0})], r"\dot{x}^{2} \, k_{12}^{3}"),
+        ([Product(1e-5)], "10^{-5}"),
+        ([Product(-2.5e30)], r"-2.5 \cdot 10^{30}"),
+        ([Product(0.1 + 0.2)], "0.3"),
+        ([Product(1234567.0)], r"1.23457 \cdot 10^{6}"),
+        ([Product(float("inf"))], r"\infty"),
+        ([Product(float("-inf"))], r"-\infty"),
+        ([Product(float("nan"))], r"\mathrm{NaN}"),
+    ],
+)
+def test_sums_of_products(terms: list[Product], said: str) -> None:
+    """Assert how numbers, powers, fractions and signs are written, and that terms of equal powers are one."""
+    assert written(terms) == said
+
+
+def test_products_of_sums() -> None:
+    """Assert products and powers of products: what cancels is gone, and what is 0 stays 0."""
+    x, y = Product(2.0, {"x": 1.0}), Product(4.0, {"x": 1.0, "y": 2.0})
+    assert x.times(y) == Product(8.0, {"x": 2.0, "y": 2.0})
+    assert x.times(y, -1.0) == Product(0.5, {"y": -2.0})
+    assert x.times(y, 0.5) == Product(4.0, {"x": 1.5, "y": 1.0})
+    assert x.times(Product(0.0, {"y": 1.0})) == Product(0.0, {"x": 1.0, "y": 1.0})
+    assert one([]) == Product(0.0) and one([x]) == x
+    assert one([x, y]) == Product(1.0, {r"\left(2 \, x + 4 \, x \, y^{2}\right)": 1.0})
+    assert scaled([x, y], -3.0) == [Product(-6.0, {"x": 1.0}), Product(-12.0, {"x": 1.0, "y": 2.0})]

@@ -1,12 +1,17 @@
 """Generated NumPy kernels against CasADi's own evaluation of the same expressions."""
 
+import ctypes
+import math
+from types import SimpleNamespace
+
 import casadi as ca
 import numpy as np
 import pytest
 from support.kernels import COMBINED, OPERATIONS, PLANE, X, Y, arguments
 from support.models import PARTS, REGIMES, Array, draw, scene
 
-from symbolic.kernels import kernel
+from symbolic.kernels import choice, kernel
+from symbolic.kernels.choice import ChosenKernel
 
 LOGICAL = {"LT", "LE", "EQ", "NE", "AND", "OR", "NOT", "IF_ELSE_ZERO"}
 """Operations in which NaN is compared: they answer yes or no."""
@@ -129,3 +134,45 @@ def test_residual_of_a_scene_agrees_with_casadi(name: str, regime: str) -> None:
         [np.array(function(*(a[i] for a in each), p)).ravel() for i in range(len(points.phase))]
     )
     np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-15 * np.abs(expected).max())
+
+
+def test_arrays_that_c_takes() -> None:
+    """Assert that arguments of another kind or order are copied, and results and other shapes are refused.
+
+    Layouts: (points, 2), one of (3,) for all points, and the result (points, 2).
+    """
+    layouts = [choice.Layout((2,)), choice.Layout((3,), shared=True), choice.Layout((2,))]
+    given = SimpleNamespace(layouts=layouts, results=1)
+
+    def taken(*arrays: Array) -> bool:
+        return ChosenKernel._addresses(given, arrays) is not None  # type: ignore[arg-type]
+
+    x, shared, out = np.ones((4, 2)), np.ones(3), np.zeros((4, 2))
+    assert taken(x, shared, out)
+    assert taken(x.astype(int), shared, out) and taken(np.asfortranarray(x), shared, out)
+    assert taken(x, np.ones(6)[::2], out)
+    assert not taken(x[:3], shared, out) and not taken(np.ones((4, 3)), shared, out)
+    assert not taken(x, np.ones((4, 3)), out) and not taken(x, np.ones(2), out)
+    assert not taken(x, shared, out.astype(np.float32)) and not taken(x, shared, np.asfortranarray(out))
+    found = ChosenKernel._addresses(given, (x, shared, out))  # type: ignore[arg-type]
+    assert found is not None and ctypes.addressof(found[2]) == out.ctypes.data
+    assert ctypes.addressof(found[0]) == x.ctypes.data
+
+
+def test_calls_after_which_compiling_has_paid(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a kernel is compiled at that call, and once where there is no compiler."""
+    asked: list[str] = []
+    monkeypatch.setattr(choice.native, "kept", lambda source: None)
+    monkeypatch.setattr(choice.native, "attempted", asked.append)
+    done: list[int] = []
+    run = ChosenKernel("source", 1000, [], 0, choice.Kernels.AUTO, lambda: lambda *arrays: done.append(1))
+    saved, cost = choice.SAVED * 1000, choice.COMPILER + choice.STATEMENT * 1000
+    assert run.pays == math.ceil(cost / saved) > 1
+    whole = ChosenKernel("source", 1000, [], 0, choice.Kernels.AUTO, lambda: done.append, iterated=True)
+    assert whole.pays == math.ceil(cost / (saved + choice.ITERATION))
+    for _ in range(run.pays - 1):
+        run(np.zeros(1))
+    assert asked == [] and not run.compiled
+    for _ in range(5):
+        run(np.zeros(1))
+    assert asked == ["source"] and len(done) == run.pays + 4 and run.address() is None

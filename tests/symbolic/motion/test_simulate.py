@@ -178,3 +178,21 @@ def test_progress_of_a_simulation(
     monkeypatch.setattr(meter, "DELAY", 0.0)
     sym.simulate(oscillator(), settle=5)
     assert "settling" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("settle", [0, 3])
+def test_time_at_which_a_motion_is_lost(settle: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert (2 pi done + phase) / omega, the periods done and the phase in the one that was not."""
+    run, asked = flow.Flow.run, itertools.count()
+
+    def lost(self: Any, *arguments: Any) -> Any:
+        if next(asked) == settle:
+            raise sym.IntegrationError("it is lost", phase=1.5)
+        return run(self, *arguments)
+
+    monkeypatch.setattr(flow.Flow, "run", lost)
+    time = (2 * np.pi * settle + 1.5) / 0.5
+    with pytest.raises(
+        sym.IntegrationError, match=f"^the motion could not be followed past {time:.6g} s; it is lost"
+    ):
+        sym.simulate(oscillator(), {"Omega": 0.5}, settle=settle, samples=5)

@@ -474,3 +474,37 @@ def test_what_an_inline_table_may_be() -> None:
     several, one = (next(r for r in inline if (len(r.entries) == 1) is only) for only in (False, True))
     assert several.allowed.startswith("a table of the kind ") and several.entries[-1].name in several.allowed
     assert one.allowed.startswith("a table with ") and one.entries[0].keys[0].name in one.allowed
+
+
+@pytest.mark.parametrize(("given", "shown"), [("true", "true"), ('"2.5"', '"2.5"'), ("[2.5]", "a list")])
+def test_parameter_that_is_no_number(tmp_path: Path, given: str, shown: str) -> None:
+    """Assert that a truth value, a text and a list are refused, each with what is allowed."""
+    text = TEXT.replace('stiffness = {value = 2.5, unit = "N/m"}', f"stiffness = {given}")
+    allowed = 'it must be a number, or a table as {value = 1.0, unit = "rad/s"}'
+    assert sentence(tmp_path, text) == f"parameters.stiffness is {shown}; {allowed}"
+
+
+@pytest.mark.parametrize(
+    ("given", "value", "unit"),
+    [("3", 3.0, ""), ("2.5", 2.5, ""), ('{value = 2, unit = "N/m"}', 2.0, "N/m")],
+)
+def test_parameter_as_number_or_table(tmp_path: Path, given: str, value: float, unit: str) -> None:
+    """Assert that whole numbers, numbers and tables are taken."""
+    text = TEXT.replace('stiffness = {value = 2.5, unit = "N/m"}', f"stiffness = {given}")
+    found = scene(tmp_path, text).parameters["stiffness"]
+    assert (found.value, found.unit) == (value, unit)
+
+
+@pytest.mark.parametrize(
+    ("variation", "said"),
+    [
+        ('{kind = "Fourier", cosines = [0.1]}', 'is "Fourier"; it must be {}; nearest is "FourierSeries"'),
+        ("{kind = 3, cosines = [0.1]}", "is 3; it must be {}; there is FourierSeries, Harmonic and Samples"),
+    ],
+)
+def test_kind_of_a_table_in_a_part(tmp_path: Path, variation: str, said: str) -> None:
+    """Assert that a kind that is none is refused with those there are."""
+    given = 'variation = {kind = "FourierSeries", cosines = [0.1, 0.0, 0.05], sines = [0.2]}'
+    found = sentence(tmp_path, TEXT.replace(given, f"variation = {variation}"))
+    among = said.format("FourierSeries, Harmonic or Samples")
+    assert found == f"[[part]] 6 (Backlash) variation kind {among}"

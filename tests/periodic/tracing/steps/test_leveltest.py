@@ -67,8 +67,18 @@ def test_limit_that_is_touched(start: float, depth: float) -> None:
 
 @pytest.mark.parametrize(
     ("ends", "rates", "near"),
-    [((1, 1), (-8, 8), True), ((-1, -1), (8, -8), True), ((1, 1), (-1, 1), False), ((1, 2), (1, 1), False)],
+    [
+        ((1, 1), (-8, 8), True),
+        ((-1, -1), (8, -8), True),
+        ((1, 1), (-1, 1), False),
+        ((1, 2), (1, 1), False),
+        ((0.1, 0.1 + 17 / 12), (1, 1.5), False),
+        ((0.1 + 17 / 12, 0.1), (-1.5, -1), False),
+    ],
 )
 def test_cubic(ends: tuple[float, float], rates: tuple[float, float], near: bool) -> None:
-    """Assert which cubics come near 0: 1 - 8 t (1 - t) has its least value -1."""
+    """Assert which cubics come near 0: 1 - 8 t (1 - t) has its least value -1.
+
+    The last two are 0.1 + t + 3 t^2 / 4 - t^3 / 3 and its mirror image: below 0 at -1/2 and 3/2 alone.
+    """
     assert comes_back(ends, rates) is near

@@ -229,3 +229,36 @@ def test_what_is_foreseen_is_read_once() -> None:
         said = [ahead.change(at, ds) for at, ds in ((base, 0.1), (base, 0.1), (base, 0.2), (other, 0.2))]
     assert said == ["change at 0.1", "change at 0.1", "change at 0.2", "change at 0.2"]
     assert asked == [0.1, 0.2, 0.2]
+
+
+@pytest.mark.parametrize("apart", [0.3, 0.1, 1.9e-5, 0.0])
+def test_bounds_of_a_step(apart: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert angles over the largest, and the root of the bend, less noise of 10 tolerances, over its bound.
+
+    Orbits have a peak to peak of 2 in units of 1: noise is 2e-5 for a tolerance of 1e-6, the bound 0.1 ds.
+    """
+    from periodic.stability.multipliers import Stability
+
+    along_branch = SimpleNamespace(
+        dot=lambda other, *metric: 4.0, scaled=lambda factor: SimpleNamespace(by=factor)
+    )
+    tangent = SimpleNamespace(dot=lambda onward, *metric: np.cos(0.1) if onward.by == 0.5 else np.nan)
+    monkeypatch.setattr(stepbounds, "way_and_tangent", lambda base, new: (None, along_branch))
+    monkeypatch.setattr(stepbounds, "size_of", lambda orbit: 1.0)
+    monkeypatch.setattr(stepbounds, "_bend", lambda *_: apart)
+    monkeypatch.setattr(stepbounds, "_motion", lambda solution, ds: None)
+    monkeypatch.setattr(stepbounds, "rotated", lambda *_: SimpleNamespace(ratio=0.25, ahead=0.5))
+    monkeypatch.setattr(stepbounds.codim2, "alignment", lambda base, new: np.cos(0.2))
+    orbit = SimpleNamespace(span=lambda: 2.0)
+    base: Any = SimpleNamespace(
+        orbit=orbit, problem=SimpleNamespace(units=lambda orbit: 1.0), tangent=tangent
+    )
+    new: Any = SimpleNamespace(discretisation=SimpleNamespace(stability=Stability.MULTIPLIERS))
+    control, ds = ArclengthControl(), 0.2
+    found = list(stepbounds.bound_ratios(base, new, ds, control, 1e-6))
+    largest = np.arccos(0.8)
+    exact = np.sqrt(max(apart - 2e-5, 0.0) / (0.1 * ds))
+    assert [each.size for each in found] == pytest.approx([0.1 / largest, exact, 0.25, 0.2 / largest])
+    assert [each.ahead for each in found] == pytest.approx([0.1 / largest, exact, 0.5, 0.2 / largest])
+    new.discretisation.stability = Stability.EIGENVALUES
+    assert len(list(stepbounds.bound_ratios(base, new, ds, control, 1e-6))) == 3

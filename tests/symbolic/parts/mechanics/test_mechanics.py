@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -13,6 +15,7 @@ from reference.integration import path
 
 import periodic as per
 import symbolic as sym
+from symbolic.equations.assembly import Assembly
 
 Array = NDArray[np.float64]
 Force = Callable[[float, float, float], float]
@@ -120,6 +123,37 @@ CASES = {
 }
 
 
+def balance(system: sym.CompiledSystem, accelerations: Callable[..., tuple[float, ...]]) -> Array:
+    """The residual at random places and speeds, with the accelerations (SI) that are given for them."""
+    rng, omega = np.random.default_rng(1), float(system.omega(system.nominal))
+    names, scale = [s.name for s in system.states], np.array([s.scale for s in system.states])
+    places = [names.index(name) for name in names if not name.endswith("'")]
+    rates = [names.index(f"{names[k]}'") for k in places]
+    phase = rng.uniform(0, 2 * math.pi, 20)
+    state = rng.uniform(-1.2, 1.2, (len(phase), len(names)))
+    rate = np.zeros_like(state)
+    rate[:, places] = state[:, rates]
+    for k, (tau, x) in enumerate(zip(phase, state, strict=True)):
+        motion = [value for i, j in zip(places, rates, strict=True) for value in (x[i], omega * x[j])]
+        rate[k, rates] = np.array(accelerations(W * tau / omega, *motion)) / omega**2
+    none = np.zeros((len(phase), 0))
+    found: Array = system.residual(rate / scale, state / scale, none, phase, system.nominal)
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_equation_of_motion(name: str) -> None:
+    """Assert the acceleration under the force written by hand, at random places, speeds and phases."""
+    case = CASES[name]
+    system = sym.compile(sym.combine([sym.Mass(X, M), sym.Damper(X, C), *case.parts]))
+
+    def by_hand(theta: float, x: float, v: float) -> tuple[float]:
+        return ((case.force(theta, x, v) - C * v) / M,)
+
+    assert np.abs(balance(system, by_hand)).max() < 1e-12
+    assert np.abs(balance(system, lambda *at: (by_hand(*at)[0] + 1e-3,))).max() > 1e-4
+
+
 def first(system: sym.CompiledSystem) -> per.Point:
     """The orbit at W to which the motion settles."""
     motion = sym.simulate(system, settle=80)
@@ -187,6 +221,18 @@ def test_part_between_coordinates(name: str) -> None:
     np.testing.assert_allclose(found[:, -1], begin, rtol=0, atol=1e-7)
 
 
+@pytest.mark.parametrize("name", BETWEEN)
+def test_equations_of_motion_of_two(name: str) -> None:
+    """Assert the accelerations of both masses under forces written by hand, at random places and phases."""
+    spring, force = BETWEEN[name]
+
+    def by_hand(theta: float, x: float, v: float, y: float, w: float) -> tuple[float, float]:
+        u = force(x - y)
+        return (F * math.cos(theta) - K * x - C * v - u) / M, (u - 1.5 * y - 0.3 * w) / 2
+
+    assert np.abs(balance(pair(spring), by_hand)).max() < 1e-12
+
+
 def test_vector_of_coordinates() -> None:
     """Assert that a chain of masses has the frequencies of its stiffness matrix."""
     x = sym.coordinates("x", 4)
@@ -249,3 +295,31 @@ def test_refused_in_one_sentence(make: Callable[[], object], said: str) -> None:
     with pytest.raises(ValueError) as caught:
         make()
     assert str(caught.value) == said
+
+
+@pytest.mark.parametrize(
+    ("profile", "value", "slope"),
+    [
+        (sym.Harmonic(0.5, 2, 0.3), lambda t: 0.5 * math.cos(2 * t + 0.3), lambda t: -math.sin(2 * t + 0.3)),
+        (
+            sym.FourierSeries((0.2, 0.0, -0.1), (0.0, 0.4), mean=0.7),
+            lambda t: 0.7 + 0.2 * math.cos(t) - 0.1 * math.cos(3 * t) + 0.4 * math.sin(2 * t),
+            lambda t: -0.2 * math.sin(t) + 0.3 * math.sin(3 * t) + 0.8 * math.cos(2 * t),
+        ),
+    ],
+)
+def test_profiles_and_their_slopes(
+    profile: Any, value: Callable[[float], float], slope: Callable[[float], float]
+) -> None:
+    """Assert a periodic function and its derivative in the angle, by hand."""
+    assembly = Assembly()
+    terms = profile.terms(assembly)
+    given = [symbol for _, symbols in assembly.numbers.named().values() for symbol in symbols]
+    numbers = ca.vertcat(*given), ca.DM([0.5, 0.3] if len(given) == 2 else [0.2, 0.4, -0.1])
+    for theta in (0.0, 0.4, 2.0):
+        both = ca.vertcat(terms.value, terms.slope)
+        for order, waves in assembly.excitation.waves.items():
+            turned = float(order) * theta
+            both = ca.substitute(both, ca.vertcat(*waves), ca.DM([math.sin(turned), math.cos(turned)]))
+        both = ca.substitute(both, *numbers)
+        assert np.array(ca.DM(both)).ravel() == pytest.approx([value(theta), slope(theta)], abs=1e-14)

@@ -1,0 +1,1 @@
+"""The public interface as it was last written down."""
