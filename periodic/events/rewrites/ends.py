@@ -15,6 +15,7 @@ from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.merging import merged, merging
 from periodic.events.rewrites.reversals import reversals, short_of
 from periodic.events.rewrites.sites import Site
+from periodic.events.rewrites.steadyforce import slipping_on, stopped_again
 from periodic.events.rewrites.strikes import last_impact
 from periodic.events.rewrites.swaps import swapped, swaps
 from periodic.events.rewrites.table import (
@@ -36,6 +37,7 @@ from periodic.events.rewrites.table import (
     RELEASE_AT_IMPACT,
     REVERSAL,
     SWAP,
+    SWITCHING_ABOUT,
     SWITCHING_SLIDING,
     Row,
 )
@@ -112,7 +114,8 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
         elif merges is not None:
             yield Excursion(MERGING, i, segments=merges.segments)
         elif swaps(system, orbit, i):
-            yield Excursion(SWAP, i)
+            turned = slipping_on(system, orbit, i) is not None
+            yield Excursion(SWITCHING_ABOUT if turned else SWAP, i)
 
 
 def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
@@ -126,6 +129,8 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
         return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row is SWAP:
         return [swapped(system, orbit, excursion.index)]
+    if excursion.row is SWITCHING_ABOUT:
+        return [stopped_again(system, orbit, excursion.index)]
     if excursion.row is MERGING:
         return list(merged(system, orbit, excursion.index))
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):

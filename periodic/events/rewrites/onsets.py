@@ -11,6 +11,7 @@ from periodic.events.modes import group, held_all_along, mode_after, release, su
 from periodic.events.rewrites.meetings import begun
 from periodic.events.rewrites.reversals import held, short_of
 from periodic.events.rewrites.sites import Added, Site, apart
+from periodic.events.rewrites.steadyforce import turning_back
 from periodic.events.rewrites.strikes import first_impact
 from periodic.events.rewrites.table import (
     ADDING_ABOUT,
@@ -70,7 +71,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     for site in near:
         if site is not first and not any(_same(system, orbit, site, other) for other in found):
             found.append(site)
-    return slipping_together(system, orbit, found)
+    return slipping_together(system, orbit, [turning_back(system, orbit, site) for site in found])
 
 
 def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:

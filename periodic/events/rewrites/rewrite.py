@@ -81,8 +81,8 @@ class Begins:
 
     def beyond(self, system: System, orbit: Orbit) -> Iterator[Beyond]:
         """Yield ways on with a small excursion, and with those that begin at once elsewhere by symmetry."""
-        row = self.site.row
         sites = [] if self.last else at_once(system, orbit, self.site)
+        row = sites[0].row if sites else self.site.row
         for size in (*row.sizes, *row.spare) if sites else ():
             for chosen in (sites, sites[:1])[: 2 if len(sites) > 1 else 1]:
                 events, phases = rewritten(system, orbit, chosen, size)

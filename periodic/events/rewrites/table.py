@@ -10,7 +10,8 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     grazing of a limit     nothing, in 0       (0 +)(+ 0)        clearance        length
     crossing-sliding       (+ -)               (+ 0)(0 -)        limit            length
     switching-sliding      (+ 0)               (+ -)(- 0)        limit            length
-    the same about w       w, in 0             (0 +) w (+ 0)     limit            length
+    adding-sliding about w w, in 0             (0 +) w (+ 0)     limit            length
+    switching about w      (+ 0) w             (+ -) w (- 0)     limit            length
     first slips            0 all along         (0 +)(+ 0) and    clearance        length
                                                (0 -)(- 0)
     first departures       0 all along         (0 +)(+ 0)        clearance        length
@@ -23,6 +24,10 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     corner after impact    I to b              I to a, (a b)     limit            length
     release at an impact   I from 0            (0 b) I from b    limit            length
     caught after impact    I to +, (+ 0)       I to -, (- 0)     length           length
+
+Switching-sliding about w is that of a joint whose force, at its limit, stays as it is until w: of a mass that
+rests on one that rests. The length of the slip jumps there, its amplitude and its length beyond w begin at 0.
+Where the branch turns back at it, as at any row, it is a non-smooth fold (labelled LP).
 
 The grazing of a limit is adding-sliding of a slider. A slider that slips, however briefly, forgets where it
 was held before, so that the multipliers jump; where friction slips they do not.
@@ -110,6 +115,7 @@ FIRST_DEPARTURES = Row(
 LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
 CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
 SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+SWITCHING_ABOUT = Row(name="switching-sliding about another event", touches=False, power=ROOT)
 REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)
 CORNER = Row(name="grazing in the corner of an impact", touches=True, power=LINEAR)
 BEFORE_IMPACT = Row(

@@ -9,9 +9,11 @@ import numpy as np
 from periodic.correction.change import Beyond, Change, Held
 from periodic.correction.condition import SideCondition
 from periodic.correction.identity import distance
+from periodic.correction.outcome import Outcome
 from periodic.correction.predictor import spaced, tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
+from periodic.events.thresholds import NOISE
 from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.system.precision import CONVERGED
@@ -94,7 +96,22 @@ def _held(solver: Solver, guess: Orbit, held: Held, most: int | None = None) -> 
     newton = solver.tolerance.newton
     most = min(most or newton.max_iterations, newton.max_iterations)
     close = replace(newton, tolerance=min(CONVERGED, newton.tolerance), close=0.0, max_iterations=most)
-    return solver.on(guess, held, close)
+    found = solver.on(guess, held, close)
+    return found.failed(Outcome.UNDETERMINED) if found.ok and undetermined(found) else found
+
+
+def undetermined(solution: Solution) -> bool:
+    """Return whether along a solution's tangent only event nodes move: no states, and no parameter.
+
+    A joint passes and stops again then without having moved: no excursion begins so. Along a branch states
+    change with the phases of an excursion at a rate about as large as its size, but for rounding.
+    """
+    problem, orbit, tangent = solution.problem, solution.orbit, solution.tangent
+    if not len(orbit.phases):
+        return False
+    states = float(np.abs(tangent.profile).max()) / size_of(orbit)
+    parameters = float(np.abs(tangent.parameters / problem.units(orbit)).max())
+    return max(states, parameters) <= NOISE * max(1.0, float(np.abs(tangent.phases).max()))
 
 
 def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:

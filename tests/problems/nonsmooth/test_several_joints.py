@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from survey.rows import drawn, traced, verdicts
+from reference.joints.judging import judged
+from survey.rows import TOL, drawn, traced, verdicts
 
 import periodic as per
 import symbolic as sym
@@ -23,6 +24,25 @@ def test_random_models(seed: int) -> None:
     assert branch.stop.reason is per.Reason.BOUND
     found = verdicts(case, branch, seed, 4)
     assert (found.wrong, found.unjudged) == ([], [])
+
+
+def test_a_stop_breaks_while_two_masses_rest() -> None:
+    """Assert the fold with which a slip begins there, the same from both sides, and that no point is wrong.
+
+    The mass q3 rests on q2, which rests as well, so that the force between them stays as it is until q2 is
+    torn off. Beyond the force's limit q3 passes on, and stops again after that.
+    """
+    case = drawn("joints", 148)
+    problem, few = per.Problem(case.system, "Omega", (0.4335, 0.4355)), per.ArclengthControl(max_points=16)
+    there = per.trace(case.system, "Omega", problem.bounds, start=0.4335, tol=TOL, control=few)
+    back = list(per.continuation(problem, there[-1].orbit, sign=1, tol=TOL, control=few))
+    for points, begin, end in ((there, 46, 47), (back, 47, 46)):
+        (fold,) = (point for point in points if point.label is per.Label.FOLD)
+        assert fold.parameter == pytest.approx(0.434380566, abs=5e-9)
+        assert [len(points[k].orbit.mesh.events) for k in (0, -1)] == [begin, end]
+        assert max(point.parameter for point in points) - fold.parameter < 5e-9
+        for k in (0, len(points) - 1):
+            assert judged(case.exact, points[k], case.states).wrong(points[k], TOL) == ""
 
 
 def two_joints() -> sym.CompiledSystem:
