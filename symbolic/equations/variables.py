@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from symbolic.checks import finite, line, positive, refusal, text, whole
+from symbolic.checks import finite, line, positive, refusal, text, typed, whole
 from symbolic.equations.interval import ANY, NOT_NEGATIVE, POSITIVE, Interval
 
 ANGULAR = {"rev/min": 2 * math.pi / 60, "Hz": 2 * math.pi, "rad/s": 1.0}
