@@ -11,7 +11,14 @@ import pytest
 
 from periodic.bifurcations import location, testfunction
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.withinstep import RejectedError, WithinStep, _lowest, _through, second_change
+from periodic.bifurcations.withinstep import (
+    LEAST_SHARE,
+    RejectedError,
+    WithinStep,
+    _lowest,
+    _through,
+    second_change,
+)
 
 
 class Line:
@@ -77,3 +84,37 @@ def test_least_value_at_an_end_is_refined_towards_its_neighbour() -> None:
     assert _lowest(falling) == (pytest.approx(0.8), pytest.approx(0.2))
     rising = {place: 1.0 + place for place in (0.0, 0.1, 0.2, 0.6, 1.0)}
     assert _lowest(rising) == (pytest.approx(0.05), pytest.approx(1.05))
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.3, 0.6, 1.0), (0.0, 0.2, 0.3, 0.35, 1.0), (0.0, 0.5, 1.0)])
+@pytest.mark.parametrize("vertex", [0.05, 0.29, 0.4, 0.62, 0.9])
+def test_trial_for_a_minimum_of_a_parabola(at: tuple[float, ...], vertex: float) -> None:
+    """Assert the vertex, whichever three of the points it is read from, but for the least share of a gap.
+
+    Where an end is the least of the points it is halfway to the next one, with the parabola's value there.
+    """
+
+    def value(x: float) -> float:
+        return (x - vertex) ** 2 + 1.0
+
+    place, expected = _lowest({x: value(x) for x in at})
+    assert expected == pytest.approx(value(place), rel=1e-9)
+    least = min(range(len(at)), key=lambda k: value(at[k]))
+    if 0 < least < len(at) - 1:
+        gap = (at[least + 1] if vertex > at[least] else at[least - 1]) - at[least]
+        share = max((vertex - at[least]) / gap, LEAST_SHARE)
+        assert place == pytest.approx(at[least] + share * gap)
+    else:
+        assert place == pytest.approx((at[0] + at[1]) / 2 if least == 0 else (at[-1] + at[-2]) / 2)
+
+
+def test_trial_beside_an_end_is_read_from_the_three_points_there() -> None:
+    """Assert the parabola through the last three points where the last is the least, the first three else."""
+    cubic = {x: x**3 for x in (0.0, 0.4, 0.7, 1.0)}
+    place, expected = _lowest({1.0 - x: y for x, y in cubic.items()})
+    last = _through([0.3, 0.6, 1.0], [0.7**3, 0.4**3, 0.0])
+    assert place == pytest.approx(0.8) and expected == pytest.approx(last(0.8))
+    place, expected = _lowest(cubic)
+    assert place == pytest.approx(0.2) and expected == pytest.approx(
+        _through([0.0, 0.4, 0.7], [0, 0.4**3, 0.7**3])(0.2)
+    )

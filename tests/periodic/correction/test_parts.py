@@ -15,6 +15,7 @@ from periodic.correction import identity
 from periodic.correction.arclength import ArclengthConstraint
 from periodic.correction.error import EXACT, UNKNOWN, ErrorEstimate, _to, shortfall
 from periodic.correction.predictor import spaced
+from periodic.correction.refinement import Refinement
 from periodic.correction.tolerance import Tolerance
 from periodic.linear.root import root
 from periodic.linear.unknowns import (
@@ -316,3 +317,12 @@ def test_way_to_where_the_parameter_is_another(monkeypatch: pytest.MonkeyPatch) 
     assert on._along(found, 0.01) is None
     still: Any = SimpleNamespace(kernel=change(orbit, 2.0, (), (0.0,)), orbit=orbit)
     assert on._along(still, 0.0) is None
+
+
+def test_discretisation_without_meshes_of_its_own() -> None:
+    """Assert that its orbits are never refined: their mesh fits, and is the finest there is."""
+    orbit = wave(intervals=8)
+    found = Refinement(orbit, ErrorEstimate(1e-7, 5e-7, 2e-7))
+    assert (found.fits, found.mendable, found.exhausted) == (True, True, True)
+    assert found.shortfall == "error estimate 6.0e-07 with 8 intervals"
+    assert found.refined() is orbit.mesh

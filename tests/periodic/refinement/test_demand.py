@@ -112,3 +112,19 @@ def test_even_intervals(density: list[float], count: float, monkeypatch: pytest.
     """Assert 1.4 times the sum of shares over the largest, from 0.4 of the intervals to all of them."""
     monkeypatch.setattr(demand, "density", lambda _: np.array(density))
     assert demand.evenly(wave(intervals=10)) == pytest.approx(count)
+
+
+def test_no_demand_where_the_multipliers_error_is_rounding() -> None:
+    """Assert none up to three times rounding, and that the orbit's own part of the error does not count."""
+    orbit, shares = wave(), np.ones(8)
+    rough = ErrorEstimate(1e-9, SAFETY * 1e-5, rounding=1e-5, by_orbit=0.0, shares=shares)
+    assert demand.demand(orbit, rough, 1e-6, 1000) is None
+    above = replace(rough, multiplier=SAFETY * 1e-5 * 1.01)
+    known = demand.demand(orbit, above, 1e-6, 1000)
+    assert known is not None
+    part = above.multiplier / (demand.AIM * 1e-6 / SAFETY)
+    pieces = min(part ** (1 / (orbit.mesh.scheme.ncol + 1)), demand.MOST_PIECES)
+    assert known * orbit.grid.width == pytest.approx(pieces)
+    assert demand.demand(orbit, replace(above, by_orbit=above.multiplier), 1e-6, 1000) is None
+    few = demand.demand(orbit, above, 1e-6, 5)
+    assert few is not None and few @ orbit.grid.width == pytest.approx(5.0)

@@ -115,3 +115,14 @@ def test_harmonics_of_a_long_common_period() -> None:
     assert fundamental([Fraction(1), Fraction(100_000)]) == 1
     with pytest.raises(ValueError, match="^the order 100000 turns 200000 times in the common period of all"):
         fundamental([Fraction(1, 2), Fraction(100_000)])
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("omega", [0.0, -1.0])
+def test_frequency_that_is_not_positive(count: int, omega: float) -> None:
+    """Assert that a model of one coordinate or two is refused whose frequency is nominally 0 or less."""
+    x = sym.coordinates("x", count)
+    parts = [part for q in x for part in (sym.Mass(q, 1.0), sym.Spring(q, 1.0))]
+    said = f"^the frequency of the excitation is {omega} rad/s; its nominal value must be greater than 0$"
+    with pytest.raises(ValueError, match=said):
+        sym.compile(sym.combine([*parts, sym.HarmonicForce(x[0], 1.0, omega)]))

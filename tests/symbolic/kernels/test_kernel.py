@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import casadi as ca
@@ -10,7 +11,7 @@ import pytest
 from support.kernels import COMBINED, OPERATIONS, PLANE, X, Y, arguments
 from support.models import PARTS, REGIMES, Array, draw, scene
 
-from symbolic.kernels import choice, kernel
+from symbolic.kernels import built, choice, kernel
 from symbolic.kernels.choice import ChosenKernel
 
 LOGICAL = {"LT", "LE", "EQ", "NE", "AND", "OR", "NOT", "IF_ELSE_ZERO"}
@@ -176,3 +177,13 @@ def test_calls_after_which_compiling_has_paid(monkeypatch: pytest.MonkeyPatch) -
     for _ in range(5):
         run(np.zeros(1))
     assert asked == ["source"] and len(done) == run.pays + 4 and run.address() is None
+
+
+def test_library_that_does_not_load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that one of another machine, or none, is as if there were none."""
+    monkeypatch.setattr(built, "FOLDER", tmp_path)
+    assert built.built("int x;") is None
+    (tmp_path / built.file_name("int x;")).write_bytes(b"no library")
+    assert built.built("int x;") is None
+    assert built.file_name("int x;") != built.file_name("int y;")
+    assert len(built.file_name("").partition(".")[0]) == 32

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from symbolic.scenes.building import build
+from symbolic.scenes.building import build, static_deflection
 from symbolic.scenes.errors import InputError
 from symbolic.scenes.names import scene_names, short_name
 from symbolic.scenes.reading import load
-from symbolic.scenes.schema import DiscScene, OscillatorScene
+from symbolic.scenes.schema import DiscScene, Oscillator, OscillatorScene
 
 SIZES = {
     "ball-bearing": (4, 0),
@@ -371,3 +371,13 @@ def test_binary_file(tmp_path: Path) -> None:
 def test_directory(tmp_path: Path) -> None:
     """Assert that a directory is no scene."""
     assert sentence(str(tmp_path)).startswith(f'scene file "{tmp_path}" cannot be read (')
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "cubic", "scale"),
+    [(2.0, None, 4.0), (2.0, 1.0, 2.0), (4.0, 1.0, 2.0), (8.0, 1.0, 1.0), (0.0, 8.0, 1.0), (2.0, -64.0, 0.5)],
+)
+def test_scale_of_an_oscillator(stiffness: float, cubic: float | None, scale: float) -> None:
+    """Assert what a force of 8 N bends the softer of both springs by: F/k or (F/k3)^(1/3)."""
+    part = Oscillator(mass=1.0, stiffness=stiffness, cubic=cubic, force=8.0)
+    assert static_deflection(part) == pytest.approx(scale, rel=1e-14)

@@ -275,3 +275,16 @@ def test_what_swaps_in_words() -> None:
     alone = Surfaces([joint(alone=True)], [[1.0]] * 3)
     slides = Site(table.ADDING_SLIDING, 1, 0, Length(0, 1.0), 0.0)
     assert _name(alone, slides, True) == "the motion slides along s0 = 0 all the time"  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("guard", "row"), [(FRICTION, table.ADDING_SLIDING), (SLIDER, table.LIMIT_GRAZING)])
+def test_slip_whose_stop_is_another_joint_s_too(
+    guard: int, row: table.Row, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that only its release goes where the event node at its end stops another joint as well."""
+    other = EventNode(KINK, 1)
+    monkeypatch.setattr("periodic.events.rewrites.ends.without", lambda system, event, own: other)
+    orbit = word(EventNode(guard + 1, 1), stop(guard, -1))
+    (site,) = ends(system(), orbit, Excursion(row, 0))
+    held = Clearance(guard + 1, -1, 1.0)
+    assert site == Site(row, guard + 1, 0, held, 0.0, (), (0,), ((1, other),))

@@ -342,3 +342,17 @@ def test_segments_between_stops_that_meet(
 ) -> None:
     """Assert those between the first event node and the last, by the nodes at which they begin."""
     assert merging.Meeting(node, friction, stops, {}, ()).segments == segments
+
+
+@pytest.mark.parametrize(("longest", "last"), [(0.19, True), (0.2, True), (0.21, False)])
+def test_last_slip_of_a_joint(longest: float, last: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it is an end for good where the longest slip is no more than twice this one."""
+    row = table.ADDING_SLIDING
+    monkeypatch.setattr(first, "ends", lambda *_: [SimpleNamespace(row=row, switch=1)])
+    monkeypatch.setattr(first, "_name", lambda system, site, last: f"last: {last}")
+    monkeypatch.setattr(first, "longest_slip", lambda *_: longest)
+    excursion: Any = SimpleNamespace(row=row, unit=1.0, size=lambda system, orbit: orbit)
+    given: Any = 0.1, 1e-4
+    found = first._ending(friction_and_wall(), *given, 1e-9, excursion)
+    assert found is not None and found.name == f"last: {last}" and found.final is last
+    assert found.size == (first.LONGEST if last else row.size_below(first.VANISHING * 0.1))
