@@ -90,8 +90,6 @@ def _run(
     name: str, task: Task, values: dict[str, list[float]], keys: dict[str, str], how: How, folder: Path
 ) -> int:
     """Compute, draw and tell; return the exit code."""
-    import periodic as per
-
     from ..console import status
     from ..interrupts import interrupting_once
     from ..map import run
@@ -101,8 +99,8 @@ def _run(
             warnings.showwarning = lambda message, *_, **__: say(str(message))
             show = None if update is None else lambda progress: update(f"mapping {name}: {progress}")
             data = run.computed(task, values, how, folder, show)
-    except per.maps.MapInterrupted as interrupted:
-        say(str(interrupted).partition(", which")[0] + "; --resume goes on")
+    except KeyboardInterrupt as interrupted:  # with a sentence once there are cells
+        say((str(interrupted).partition(", which")[0] or "interrupted") + "; --resume goes on")
         return INTERRUPTED
     _told(task, data, keys, folder)
     return _verdict(data)

@@ -14,6 +14,7 @@ from support.commands import check_sentence, refusal
 
 import periodic as per
 import symbolic as sym
+from periodic.maps.executors import Workers
 from reports.app.cli import main
 from reports.app.map import command, picture, run
 
@@ -169,3 +170,19 @@ def test_picture_where_one_of_two_parameters_has_one_value(
     assert axes.get_xlabel() == "force (m), c = 0.5 m"
     assert axes.lines[0].get_xydata().tolist() == [[1.0, 0.5], [2.0, 1.5], [3.0, 2.5]]
     assert drawn(field([1.0], [0.5]), tmp_path, monkeypatch).lines[0].get_xydata().tolist() == [[0.5, 0.5]]
+
+
+def test_interrupted_before_the_first_cell(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert one sentence too where a request to end comes while processes are made ready."""
+
+    def ended(given: object) -> Workers:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("periodic.maps.map.workers", ended)
+    arguments = ("map", "duffing", "--over", "F=0.2:0.3:2", *QUICK, "--out", str(tmp_path))
+    assert main(arguments) == 130
+    assert capsys.readouterr().err == "orbitrace: interrupted; --resume goes on\n"
+    monkeypatch.undo()
+    assert main([*arguments, "--resume"]) == 0
