@@ -124,7 +124,7 @@ class Trial:
     def _run(self, tests: list[str], left: float, folder: Path) -> str:
         """Return the first test that fails, or nothing; LATE where the seconds do not suffice.
 
-        What pytest says, without the name of a test, where it ends before it has run one: a file that cannot be
+        What pytest says, without the name of a test, where it ends before it has run one: a file that is not
         collected with the mutant was collected without it.
         """
         listed, said, failed = folder / "tests", folder / "said", folder / "failed"
