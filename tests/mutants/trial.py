@@ -122,7 +122,11 @@ class Trial:
         return ""
 
     def _run(self, tests: list[str], left: float, folder: Path) -> str:
-        """Return the first test that fails, or nothing; LATE where the seconds do not suffice."""
+        """Return the first test that fails, or nothing; LATE where the seconds do not suffice.
+
+        What pytest says, without the name of a test, where it ends before it has run one: a file that is not
+        collected with the mutant was collected without it.
+        """
         listed, said, failed = folder / "tests", folder / "said", folder / "failed"
         listed.write_text("\n".join(tests), "utf-8")
         judge = Judge(self.covering, failed)
@@ -133,7 +137,7 @@ class Trial:
             return failed.read_text("utf-8")
         if code in (-signal.SIGXCPU, -signal.SIGKILL):
             return LATE
-        return said.read_text("utf-8", "replace").strip()[-200:]
+        return said.read_text("utf-8", "replace").strip()[-200:].replace("::", " ")
 
 
 def _spent() -> float:

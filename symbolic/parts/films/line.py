@@ -12,9 +12,6 @@ from symbolic.equations.variables import Value
 from symbolic.parts.films.law import FilmLaw
 from symbolic.parts.films.regressions import Compliance, Rolling
 
-SQUEEZE = 96.775
-"""How a line contact's film answers to squeeze, h = h_steady exp(-96.775 (dh/dt)/u): Rahnejat (1985)."""
-
 
 @dataclass(frozen=True)
 class LineFilm(FilmLaw):

@@ -178,3 +178,38 @@ def test_motion_under_a_load_that_moves(part: Any) -> None:
         sliding = [e.after for e in motion.events if system.surfaces[e.surface].kind == Kind.SLIDING]
         assert {*sliding} == {-1, 1, 2}
         assert (np.abs(motion["x'"][limit == 0]) > 1e-9).mean() > 0.9
+
+
+def test_switches_of_joints_by_name() -> None:
+    """Assert guards, releases and departures of friction, a slider and a wall, with the ways of each."""
+    x = sym.coordinate("x")
+    model = sym.Mass(x, 1.0) + sym.Spring(x, 1.0) + sym.HarmonicForce(x, 1.0) + sym.ConstantForce(x, 2.0)
+    joints = model + sym.CoulombFriction(x, 0.5) + sym.Jenkins(x, 1.0, 0.2, creep=None)
+    found = [(switch.name, switch.direction) for switch in sym.compile(joints).switches]
+    slips = [
+        (f"{name}: slips {way}", d)
+        for name in ("z of x", "dx/dt = 0")
+        for way, d in (("up", 1), ("down", -1))
+    ]
+    assert sorted(found) == sorted([("dx/dt = 0", 0), ("z of x: strained", 0), *slips])
+    wall = sym.compile(model + sym.RigidStop(x, 1.0, 0.5)).switches
+    names = [(switch.name, switch.direction) for switch in wall]
+    assert names == [("impact at x = gap", -1), ("impact at x = gap: leaves", 1)]
+
+
+def test_sliders_between_the_same_places_have_names_of_their_own() -> None:
+    """Assert the state z of its places, of its part's name, or with a number."""
+    x, y = sym.coordinate("x"), sym.coordinate("y")
+    base = sym.Mass(x, 1.0) + sym.Mass(y, 1.0) + sym.Spring(x, 1.0) + sym.Spring(y, 1.0)
+    sliders = [sym.Jenkins(x, k, 0.2, to=y) for k in (1.0, 2.0, 3.0)]
+
+    def names(*sliders: sym.Part) -> list[str]:
+        model = base + sym.HarmonicForce(x, 1.0)
+        for slider in sliders:
+            model = model + slider
+        return [state.name for state in sym.compile(model).states if state.name.startswith("z")]
+
+    first, second, third = sliders
+    assert names(first, second, third) == ["z of x - y", "z of x - y (2)", "z of x - y (3)"]
+    outer = second.named("outer"), third.named("outer")
+    assert names(first, *outer) == ["z of x - y", "z of outer", "z of x - y (2)"]
