@@ -51,6 +51,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from periodic.events.thresholds import LEAST_CROSSING, LEAST_GRAZING, LONGEST, decades
+from periodic.system.precision import CONVERGED
 
 ROOT, LINEAR = 0.5, 1.0
 """Powers of the size in the depth: after a touch of a level, and after a passage."""
@@ -89,8 +90,11 @@ class Row:
         return self.sizes[-1]
 
     def size_below(self, size: float) -> float:
-        """Return the first of the sizes that is less than `size`, or `size` where there is none."""
-        return next((each for each in self.sizes if each < size), size)
+        """Return the first of the sizes that is less than `size`, or `size` where there is none.
+
+        An excursion that is held at one of them has that size but for rounding.
+        """
+        return next((each for each in self.sizes if each < size * (1 - CONVERGED)), size)
 
     def part(self, now: float, then: float, size: float) -> float:
         """Return the part of the way from the size `now` to the size `then` at which it is `size`."""

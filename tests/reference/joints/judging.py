@@ -14,9 +14,6 @@ from reference.judging import BESIDE, CIRCLE, FOLD, Verdict
 PHASES = 80
 """At which it is seen how far the joints are from a change, at the most."""
 
-NEUTRAL = 1e-6
-"""Multipliers as near to 1 are those of joints that hold, where some do."""
-
 LEADING = 0.1
 """Multipliers of that modulus are compared where a point has not all of them."""
 
@@ -32,14 +29,15 @@ def judged(exact: Jointed, point: per.Point, states: Callable[[per.Orbit, Array]
     found = follower.period(begin, tau)
     size = max(float(np.ptp(states(orbit, orbit.grid.left), axis=0).max()), 1e-3)
     singular = np.linalg.svd(found.monodromy - np.eye(len(begin)), compute_uv=False)
-    least = singular[singular > TRIVIAL * singular[0]][-1]
+    open_ways = int((singular <= TRIVIAL * singular[0]).sum())
+    least = singular[-1 - open_ways]
     if least > FOLD:
         again = periodic(follower, begin, tau)
         off = float(np.abs(again.start - begin).max())
         found = again if least > BESIDE else found
     else:
         off = float(np.abs(found.end - found.start).max()) / found.growth
-    apart = _apart(found, point)
+    apart = _apart(found, point, open_ways)
     moduli = np.abs(found.multipliers)
     near = np.abs(np.concatenate([moduli, np.abs(point.multipliers)]) - 1).min() < CIRCLE + apart
     near = near or point.label in (per.Label.FOLD, per.Label.DOUBLING, per.Label.TORUS)
@@ -47,11 +45,14 @@ def judged(exact: Jointed, point: per.Point, states: Callable[[per.Orbit, Array]
     return Verdict(off / size, apart, stable, found.growth, found)
 
 
-def _apart(found: Period, point: per.Point) -> float:
-    """How far the multipliers' polynomials are apart, or each leading one from the next of the other."""
+def _apart(found: Period, point: per.Point, open_ways: int) -> float:
+    """How far the multipliers' polynomials are apart, or each leading one from the next of the other.
+
+    open_ways: how many multipliers 1 say that joints hold all along, wherever; the engine leaves them out.
+    """
     theirs, own = found.multipliers, np.asarray(point.multipliers)
-    if point.orbit.mesh.modes:  # where a joint holds all along is left open, which the engine leaves out
-        theirs = theirs[np.abs(theirs - 1) > NEUTRAL]
+    if point.orbit.mesh.modes:
+        theirs = theirs[np.argsort(np.abs(theirs - 1))[open_ways:]]
     if len(theirs) == len(own):
         polynomials = np.poly(theirs), np.poly(own)
         return float(np.abs(polynomials[0] - polynomials[1]).max() / np.abs(polynomials[0]).max())
