@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from periodic.correction.change import Change
-from periodic.events.modes import group, held_all_along, of_held, sliding, surface_of
+from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
-from periodic.events.rewrites.onsets import begins
+from periodic.events.rewrites.onsets import begins, beside_node
 from periodic.events.rewrites.rewrite import Begins, Ends
-from periodic.events.rewrites.sites import Site, apart
+from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strained import strained_away
 from periodic.events.rewrites.table import (
     ADDING_ABOUT,
@@ -28,7 +28,7 @@ from periodic.events.rewrites.table import (
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
-from periodic.events.thresholds import AT_LEVEL, LONGEST, SLOW_CROSSING, VANISHING
+from periodic.events.thresholds import AT_LEVEL, LONGEST, VANISHING
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
 from periodic.orbit.orbit import Orbit
 from periodic.system import Kind, System
@@ -142,8 +142,7 @@ def _clear(dense: SwitchPolynomials, at: Extremum, side: int) -> float:
     Rounding may make an extremum beside an event node of a surface that holds motions.
     """
     orbit, near = dense.orbit, dense.nearest(at.switch, side, at.phase)
-    own = group(dense.system, orbit.mesh, at.switch) if sliding(dense.system, at.switch) is not None else []
-    if not any(apart(near.phase, float(orbit.phases[j]), orbit) < SLOW_CROSSING for j in own):
+    if not beside_node(dense, near):
         return near.value
     phase = orbit.grid.left[at.interval] + at.theta * orbit.grid.width[at.interval]
     return dense.value(replace(at, phase=float(phase)))

@@ -20,7 +20,7 @@ from periodic.system import STUCK, Kind, SurfaceLike, System
 
 
 def strained_away(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum) -> bool:
-    """Return whether a slider has moved away from the limit of a release, by the word, since it stopped there.
+    """Return whether, by the word, a slider has moved away from the limit at which it stopped.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def strained_away(system: System, orbit: Orbit, surface: SurfaceLike, at: Extrem
 
 
 def _way(system: System, orbit: Orbit, guard: int, interval: int) -> int | None:
-    """The sign of a slider's rate of strain in an interval by the modes of friction; None if they tell none."""
+    """The sign of a slider's rate of strain by the modes of friction; None if they tell none."""
     held = held_in(system, orbit, interval)
     if holding(system, guard, held):
         return 0
