@@ -9,9 +9,10 @@ import numpy as np
 from periodic.correction.change import Change
 from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
-from periodic.events.rewrites.onsets import begins
+from periodic.events.rewrites.onsets import begins, beside_node
 from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
+from periodic.events.rewrites.strained import strained_away
 from periodic.events.rewrites.table import (
     ADDING_ABOUT,
     ADDING_SLIDING,
@@ -93,9 +94,12 @@ def _onsets(
         if violation.breach is Breach.THROUGH or (jump is not None and (slips or jump in resting)):
             continue
         part = _share(system, before, violation)
-        slider = surface_of(system, violation.switch).kind == Kind.SLIDER
+        at, surface = violation.at, surface_of(system, violation.switch)
+        slider = surface.kind == Kind.SLIDER
         if slider and violation.switch != jump and part * abs(violation.depth) <= AT_LEVEL:
             continue  # it stops at its limit there; the turn of its strain decides what follows
+        if isinstance(at, Extremum) and at.switch != jump and strained_away(system, after, surface, at):
+            continue
         if _at_end(after, violation, ending):
             continue
         whole = whole_orbit(system, before, violation, part)
@@ -123,13 +127,25 @@ def _share(system: System, before: Orbit, violation: Violation) -> float:
         if not dense.minima(at.switch, violation.side):
             return 0.0
         most = largest(dense, at.switch) if sliding(system, at.switch) is not None else 1.0
-        clear = abs(dense.nearest(at.switch, violation.side, at.phase).value) / most
+        clear = abs(_clear(dense, at, violation.side)) / most
     else:
         surface = surface_of(system, violation.switch)
         same = violation.switch, at, violation.arriving
         each = limits(system, before, surface)
         clear = next((abs(v.depth) for v in each if (v.switch, v.at, v.arriving) == same), 0.0)
     return float(clear / (clear + abs(violation.depth)))
+
+
+def _clear(dense: SwitchPolynomials, at: Extremum, side: int) -> float:
+    """A switch at its extremum nearest to one of another orbit on the same mesh, or there if it has none.
+
+    Rounding may make an extremum beside an event node of a surface that holds motions.
+    """
+    orbit, near = dense.orbit, dense.nearest(at.switch, side, at.phase)
+    if not beside_node(dense, near):
+        return near.value
+    phase = orbit.grid.left[at.interval] + at.theta * orbit.grid.width[at.interval]
+    return dense.value(replace(at, phase=float(phase)))
 
 
 def _endings(system: System, before: Orbit, after: Orbit, shortest: float) -> list[Ends]:

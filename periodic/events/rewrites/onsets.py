@@ -32,7 +32,7 @@ from periodic.events.sideconditions import Clearance, Limit
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, SLOW_CROSSING, TOGETHER
 from periodic.events.violations import Breach, Violation, largest, limits
-from periodic.orbit.mesh import EventNode
+from periodic.orbit.mesh import EventNode, wrapped
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
 
@@ -112,15 +112,28 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     """The sites at extrema of a switch on its expected sides, away from its own event nodes."""
     sides = dense.expected(switch, dense.side(switch))
     most = largest(dense, switch)
-    tied = surface.releases is not None or surface.kind == Kind.RELAY
-    nodes = group(dense.system, dense.orbit.mesh, switch) if tied else []
-    own = dense.orbit.phases[nodes]
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
-            if sides[e.interval] == side and not any(
-                apart(e.phase, tau, dense.orbit) < SLOW_CROSSING for tau in own
-            ):
+            if sides[e.interval] == side and not beside_node(dense, e):
                 yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
+
+
+def beside_node(dense: SwitchPolynomials, at: Extremum) -> bool:
+    """Return whether an extremum is rounding beside an event node at which its switch is at its level.
+
+    If the switch leaves its level in between, the extremum is one of a short segment.
+    """
+    system, orbit, surface = dense.system, dense.orbit, surface_of(dense.system, at.switch)
+    if surface.releases is None and surface.kind != Kind.RELAY:
+        return False
+    along, level = dense.along(at.switch, everywhere=True), TOGETHER * largest(dense, at.switch)
+    for tau in map(float, orbit.phases[group(system, orbit.mesh, at.switch)]):
+        way = wrapped(at.phase - tau, orbit.mesh.period)
+        if abs(way) < SLOW_CROSSING:
+            between = np.mod(np.sign(way) * (along.phase - tau), orbit.mesh.period) <= abs(way)
+            if np.abs(along.value[between]).max(initial=0.0) <= level:
+                return True
+    return False
 
 
 def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float) -> Site:

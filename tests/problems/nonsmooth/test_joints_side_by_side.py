@@ -112,3 +112,46 @@ def test_a_slip_begins_before_a_stop_at_which_its_force_jumps() -> None:
     assert (counts[0], counts[-1]) == (46, 48)
     found = verdicts(case, branch, 148, 2)
     assert (found.wrong, found.unjudged, found.judged) == ([], [], 2)
+
+
+@pytest.mark.parametrize("start", [0.654, 0.657])
+def test_a_slider_has_left_its_limit_as_long_as_friction_says_so(start: float) -> None:
+    """Assert a branch past where a mass slips ever more briefly from where its slider stopped, both ways.
+
+    Linear prediction puts the slider back at its limit before the slip ends. Before, the branch ended there
+    from above: no orbit was found beyond.
+    """
+    case = drawn("joints down", 147)
+    branch = per.trace(case.system, "Omega", (0.654, 0.657), start=start, tol=TOL)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert {24, 25, 26} <= {len(point.orbit.phases) for point in branch}
+    found = verdicts(case, branch, 147, 6)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("start", [4.2236, 4.2243])
+def test_a_slip_begins_shortly_after_a_stop_at_both_places_of_a_symmetric_orbit(start: float) -> None:
+    """Assert that slips begin at once 0.005 rad after stops, both ways: no orbit is without symmetry.
+
+    Before, an extremum so near an event node of its surface was taken for rounding.
+    """
+    case = drawn("joints down", 162)
+    branch = per.trace(case.system, "Omega", (4.2236, 4.2243), start=start, tol=TOL)
+    assert branch.stop.reason is per.Reason.BOUND
+    assert {len(point.orbit.phases) for point in branch} == {16, 20}
+    found = verdicts(case, branch, 162, 4)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 4)
+
+
+@pytest.mark.long
+def test_a_slip_that_begins_slowly_touches_nothing() -> None:
+    """Assert a step from an orbit whose slips begin slowly, where rounding makes an extremum beside them.
+
+    Before, the branch ended where it began: the extremum was taken for a touch.
+    """
+    case, few = drawn("joints down", 162), per.ArclengthControl(max_points=4)
+    branch = per.trace(case.system, "Omega", (4.0, case.start), start=case.start, tol=TOL, control=few)
+    assert branch.stop.reason is per.Reason.MAX_POINTS
+    found = verdicts(case, branch, 162, 4)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 4)
