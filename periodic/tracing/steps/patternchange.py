@@ -111,7 +111,7 @@ def undetermined(solution: Solution) -> bool:
         return False
     states = float(np.abs(tangent.profile).max()) / size_of(orbit)
     parameters = float(np.abs(tangent.parameters / problem.units(orbit)).max())
-    return max(states, parameters) <= NOISE * max(1.0, float(np.abs(tangent.phases).max()))
+    return max(states, parameters) <= NOISE * float(np.abs(tangent.phases).max())
 
 
 def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:
