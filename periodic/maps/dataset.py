@@ -10,6 +10,7 @@ import numpy as np
 from periodic.maps.cell import Cell, Outcome
 from periodic.maps.grid import Plan
 from periodic.maps.task import Task
+from periodic.results.signals import deferred
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,7 +28,8 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
     Numbers of a branch that has several, one for each sheet, fold or range, have a further dimension, filled
     up with NaN. status is done, failed (with a reason), lost (with its worker) or not done.
     """
-    import xarray as xr
+    with deferred():  # interrupted half-way, it raises anything
+        import xarray as xr
 
     laid = plan.arranged(found)
     outcomes = [found.get(cell, NONE) for cell in laid.cells]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import os
 import shutil
 import signal
@@ -21,6 +22,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 from periodic.maps import store as stores
+from periodic.maps.dataset import dataset
 from periodic.results import netcdf
 from periodic.results.files import digest
 
@@ -342,3 +344,19 @@ def test_file_is_written_again_when_that_costs_little(
         for later, due in ((0.9 * rest, False), (0.2 * rest, True)):
             clock[0] += later
             assert store.due() is due
+
+
+def test_signal_during_the_import_of_xarray_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that a map is interrupted after the import: half-way, pandas raises what nobody expects."""
+    done, genuine = [], builtins.__import__
+
+    def interrupted(name: str, *given: Any) -> Any:
+        if name == "xarray":
+            signal.raise_signal(signal.SIGINT)
+            done.append(name)
+        return genuine(name, *given)
+
+    monkeypatch.setattr(builtins, "__import__", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        dataset(None, None, {})  # type: ignore[arg-type]
+    assert done == ["xarray"]
