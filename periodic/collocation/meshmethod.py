@@ -148,7 +148,7 @@ class MeshMethod(Discretisation):
         return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
-        """Return where a switch touches its level on the way, or two event nodes meet."""
+        """Return where a switch grazes its level on the way, or two event nodes meet."""
         return first_change(system, before, after, self.shortest, self.ends_below)
 
     def reordered(self, system: System, orbit: Orbit, phases: Array) -> tuple[Mesh, Array] | None:

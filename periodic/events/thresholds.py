@@ -45,7 +45,7 @@ less than a step does.
 """
 
 LEAST_GRAZING = AT_LEVEL**0.5
-"""Least size of an excursion from a touch: its depth s'' size^2 is AT_LEVEL."""
+"""Least size of an excursion beyond grazing: its depth s'' size^2 is AT_LEVEL."""
 
 LEAST_CROSSING = MIN_INTERVALS * EPSILON / AT_LEVEL
 """Least size of a segment between passages: in its intervals rounding leaves rates an error of AT_LEVEL."""

@@ -135,7 +135,7 @@ class _Search:
         if self.other and same_word(base, found.orbit):
             return None
         onward = found.tangent.parameter * self.sign > 0
-        return Crossed(found, apart, touches=False) if onward else None
+        return Crossed(found, apart, grazes=False) if onward else None
 
 
 def same_word(one: Orbit, other: Orbit) -> bool:

@@ -153,7 +153,7 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
 
 
 def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
-    """An excursion between two event nodes, touching midway of a segment."""
+    """An excursion between two event nodes, which grazes at the middle of a segment."""
     last = orbit.mesh.events[removed[1]]
     held = Clearance(last.switch, last.direction, _middle(orbit, segment))
     return Site(row, last.switch, segment, held, 0.0, removed=removed)

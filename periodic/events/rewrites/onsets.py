@@ -43,7 +43,7 @@ def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
     if violation.breach not in (Breach.EXCURSION, Breach.MODE):
         return None
     if isinstance(violation.at, Extremum):
-        return _touch(system, orbit, surface, violation.at, violation.side, -violation.depth)
+        return _at_extremum(system, orbit, surface, violation.at, violation.side, -violation.depth)
     return _limit(system, orbit, surface, violation)
 
 
@@ -56,7 +56,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
-        first: Site | None = _touch(
+        first: Site | None = _at_extremum(
             system, orbit, surface_of(system, own.switch), at, own.held.side, own.value
         )
     else:
@@ -115,7 +115,7 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
             if sides[e.interval] == side and not beside_node(dense, e):
-                yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
+                yield _at_extremum(dense.system, dense.orbit, surface, e, side, side * e.value / most)
 
 
 def beside_node(dense: SwitchPolynomials, at: Extremum) -> bool:
@@ -136,7 +136,9 @@ def beside_node(dense: SwitchPolynomials, at: Extremum) -> bool:
     return False
 
 
-def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float) -> Site:
+def _at_extremum(
+    system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float
+) -> Site:
     """The site of an extremum on a given side of its level."""
     k = at.switch
     if surface.kind == Kind.IMPACT:

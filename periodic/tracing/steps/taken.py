@@ -48,8 +48,8 @@ class Step:
 
     @property
     def label(self) -> Label:
-        """The label of its end: GRAZING where a switch touches its level there."""
-        return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
+        """The label of its end: GRAZING where a switch grazes its level there."""
+        return Label.GRAZING if self.change is not None and self.change.change.grazes else Label.NONE
 
 
 @dataclass(frozen=True)

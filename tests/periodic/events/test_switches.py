@@ -236,7 +236,7 @@ def test_change_begins_with_what_is_replaced_or_added() -> None:
 def test_sizes_of_the_table() -> None:
     """Assert the next smaller size, the least one, and how sizes fall on the way.
 
-    After a touch size^2 falls evenly: (1 - 0.25) / (2 * 1 * 0.5) of the way from 1 towards 0.5; after a
+    After grazing size^2 falls evenly: (1 - 0.25) / (2 * 1 * 0.5) of the way from 1 towards 0.5; after a
     passage the size itself does.
     """
     assert GRAZING.size_below(SHORT[0]) == SHORT[1]
@@ -270,7 +270,7 @@ def test_stop_soon_after_an_impact(later: float, gone: int | None) -> None:
         assert found[0].added[0].event == EventNode(0, 1, modes=((0, STUCK),))
 
 
-def test_impact_takes_the_place_of_friction_at_the_touch() -> None:
+def test_impact_takes_the_place_of_friction_at_grazing() -> None:
     """Assert the impact's node with the reversal, and the stop after it where friction held the mass."""
     system, _ = struck()
     at: Any = SwitchPolynomials(system, along(sine)).nearest(3, 1, 4.7)
