@@ -9,6 +9,7 @@ import numpy as np
 from periodic.correction.change import Change
 from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
+from periodic.events.rewrites.letgo import let_go_at_once
 from periodic.events.rewrites.onsets import begins, beside_node
 from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
@@ -47,7 +48,7 @@ def first_change(
     """
     if not system.switches:
         return None
-    ending = _alone(_endings(system, before, after, shortest))
+    ending = _alone(system, before, _endings(system, before, after, shortest))
     found = [*ending, *_onsets(system, before, after, ending, shortest)]
     first = min(found, key=lambda change: (not change.strict, change.part), default=None)
     if isinstance(first, Begins) and first.site.row is GRAZING:
@@ -71,10 +72,11 @@ def _or_end(begins: Begins, before: Orbit, after: Orbit, ending: list[Ends], end
     return replace(begins, otherwise=end) if inside and now < ends_below else begins
 
 
-def _alone(ending: list[Ends]) -> list[Ends]:
-    """The ends, without swaps within slips that end as a whole."""
+def _alone(system: System, before: Orbit, ending: list[Ends]) -> list[Ends]:
+    """The ends, without swaps within slips that end as a whole, or that the end of a slip brings about."""
     whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
-    return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
+    alone = (end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole)
+    return [end for end in alone if not let_go_at_once(system, before, end.excursion)]
 
 
 def _onsets(
