@@ -34,6 +34,7 @@ class WholeOrbit:
     touches = True
     strict = True
     final = True
+    nearer = False
     last = False
     otherwise = None
 
