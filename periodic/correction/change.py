@@ -61,6 +61,10 @@ class Change(Protocol):
         """Whether the branch cannot be followed nearer to the change than where the step ends."""
 
     @property
+    def nearer(self) -> bool:
+        """Whether the step ends nearer to it than where words are exchanged, which has been tried before."""
+
+    @property
     def last(self) -> bool:
         """Whether the branch ends there: no orbits beyond it are near."""
 

@@ -312,7 +312,9 @@ class Continuation:
                 yield from self._met(special)
         elif at.change.last:
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
-        elif (at.change.strict or at.change.final) and self._reread(at.end, other=True):
+        elif (at.change.strict or (at.change.final and not at.change.nearer)) and self._reread(
+            at.end, other=True
+        ):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")

@@ -52,7 +52,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
 
     Empty where there is no such site on that orbit.
     """
-    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
+    near = [site for site in sites_of(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
@@ -65,7 +65,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
         return []
     found, guard = [first], surface_of(system, own.switch).switch
     if own.row is FIRST_SLIPS:  # a joint that slips one way alone would drift
-        back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
+        back = (site for site in sites_of(system, orbit, own.row.name) if site.switch != own.switch)
         other = (site for site in back if surface_of(system, site.switch).switch == guard)
         near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
     for site in near:
@@ -74,8 +74,8 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     return slipping_together(system, orbit, [turning_back(system, orbit, site) for site in found])
 
 
-def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
-    """All sites of a row on an orbit, with how far each is from being reached."""
+def sites_of(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
+    """Yield all sites of a row on an orbit, with how far each is from being reached."""
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
         for switch in (surface.switch, *(surface.releases or ())):

@@ -32,6 +32,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import density, redistribute, spread
 from periodic.system import HELD, System
+from periodic.system.precision import CONVERGED
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class Begins:
 
     strict = True
     final = True
+    nearer = False
 
     @property
     def grazes(self) -> bool:
@@ -126,6 +128,11 @@ class Ends:
     def grazes(self) -> bool:
         """Whether a switch grazes its level."""
         return self.last
+
+    @property
+    def nearer(self) -> bool:
+        """Whether it is smaller than any size at which words are exchanged."""
+        return self.size < self.site.row.least * self.excursion.unit * (1 - CONVERGED)
 
     @property
     def last(self) -> bool:

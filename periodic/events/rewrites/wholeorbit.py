@@ -34,6 +34,7 @@ class WholeOrbit:
     grazes = True
     strict = True
     final = True
+    nearer = False
     last = False
     otherwise = None
 

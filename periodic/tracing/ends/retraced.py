@@ -15,6 +15,8 @@ import numpy as np
 
 from periodic.correction.error import AT_WORST
 from periodic.correction.identity import distance
+from periodic.correction.newton import in_order
+from periodic.correction.predictor import tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.orbit import LEAST_SPAN
@@ -55,6 +57,8 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     allowed = AT_WORST * (back.error.orbit + new.error.orbit) * max(new.orbit.span(), LEAST_SPAN)
     if distance(solver.problem, new.orbit, back.orbit) > allowed or not _one(solver, new, back):
         return None
+    if not _leads_to(solver, new, before):
+        return None
     turn = _turn(points)
     assert turn is not None
     return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
@@ -75,6 +79,23 @@ def _one(solver: Solver, new: Solution, back: Solution) -> bool:
     allowed = np.sqrt(CONVERGED) * max(new.orbit.span(), LEAST_SPAN)
     ok = len(each) == 2 and all(found.ok for found in each)
     return ok and distance(solver.problem, each[0].orbit, each[1].orbit) <= allowed
+
+
+def _leads_to(solver: Solver, new: Solution, before: Point) -> bool:
+    """Whether the branch as it goes on has, where a point before the turn lies, the orbit of that point.
+
+    With its word there may be none at the new parameter on that side of the turn: then Newton has led from it
+    to the other side. Here there is one on either side.
+    """
+    ahead = tangent(solver.problem, new, (before.parameter - new.value) / new.tangent.parameter)
+    guess = ahead if in_order(ahead) else new.orbit
+    parameter = guess.parameter.copy()
+    parameter[solver.problem.index] = before.parameter
+    sign = float(np.sign(new.tangent.parameter))
+    found = solver.at_parameter(replace(guess, parameter=parameter), sign)
+    known = solver.problem.restrict(before.orbit)
+    allowed = AT_WORST * (before.error.orbit + found.error.orbit) * max(known.span(), LEAST_SPAN)
+    return found.ok and distance(solver.problem, known, found.orbit) <= allowed
 
 
 def _turn(points: Sequence[Point]) -> int | None:
