@@ -199,11 +199,7 @@ def test_step_beyond_a_change(
     monkeypatch.setattr(continuation, "crossed", lambda *_: found)
     monkeypatch.setattr(continuation, "at_once", lambda *_: [])
     monkeypatch.setattr(continuation, "replace", lambda state, **changed: changed)
-<<<<<<< HEAD
-    change = SimpleNamespace(grazes=False, final=False, last=False, strict=False)
-=======
-    change = SimpleNamespace(touches=False, final=False, last=False, strict=False, nearer=False)
->>>>>>> l40
+    change = SimpleNamespace(grazes=False, final=False, last=False, strict=False, nearer=False)
     own: Any = SimpleNamespace(
         state=object(), solver=None, control=ArclengthControl(), collected=["point"], _emitted=lambda *_: None
     )
