@@ -60,7 +60,7 @@ class Collocation(MeshMethod):
     ntst, ntst_min, ntst_max : int
         Intervals to begin with, fewest and most.
     kinks : KinkSettings, optional
-        When the mesh is tied to a passage of a switch; default what the tolerance asks for.
+        When a crossing of a level by a switch gets an event node; default what the tolerance asks for.
     solver : callable
         The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
