@@ -15,9 +15,12 @@ import numpy as np
 
 from periodic.correction.error import AT_WORST
 from periodic.correction.identity import distance
+from periodic.correction.newton import in_order
+from periodic.correction.predictor import tangent
+from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
-from periodic.orbit.orbit import LEAST_SPAN
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
 from periodic.system.precision import CONVERGED
@@ -47,6 +50,8 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     if before is None or solver.problem.free != (solver.problem.index,) or solver.problem.autonomous:
         return None
     guess = solver.problem.restrict(before.orbit)
+    if not _ahead(solver.problem, new, guess):
+        return None
     parameter = guess.parameter.copy()
     parameter[solver.problem.index] = new.value
     back = solver.at_parameter(replace(guess, parameter=parameter), -float(np.sign(new.tangent.parameter)))
@@ -58,6 +63,16 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     turn = _turn(points)
     assert turn is not None
     return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
+
+
+def _ahead(problem: Problem, new: Solution, orbit: Orbit) -> bool:
+    """Whether an orbit may lie on the branch of another: the tangent there leads nearer to it than it is long.
+
+    Those on another sheet lie farther off, so that they need not be solved for at the same parameter.
+    """
+    way = (orbit.parameter - new.orbit.parameter)[problem.index] / new.tangent.parameter
+    guess = tangent(problem, new, way)
+    return not in_order(guess) or distance(problem, guess, orbit) <= distance(problem, guess, new.orbit)
 
 
 def _one(solver: Solver, new: Solution, back: Solution) -> bool:
