@@ -66,7 +66,7 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
 
 
 def _ahead(problem: Problem, new: Solution, orbit: Orbit) -> bool:
-    """Whether an orbit may lie on the branch of another: the tangent there leads nearer to it than it is long.
+    """Whether an orbit may lie on the branch of another: the tangent there leads nearer than it is long.
 
     Those on another sheet lie farther off, so that they need not be solved for at the same parameter.
     """
