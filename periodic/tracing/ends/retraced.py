@@ -50,7 +50,8 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     if before is None or solver.problem.free != (solver.problem.index,) or solver.problem.autonomous:
         return None
     guess = solver.problem.restrict(before.orbit)
-    if not _ahead(solver.problem, new, guess):
+    ahead = tangent(solver.problem, new, (before.parameter - new.value) / new.tangent.parameter)
+    if not _near(solver.problem, new, ahead, guess):
         return None
     parameter = guess.parameter.copy()
     parameter[solver.problem.index] = new.value
@@ -60,19 +61,19 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     allowed = AT_WORST * (back.error.orbit + new.error.orbit) * max(new.orbit.span(), LEAST_SPAN)
     if distance(solver.problem, new.orbit, back.orbit) > allowed or not _one(solver, new, back):
         return None
+    if not _leads_to(solver, new, ahead, before):
+        return None
     turn = _turn(points)
     assert turn is not None
     return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
 
 
-def _ahead(problem: Problem, new: Solution, orbit: Orbit) -> bool:
-    """Whether an orbit may lie on the branch of another: the tangent there leads nearer than it is long.
+def _near(problem: Problem, new: Solution, ahead: Orbit, orbit: Orbit) -> bool:
+    """Whether an orbit may be the one ahead: the tangent leads nearer to it than it is long.
 
     Those on another sheet lie farther off, so that they need not be solved for at the same parameter.
     """
-    way = (orbit.parameter - new.orbit.parameter)[problem.index] / new.tangent.parameter
-    guess = tangent(problem, new, way)
-    return not in_order(guess) or distance(problem, guess, orbit) <= distance(problem, guess, new.orbit)
+    return not in_order(ahead) or distance(problem, ahead, orbit) <= distance(problem, ahead, new.orbit)
 
 
 def _one(solver: Solver, new: Solution, back: Solution) -> bool:
@@ -90,6 +91,22 @@ def _one(solver: Solver, new: Solution, back: Solution) -> bool:
     allowed = np.sqrt(CONVERGED) * max(new.orbit.span(), LEAST_SPAN)
     ok = len(each) == 2 and all(found.ok for found in each)
     return ok and distance(solver.problem, each[0].orbit, each[1].orbit) <= allowed
+
+
+def _leads_to(solver: Solver, new: Solution, ahead: Orbit, before: Point) -> bool:
+    """Whether the branch as it goes on has, where a point before the turn lies, the orbit of that point.
+
+    With its word there may be none at the new parameter on that side of the turn: then Newton has led from it
+    to the other side. Here there is one on either side.
+    """
+    guess = ahead if in_order(ahead) else new.orbit
+    parameter = guess.parameter.copy()
+    parameter[solver.problem.index] = before.parameter
+    sign = float(np.sign(new.tangent.parameter))
+    found = solver.at_parameter(replace(guess, parameter=parameter), sign)
+    known = solver.problem.restrict(before.orbit)
+    allowed = AT_WORST * (before.error.orbit + found.error.orbit) * max(known.span(), LEAST_SPAN)
+    return found.ok and distance(solver.problem, known, found.orbit) <= allowed
 
 
 def _turn(points: Sequence[Point]) -> int | None:

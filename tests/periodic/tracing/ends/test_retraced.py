@@ -64,6 +64,19 @@ def test_other_orbits_are_another_sheet(sticking: Continuation) -> None:
     assert retraced(sticking.solver, points, off) is None
 
 
+def test_newton_may_lead_to_the_other_side(sticking: Continuation) -> None:
+    """Assert that nothing is told where Newton leads from a point before the turn to another side of a fold.
+
+    The orbit at that point is then another than the branch as it goes on has there.
+    """
+    points, last = _back(sticking)
+    before = points[-4]
+    assert retraced(sticking.solver, points, last) is not None
+    points[-4] = replace(before, orbit=replace(before.orbit, nodes=before.orbit.nodes * (1 + 1e-5)))
+    assert points[-4].error.orbit < 1e-6
+    assert retraced(sticking.solver, points, last) is None
+
+
 def test_one_way_is_no_turn(sticking: Continuation) -> None:
     """Assert that nothing is told of a branch on which the parameter goes one way."""
     points = sticking.collected
