@@ -114,11 +114,6 @@ class Course:
     gone: float = math.inf
     margins: Mapping[str, float] = field(default_factory=dict)
 
-    def ends(self, test: TestFunction, base: Solution, ds: float) -> bool:
-        """Whether a margin changes sign within a step of length `ds` if it goes on as before its base."""
-        before, begin = self.margins.get(test.key, math.nan), test.margin(base)
-        return begin * (begin + (begin - before) * ds / self.gone) < 0
-
     def returns(self, test: TestFunction, base: Solution, new: Solution, ds: float) -> bool:
         """Whether a margin of one sign may come to 0 and go back between two solutions `ds` apart."""
         before, begin, end = self.margins.get(test.key, math.nan), test.margin(base), test.margin(new)

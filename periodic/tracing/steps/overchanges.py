@@ -16,7 +16,6 @@ from itertools import chain
 
 import numpy as np
 
-from periodic.bifurcations.fold import FOLD
 from periodic.bifurcations.location import sign_between
 from periodic.bifurcations.testfunction import Course, TestFunction
 from periodic.bifurcations.twoparameter import codim2
@@ -107,9 +106,7 @@ class _Way:
         return change is not None and not change.touches
 
     def over(self, ds: float, course: Course) -> Over | None:
-        """The end of a step of one length, if it is as it should be, and no fold lies ahead of it."""
-        if course.ends(FOLD, self.base, ds):
-            return None
+        """The end of a step of one length, if it is as it should be."""
         for found in self._each(ds, self._words(ds)):
             new = self._accurate(found)
             if new is not None:

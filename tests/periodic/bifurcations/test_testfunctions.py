@@ -362,21 +362,3 @@ def test_parabola_over_steps_of_two_lengths() -> None:
         ends: list[Any] = [SimpleNamespace(once=lambda _, c=c: 0.5 + c)] * 2
         course = testfunction.Course(2.0, {"NS ": 12.5 + c})
         assert course.returns(test, ends[0], ends[1], 1.0) is returns
-
-
-@pytest.mark.parametrize(
-    ("before", "begin", "ds", "ends"),
-    [
-        (3.0, 1.0, 1.01, True),  # 1 at 0, and 3 at -2: 0 at 1
-        (3.0, 1.0, 0.99, False),
-        (-3.0, -1.0, 1.01, True),
-        (1.0, 3.0, 9.0, False),
-        (np.nan, 1.0, 9.0, False),
-    ],
-)
-def test_margin_that_comes_to_0_ahead(before: float, begin: float, ds: float, ends: bool) -> None:
-    """Assert it of the line through the margins at -2 and 0; nothing is said where no step was before."""
-    base: Any = SimpleNamespace(once=lambda _: begin)
-    test = testfunction.TestFunction(label=Label.TORUS, value=lambda _: 0.0)
-    assert testfunction.Course(2.0, {"NS ": before}).ends(test, base, ds) is ends
-    assert not testfunction.Course().ends(test, base, ds)
