@@ -21,7 +21,7 @@ from periodic.bifurcations.location import sign_between
 from periodic.bifurcations.testfunction import Course, TestFunction
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.newton import in_order
-from periodic.correction.predictor import at_fixed_phases, tangent
+from periodic.correction.predictor import at_fixed_phases
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.orbit import Orbit
@@ -100,7 +100,7 @@ class _Way:
 
     def changes(self, distance: float) -> bool:
         """Whether the word changes within a distance, and not by grazing as far as is foreseen."""
-        if not in_order(tangent(self.solver.problem, self.base, distance)):
+        if not in_order(self.foresight.guess(self.base, distance)):
             return True
         change = self.foresight.change(self.base, distance)
         return change is not None and not change.grazes
@@ -130,7 +130,7 @@ class _Way:
     def at(self, distance: float) -> Solution:
         """Return the orbit at a distance, with the word of the base where it can. Raises RejectedError."""
         if distance not in self.known:
-            guess = tangent(self.solver.problem, self.base, distance)
+            guess = self.foresight.guess(self.base, distance)
             guesses = chain([guess] if in_order(guess) else [], self._words(distance))
             new = next(self._each(distance, guesses), None)
             if new is None:
@@ -160,7 +160,7 @@ class _Way:
     def _words(self, distance: float) -> Iterator[Orbit]:
         """Yield guesses of the orbit at a distance with another word than the base's."""
         solver, problem, base = self.solver, self.solver.problem, self.base
-        guess, method = tangent(problem, base, distance), solver.discretisation
+        guess, method = self.foresight.guess(base, distance), solver.discretisation
         if not problem.low < problem.value(guess) < problem.high:
             return
         ahead = at_fixed_phases(problem, base, distance)

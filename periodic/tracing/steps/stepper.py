@@ -13,7 +13,7 @@ from functools import cached_property
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.identity import distance
 from periodic.correction.newton import NewtonSettings
-from periodic.correction.predictor import cubic, spaced, tangent
+from periodic.correction.predictor import cubic, spaced
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.orbit.mesh import Mesh
@@ -63,7 +63,7 @@ class Stepper:
     control : ArclengthControl
         Step control.
     foresight : Foresight
-        What tells changes of pattern ahead.
+        What tells where the tangent leads, and changes of pattern ahead.
     """
 
     solver: Solver
@@ -142,7 +142,7 @@ class Stepper:
             at = reached(solver, base, None, ds, foreseen)
             if at is not None:
                 return at.end, at
-        guess = spaced(base.orbit, tangent(solver.problem, base, ds))
+        guess = spaced(base.orbit, self.foresight.guess(base, ds))
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
             farther = self.foresight.change(base, FARTHER * ds) if foreseen is None else None

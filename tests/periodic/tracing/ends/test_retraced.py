@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ import periodic as per
 import symbolic as sym
 from periodic.bifurcations.label import Label
 from periodic.correction.solution import Between, Solution
+from periodic.correction.solver import Solver
+from periodic.orbit.orbit import Orbit
 from periodic.results.point import Point, describe
 from periodic.tracing.continuation import Continuation
 from periodic.tracing.ends.retraced import retraced
@@ -62,6 +65,25 @@ def test_other_orbits_are_another_sheet(sticking: Continuation) -> None:
     off = Between(last.problem, last.discretisation, moved, last.tangent, beside=last)
     assert last.error.orbit < 1e-6
     assert retraced(sticking.solver, points, off) is None
+
+
+def test_another_sheet_is_not_solved_for(sticking: Continuation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that an orbit farther off than the tangent there is long is told apart without Newton."""
+    points, last = _back(sticking)
+    before, solved = points[-4], list[float]()
+    length = np.abs(last.orbit.nodes - before.orbit.nodes).max()
+    at_parameter = Solver.at_parameter
+
+    def counted(solver: Solver, guess: Orbit, sign: float, *settings: Any) -> Solution:
+        solved.append(sign)
+        return at_parameter(solver, guess, sign, *settings)
+
+    monkeypatch.setattr(Solver, "at_parameter", counted)
+    for far, some in ((0.1, True), (10.0, False)):
+        solved.clear()
+        points[-4] = replace(before, orbit=replace(before.orbit, nodes=before.orbit.nodes + far * length))
+        retraced(sticking.solver, points, last)
+        assert bool(solved) is some
 
 
 def test_newton_may_lead_to_the_other_side(sticking: Continuation) -> None:

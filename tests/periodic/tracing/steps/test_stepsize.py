@@ -213,7 +213,7 @@ def test_step_beyond_a_change(
 
 def test_what_is_foreseen_is_read_once() -> None:
     """Assert that a second question for the same base and length reads nothing, and another one does."""
-    asked: list[float] = []
+    asked, led = list[float](), list[float]()
 
     def change(system: Any, orbit: Any, guess: float) -> str:
         asked.append(guess)
@@ -224,11 +224,12 @@ def test_what_is_foreseen_is_read_once() -> None:
     )
     ahead = foresight.Foresight(solver)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(foresight, "tangent", lambda problem, base, ds: ds)
+        patch.setattr(foresight, "tangent", lambda problem, base, ds: led.append(ds) or ds)
         base, other = (SimpleNamespace(orbit=None) for _ in range(2))
+        assert [ahead.guess(base, 0.1), ahead.guess(base, 0.1)] == [0.1, 0.1] and not asked
         said = [ahead.change(at, ds) for at, ds in ((base, 0.1), (base, 0.1), (base, 0.2), (other, 0.2))]
     assert said == ["change at 0.1", "change at 0.1", "change at 0.2", "change at 0.2"]
-    assert asked == [0.1, 0.2, 0.2]
+    assert asked == led == [0.1, 0.2, 0.2]
 
 
 @pytest.mark.parametrize("apart", [0.3, 0.1, 1.9e-5, 0.0])
