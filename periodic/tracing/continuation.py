@@ -10,10 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import Course
 from periodic.bifurcations.turningpoint import Found, at_once
-from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError

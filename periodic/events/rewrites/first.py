@@ -9,8 +9,8 @@ import numpy as np
 from periodic.correction.change import Change
 from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
+from periodic.events.rewrites.grazingonsets import begins, beside_node
 from periodic.events.rewrites.letgo import slip_that_joins
-from periodic.events.rewrites.onsets import begins, beside_node
 from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strained import strained_away

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 
 from periodic.events.modes import mode_after, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import sites_of
+from periodic.events.rewrites.grazingonsets import sites_of
 from periodic.events.rewrites.rewrite import rewritten
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.table import LIMIT_GRAZING, SWAP

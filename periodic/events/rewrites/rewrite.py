@@ -19,7 +19,7 @@ from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import at_once
+from periodic.events.rewrites.grazingonsets import at_once
 from periodic.events.rewrites.sites import Site, edited, has, in_order, index_of, ordered
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
 from periodic.events.rewrites.together import together

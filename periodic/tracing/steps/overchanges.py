@@ -16,9 +16,9 @@ from itertools import chain
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.location import sign_between
 from periodic.bifurcations.testfunction import Course, TestFunction
-from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.newton import in_order
 from periodic.correction.predictor import at_fixed_phases, tangent

@@ -360,9 +360,31 @@ def test_sites_of_sliders_that_slip_together_are_one() -> None:
         )
         for g, stop in ((0, STOPS), (3, EventNode(3, -1, modes=((3, STUCK),))))
     )
-    release, stop = (added.event for added in twins._both(one, other).added)
+    system = Surfaces([joint(), joint(1, 3, Kind.SLIDER)], [[0.0, 1.0]] * 6)
+    release, stop = (added.event for added in twins._both(system, one, other).added)
     assert release == EventNode(1, 1, modes=((3, 1),))
     assert stop == EventNode(0, -1, modes=((0, STUCK), (3, STUCK)))
+
+
+def test_sites_of_sliders_that_stop_at_one_turn_are_one() -> None:
+    """Assert that the modes of both stand at their release, and at the event node at which others stop."""
+    system = Surfaces([joint(), joint(1, 3, Kind.SLIDER)], [[0.0, 1.0]] * 6)
+    turn, held = EventNode(9, -1, modes=((9, STUCK),)), Length(0, 0.0)
+    one, other = (
+        Site(
+            table.LIMIT_GRAZING,
+            guard + 1,
+            0,
+            held,
+            0.0,
+            (Added(EventNode(guard + 1, 1), 1.0, -1.0),),
+            replaced=((4, EventNode(9, -1, modes=((9, STUCK), (guard, STUCK)))),),
+        )
+        for guard in (0, 3)
+    )
+    both = twins._both(system, one, other)
+    assert [added.event for added in both.added] == [EventNode(1, 1, modes=((3, 1),))]
+    assert both.replaced == ((4, EventNode(9, -1, modes=(*turn.modes, (0, STUCK), (3, STUCK)))),)
 
 
 def test_slider_that_slips_where_others_stop() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.surfaces import Surfaces, along, joint
 
-from periodic.events.rewrites import onsets, table
+from periodic.events.rewrites import grazingonsets, table
 from periodic.events.rewrites.reversals import Reversal, held, reversals, short_of
 from periodic.events.rewrites.rewrite import Begins
 from periodic.events.rewrites.sites import Added, Site, apart, edited, has, index_of, ordered
@@ -54,7 +54,7 @@ def grazed(switch: int, side: int, orbit: Orbit) -> Site:
     """The site of an extremum of a switch at pi / 2."""
     surface = next(s for s in system().surfaces if switch in (s.switch, *(s.releases or ())))
     at = Extremum(switch, 9, 0.5, np.pi / 2, -0.25)
-    return onsets._at_extremum(system(), orbit, surface, at, side, -0.5)
+    return grazingonsets._at_extremum(system(), orbit, surface, at, side, -0.5)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -116,15 +116,15 @@ def test_grazing_of_a_limit(guard: int, row: table.Row, side: int) -> None:
 def test_row_of_an_extremum(switch: int, modes: Any, name: str) -> None:
     """Assert it by the kind of the surface, and whether it is its guard."""
     surface = next(s for s in system().surfaces if switch in (s.switch, *(s.releases or ())))
-    assert onsets.row_of(sine(modes=modes), surface, switch) == name
-    assert onsets.row_of(sine(), Surface(Kind.MARKER, "marker", 9), 9) == ""
+    assert grazingonsets.row_of(sine(modes=modes), surface, switch) == name
+    assert grazingonsets.row_of(sine(), Surface(Kind.MARKER, "marker", 9), 9) == ""
 
 
 @pytest.mark.parametrize("place", [None, (0, ())])
 def test_first_slips_of_what_is_held_all_along(place: Any) -> None:
     """Assert that a joint with a place slips, and that one without departs."""
     own = joint(0, FRICTION, place=place)
-    found = onsets.row_of(sine(modes=[(FRICTION, HELD)]), own, 1)
+    found = grazingonsets.row_of(sine(modes=[(FRICTION, HELD)]), own, 1)
     assert found == (table.FIRST_DEPARTURES if place is None else table.FIRST_SLIPS).name
 
 
@@ -135,7 +135,7 @@ def test_passage_that_begins_to_be_held(way: int) -> None:
     orbit = sine((event, 1.0), (EventNode(FRICTION, -way), 3.0))
     switch = 1 if way > 0 else 2
     limit = Violation(Breach.MODE, switch, 0, -way, 0.25)
-    site = onsets.begins(system(), orbit, limit)
+    site = grazingonsets.begins(system(), orbit, limit)
     stops = EventNode(FRICTION, way, modes=((FRICTION, STUCK), (9, 1)))
     added = (Added(EventNode(switch, way), 1.0, 1.0),)
     held_at = Limit(0, switch, -way, site.held.level) if site and isinstance(site.held, Limit) else None
@@ -149,7 +149,7 @@ def test_stop_that_breaks(way: int) -> None:
     event = EventNode(FRICTION, way, modes=((FRICTION, STUCK), (9, 1)))
     orbit = sine((event, 1.0), (EventNode(1, 1), 3.0))
     limit = Violation(Breach.MODE, 2, 0, 1, 0.25)
-    site = onsets.begins(system(), orbit, limit)
+    site = grazingonsets.begins(system(), orbit, limit)
     passes, added = EventNode(FRICTION, way, modes=((9, 1),)), (Added(stop(FRICTION, -way), 1.0, 1.0),)
     assert site is not None
     expected = Site(table.SWITCHING_SLIDING, 2, 0, site.held, -0.25, added, (), ((0, passes),))
@@ -159,7 +159,7 @@ def test_stop_that_breaks(way: int) -> None:
 @pytest.mark.parametrize("breach", [b for b in Breach if b not in (Breach.EXCURSION, Breach.MODE)])
 def test_violations_that_no_row_is_for(breach: Breach) -> None:
     """Assert that there is no site."""
-    assert onsets.begins(system(), sine(), Violation(breach, KINK, 0, 1, 0.1)) is None
+    assert grazingonsets.begins(system(), sine(), Violation(breach, KINK, 0, 1, 0.1)) is None
 
 
 @pytest.mark.parametrize(("offset", "side"), [(-0.9, -1), (0.9, 1)])
@@ -167,16 +167,16 @@ def test_excursion_that_a_word_leaves_out(offset: float, side: int) -> None:
     """Assert that a shallow excursion past a kink, found as a violation, is the grazing that begins there."""
     kink: Any = Surfaces([Surface(Kind.KINK, "kink", 0, column=0)], [[1.0, 0.0]], [offset])
     (found,) = violations(kink, sine())
-    site = onsets.begins(kink, sine(), found)
+    site = grazingonsets.begins(kink, sine(), found)
     assert site is not None and site.row is table.GRAZING
     assert site.value == pytest.approx(-0.1, abs=1e-6)
     phase = np.pi / 2 if offset < 0 else 3 * np.pi / 2
     assert [each.event.direction for each in site.added] == [-side, side]
     assert [each.phase for each in site.added] == pytest.approx([phase] * 2, abs=1e-6)
     assert isinstance(site.at, Extremum) and site.at.phase == pytest.approx(phase, abs=1e-6)
-    every = [each.value for each in onsets._all(kink, sine(), "grazing")]
+    every = [each.value for each in grazingonsets.sites_of(kink, sine(), "grazing")]
     assert every and every == pytest.approx([-0.1 / 1.9] * len(every), abs=1e-6)
-    assert list(onsets._all(kink, sine(), "grazing of an impact")) == []
+    assert list(grazingonsets.sites_of(kink, sine(), "grazing of an impact")) == []
 
 
 @pytest.mark.parametrize(
@@ -329,6 +329,6 @@ def test_distance_of_sites(one: Any, other: Any, distance: float) -> None:
         place = Extremum(switch, 0, 0.0, at, 0.0) if isinstance(at, float) else at
         return SimpleNamespace(switch=switch, at=place, row=table.IMPACT)
 
-    assert onsets._distance(site(one), site(other), sine()) == pytest.approx(distance)
+    assert grazingonsets._distance(site(one), site(other), sine()) == pytest.approx(distance)
     same = distance < 1e-3
-    assert onsets._same(system(), sine(), site(one), site(other)) is same
+    assert grazingonsets._same(system(), sine(), site(one), site(other)) is same

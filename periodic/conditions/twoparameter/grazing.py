@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.conditions.augmented import of_orbits
+from periodic.conditions.twoparameter.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.events.sideconditions import Clearance
 from periodic.events.switchpolynomials import SwitchPolynomials
