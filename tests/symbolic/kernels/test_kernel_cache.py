@@ -399,3 +399,46 @@ def test_compiler_from_the_package_index(monkeypatch: pytest.MonkeyPatch, tmp_pa
     monkeypatch.setenv("CC", str(native.packaged()))
     native.compiler.cache_clear()
     assert right(made(Kernels.C))
+
+
+def stand_in(folder: Path, name: str, does: str) -> Path:
+    """A program of that name."""
+    file = folder / name
+    file.write_text(f"#!/bin/sh\n{does}\n")
+    file.chmod(0o755)
+    return file
+
+
+def test_first_compiler_that_answers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Assert the order of names, what one says of its version, and that one that fails is passed over."""
+    no_compiler(monkeypatch, tmp_path)
+    stand_in(tmp_path, "clang", 'echo "clang, $1"')
+    assert native.compiler() == (("clang",), "clang, --version\n")
+    stand_in(tmp_path, "gcc", 'echo "gcc, $1"')
+    native.compiler.cache_clear()
+    assert native.compiler() == (("gcc",), "gcc, --version\n")
+    stand_in(tmp_path, "cc", "echo broken; exit 1")
+    native.compiler.cache_clear()
+    assert native.compiler() == (("gcc",), "gcc, --version\n")
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("own -O1 'a b'", (("own", "-O1", "a b"), "own, -O1, a b, --version\n")),
+        ("missing", None),
+        ("missing own", None),
+        ("'own", None),
+        (" ", None),
+    ],
+)
+def test_compiler_that_is_asked_for(
+    asked: str, found: object, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Assert that CC may have arguments, and that no other is taken in its place."""
+    no_compiler(monkeypatch, tmp_path)
+    stand_in(tmp_path, "own", 'echo "own, $1, $2, $3"')
+    stand_in(tmp_path, "cc", "echo cc")
+    monkeypatch.setenv("CC", asked)
+    native.compiler.cache_clear()
+    assert native.compiler() == found
