@@ -22,7 +22,8 @@ LESS_THAN_ONE = re.compile(
     r"ratios?\b|reciprocal|peaks? to peak|peak-to-peak|differences?\b|errors? (of|to which)|local increment|"
     r"times the (length|norm)|singular values?|excursions? (below|up)|least (width|"
     r"size|slope|distance|arclength)|width \(rad\)|distance (of|\(rad\)|from|in)|"
-    r"multipliers? (so near|nearer|as near)|added to the derivative|counts as|so near|is rounding|are rounding|finest tolerance)",
+    r"multipliers? (so near|nearer|as near)|added to the derivative|counts as|so near|"
+    r"is rounding|are rounding|finest tolerance)",
     re.IGNORECASE,
 )
 """Words for a number that is compared with 1."""
