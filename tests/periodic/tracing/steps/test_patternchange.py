@@ -333,7 +333,7 @@ def test_orbit_beyond_a_change_is_near(
 
 @pytest.mark.parametrize(("errors", "solved"), [([1e-7], 0), ([1e-5, 1e-7], 1), ([1e-5] * 9, MESHES_BEYOND)])
 def test_meshes_beyond_a_change(errors: list[float], solved: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that they are made anew as long as the error misses the tolerance, and four times at the most."""
+    """Assert that they are made anew as long as the error misses the tolerance, four times at the most."""
 
     def at(k: int) -> Any:
         mesh = SimpleNamespace(matches=lambda other: False)
