@@ -15,6 +15,7 @@ from periodic.condensed.circle import Circle
 from periodic.condensed.condensedcollocation import CondensedCollocation
 from periodic.condensed.memory import KEPT, SOLVING, Memory
 from periodic.condensed.modal.moments import SERIES_UP_TO, Moments
+from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.timestep import Step
 from periodic.condensed.timestepping import Changed
@@ -393,3 +394,30 @@ def test_time_step_of_a_mode(exponent: complex) -> None:
     assert step.kicked[0, 0] == pytest.approx(mean * (2 + 1j))
     assert step.local[0, 0] == pytest.approx((mean * (2 + 1j) * (3 - 1j)).real + 0.25)
     assert step.width == 0.5
+
+
+@pytest.mark.parametrize("nodes", [0, 1])
+def test_effect_of_parameters_by_hand(nodes: int) -> None:
+    """Assert the largest of what forces, the motion begun and own states do, each of two parameters.
+
+    Of one state, one force and one own state on two intervals of one point; columns before are none of it.
+    """
+    columns = 1 + 2 + nodes
+    forces, own, affine = (
+        np.zeros((2, 1, columns + 2)),
+        np.zeros((2, 1, columns + 2)),
+        np.zeros((2, 1, 1 + nodes + 2)),
+    )
+    forces[:, :, :columns] = own[:, :, :columns] = 9.0
+    affine[:, :, : 1 + nodes] = 9.0
+    forces[1, 0, columns:], own[0, 0, columns:], affine[1, 0, 1 + nodes :] = (-3, 1), (2, -4), (-0.5, 0.25)
+    given = SimpleNamespace(
+        local=SimpleNamespace(forces=forces, own=own),
+        affine=affine,
+        flexibility=SimpleNamespace(applied=lambda weights: 10.0 * weights.reshape(2, 1, 1, 2)),
+    )
+    orbit = SimpleNamespace(phases=np.zeros(nodes), stages=np.zeros((2, 1, 1)))
+    operator: Any = SimpleNamespace(given=given, orbit=orbit)
+    effect = CondensedOperator.effect
+    assert isinstance(effect, property) and effect.fget is not None
+    assert effect.fget(operator).tolist() == [30.0 + 0.5 + 2.0, 10.0 + 0.25 + 4.0]

@@ -442,3 +442,15 @@ def test_compiler_that_is_asked_for(
     monkeypatch.setenv("CC", asked)
     native.compiler.cache_clear()
     assert native.compiler() == found
+
+
+@pytest.mark.parametrize("does", ["echo wrong >&2; exit 3", "echo wrong >&2; kill -9 $$"])
+def test_compiler_that_stops(does: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Assert its words, whether it fails or is ended by a signal."""
+    no_compiler(monkeypatch, tmp_path)
+    monkeypatch.setenv(
+        "CC", str(stand_in(tmp_path, "own", f'[ "$1" = --version ] && echo own && exit 0; {does}'))
+    )
+    native.compiler.cache_clear()
+    with pytest.raises(native.CompilerError, match="own failed: wrong$"):
+        native._made("int main;")
