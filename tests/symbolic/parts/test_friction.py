@@ -254,19 +254,17 @@ def test_creeping_slider_by_hand(scale: float) -> None:
         ((1.0, 2.0), (0.3, 0.3), [(1.0, 0.3), (2.0, 0.3)]),
     ],
 )
-def test_sliders_that_slip_together_are_one(
-    stiffness: object, limits: tuple[float, ...], found: object
-) -> None:
-    """Assert stiffness and limit of each slider that is left, of sliders of one elongation at their limits."""
+def test_iwan_joins_sliders(stiffness: Any, limits: tuple[float, ...], found: Any) -> None:
+    """Assert stiffness and limit of each slider that is left, of those that slip at one elongation."""
     x = sym.coordinate("x")
-    system = exact(sym.Iwan(x, stiffness, limits, creep=None))  # type: ignore[arg-type]
+    system = exact(sym.Iwan(x, stiffness, limits, creep=None))
     state = np.zeros((1, len(system.states)))
     state[0, [s.name for s in system.states].index("x")] = 0.01
     outputs = system.output(np.zeros_like(state), state, np.zeros((1, 0)), np.zeros(1), system.nominal)
     forces = [v for v, o in zip(outputs[0], system.outputs, strict=True) if o.name.startswith("force of")]
-    assert forces == pytest.approx([0.01 * k for k, _ in found])  # type: ignore[attr-defined]
+    assert forces == pytest.approx([0.01 * k for k, _ in found])
     values = {p.name: p.value for p in system.parameters}
     assert sum(v for name, v in values.items() if name.startswith("F_slider")) == pytest.approx(sum(limits))
     assert sorted(v for name, v in values.items() if name.startswith("F_slider")) == pytest.approx(
-        sorted(limit for _, limit in found)  # type: ignore[attr-defined]
+        sorted(limit for _, limit in found)
     )
