@@ -73,7 +73,7 @@ def test_mode_of_friction(mode: int, guard: float, part: float, wrong: int | Non
 def test_mode_of_a_slider(
     mode: int, moved: float, up: float, down: float, wrong: int | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Assert that it is held where it would go back, let go at its limits, and left where friction stops it."""
+    """Assert that it is held where it would go back, let go at its limits, left where friction stops it."""
     monkeypatch.setattr(timestepping, "stops", lambda system, joint, stuck: False)
     own = motion(joint(0, False), side=(mode,), values=(9.0, up, down), state=np.array([0.0, 1.0]))
     own.sliders = {0: (0, 1)}
