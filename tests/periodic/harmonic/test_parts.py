@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from periodic.harmonic import harmonicbalance
+from periodic.condensed.modal.modalreduction import Modes
+from periodic.harmonic import harmonicbalance, splitbalance
 from periodic.harmonic.balance import Balance, on_coefficients, projected
 from periodic.harmonic.harmonicbalance import AIM, LEAST_HARMONICS, FourierRefinement, needed
 from periodic.harmonic.hill import centroids, in_window
@@ -213,3 +214,57 @@ def test_series_on_other_meshes(coefficients: Array) -> None:
     assert more.amplitudes[3:].max() < 1e-12
     assert more.amplitudes[:3] == pytest.approx(orbit.amplitudes[:3])
     assert series(more, mesh_for(3, 2 * np.pi)).nodes == pytest.approx(orbit.nodes, abs=1e-12)
+
+
+def modes(random: np.random.Generator) -> Any:
+    """Three modes of two states and one force."""
+    exponents = np.array([-0.1 + 2j, -0.5, -0.3 + 7j])
+    inputs = random.standard_normal((3, 1)) * (1 + 0.5j)
+    outputs = random.standard_normal((2, 3)) * (1 - 0.2j)
+    direct, rate = random.standard_normal((2, 2, 1))
+    return Modes(exponents, inputs, outputs, direct, rate)
+
+
+def test_flexibility_of_modes() -> None:
+    """Assert the answer to exp(i w tau) of z' = x z + b f, u = Re C z + D f + E f', solved as it stands."""
+    own, w = modes(np.random.default_rng(5)), np.array([0.0, 1.0, 2.5])
+    found = splitbalance.flexibility(own, w)
+    for k, each in enumerate(w):
+        once, both = own.exponents, own.exponents.conj()
+        z = own.inputs / (1j * each - once)[:, None]
+        other = own.inputs.conj() / (1j * each - both)[:, None]
+        exact = (own.outputs @ z + own.outputs.conj() @ other) / 2 + own.direct + 1j * each * own.direct_rate
+        assert found[k] == pytest.approx(exact, rel=1e-12)
+
+
+def test_flexibility_of_modes_that_change() -> None:
+    """Assert its derivative by differences, of exponents, inputs, outputs and what is direct."""
+    random, w, step = np.random.default_rng(6), np.array([0.0, 1.0, 2.5]), 1e-6
+    own = modes(random)
+    names = ("exponents", "inputs", "outputs", "direct", "direct_rate")
+    parts = [random.standard_normal(getattr(own, name).shape) for name in names]
+    turned = [part * (1 + 0.3j) if k < 3 else part for k, part in enumerate(parts)]
+    change = Modes(*turned)
+    ends = [
+        splitbalance.flexibility(
+            Modes(
+                *(getattr(own, name) + way * step * part for name, part in zip(names, turned, strict=True))
+            ),
+            w,
+        )
+        for way in (1, -1)
+    ]
+    found = splitbalance.flexibility_slope(own, change, w)
+    assert found == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6, abs=1e-7)
+
+
+def test_factors_of_harmonics() -> None:
+    """Assert the map of a_0, a_k, b_k that is a product with complex amplitudes a_k - i b_k."""
+    random, count = np.random.default_rng(8), 4
+    factors = random.standard_normal((count, 2, 3)) + 1j * random.standard_normal((count, 2, 3))
+    waves = random.standard_normal((2 * count - 1, 3))
+    found = np.einsum("isjk,jk->is", splitbalance.on_harmonics(factors), waves)
+    amplitudes = np.concatenate([waves[:1] + 0j, waves[1:count] - 1j * waves[count:]])
+    exact = np.einsum("hsk,hk->hs", factors, amplitudes)
+    assert found[0] == pytest.approx(factors[0].real @ waves[0])
+    assert found[1:count] == pytest.approx(exact[1:].real) and found[count:] == pytest.approx(-exact[1:].imag)
