@@ -421,3 +421,56 @@ def test_effect_of_parameters_by_hand(nodes: int) -> None:
     effect = CondensedOperator.effect
     assert isinstance(effect, property) and effect.fget is not None
     assert effect.fget(operator).tolist() == [30.0 + 0.5 + 2.0, 10.0 + 0.25 + 4.0]
+
+
+@pytest.mark.parametrize(("taken", "most"), [(0.99, 1000), (1.0, 1000), (1.01, 40)])
+def test_most_intervals_by_memory(taken: float, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the settings' number where a mesh 2.5 times as fine has room, else what memory allows."""
+    part, asked = SimpleNamespace(size=50), list[Any]()
+    monkeypatch.setattr(refinement, "linear_of", lambda _: part)
+    response = SimpleNamespace(modes=SimpleNamespace(exponents=np.zeros(7)))
+    monkeypatch.setattr(refinement, "answer", lambda *_: (response, []))
+
+    def memory(modes: int, share: float) -> Any:
+        asked.append((modes, share))
+        return SimpleNamespace(
+            peak=lambda count: taken * refinement.LARGEST if count == 25 else np.nan,
+            most=lambda most, largest: 40 if (most, largest) == (1000, refinement.LARGEST) else -1,
+        )
+
+    given: Any = SimpleNamespace(
+        system=None,
+        method=SimpleNamespace(ntst_max=1000, ntst_min=6, tolerance=1e-6),
+        orbit=SimpleNamespace(mesh=SimpleNamespace(ntst=10), parameter=None),
+        _memory=memory,
+        _active=np.array([True, False, False, False]),
+    )
+    own = CondensedRefinement._most.func
+    assert own(given) == most
+    assert asked == ([(50, 1.0)] if most == 1000 else [(50, 1.0), (7, 0.25)])
+    given.method.ntst_max = 12
+    given._memory = lambda modes, share: SimpleNamespace(peak=lambda count: 0.0 if count == 12 else np.inf)
+    assert own(given) == 12
+
+
+@pytest.mark.parametrize(
+    ("wrong", "most", "wanted", "limited"),
+    [
+        (False, 40, 41.0, True),
+        (False, 40, 40.0, False),
+        (True, 40, 41.0, False),
+        (False, 1000, 2000.0, False),
+    ],
+)
+def test_orbits_for_which_there_is_no_memory(wrong: bool, most: int, wanted: float, limited: bool) -> None:
+    """Assert it where more intervals are wanted than memory allows, in the right mode."""
+    given: Any = SimpleNamespace(
+        _in_wrong_mode=wrong,
+        _most=most,
+        method=SimpleNamespace(ntst_max=1000),
+        system=SimpleNamespace(switches=("s",)),
+        _wanted=np.array([wanted / 4, wanted / 2]),
+        orbit=SimpleNamespace(grid=SimpleNamespace(width=np.array([2.0, 1.0]))),
+    )
+    own = CondensedRefinement._limited
+    assert isinstance(own, property) and own.fget is not None and own.fget(given) is limited

@@ -17,7 +17,7 @@ import pytest
 from support.models import Array, duffing_parts
 
 import symbolic as sym
-from symbolic.kernels import choice, kernel, native, privacy
+from symbolic.kernels import built, choice, kernel, native, privacy
 from symbolic.kernels.choice import ChosenKernel, Kernels
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
@@ -454,3 +454,23 @@ def test_compiler_that_stops(does: str, monkeypatch: pytest.MonkeyPatch, tmp_pat
     native.compiler.cache_clear()
     with pytest.raises(native.CompilerError, match="own failed: wrong$"):
         native._made("int main;")
+
+
+def test_library_that_came_with_the_package(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Assert that the one of a source is loaded, one of another machine passed over and logged."""
+    source, known = "int seven(void) { return 7; }", native.compiler()
+    assert known is not None
+    monkeypatch.setattr(built, "FOLDER", tmp_path)
+    (tmp_path / "own.c").write_text(source)
+    made = tmp_path / built.file_name(source)
+    subprocess.run([*known[0], *built.FLAGS, "-o", str(made), str(tmp_path / "own.c")], check=True)
+    with caplog.at_level(logging.DEBUG, logger="symbolic.kernels.built"):
+        found = built.built(source)
+        assert found is not None and found.seven() == 7 and not caplog.messages
+        assert built.built("int other;") is None and not caplog.messages
+        (tmp_path / built.file_name("int broken;")).write_bytes(b"no library")
+        assert built.built("int broken;") is None
+    (said,) = caplog.messages
+    assert said.startswith(f"{tmp_path / built.file_name('int broken;')} is not used: ")
