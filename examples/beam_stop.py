@@ -17,4 +17,4 @@ system = sym.compile(model, condense=False)
 branch = per.trace(system, "Omega", (3.0, 4.5), start=3.0)
 axes = per.plot(branch, "tip")
 key = branch.labelled("GR")[0].parameter  # rad/s
-print(f"the tip touches from {key:.8f} rad/s on")
+print(f"the tip reaches it from {key:.8f} rad/s on")

@@ -7,13 +7,13 @@ from .bifurcations.switching import SwitchError, branched, doubled
 from .collocation.collocation import Collocation
 from .condensed.whole.displacements import motion
 from .condensed.whole.recovery import recovery
-from .conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
 from .conditions.extremes import Maximum, Minimum, PeakToPeak
 from .conditions.functionals import Amplitude, Component, Multiplier, PhaseLag, Value, mean
-from .conditions.grazing import GrazingCondition
 from .conditions.levels import Level, Peak
 from .conditions.phase import Conservative, PhaseCondition
 from .conditions.sensitivity import sensitivities
+from .conditions.twoparameter.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
+from .conditions.twoparameter.grazing import GrazingCondition
 from .conditions.unstable import unstable
 from .correction.condition import Given
 from .correction.newton import NewtonSettings

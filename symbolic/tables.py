@@ -6,21 +6,21 @@ import html
 from collections.abc import Iterable, Sequence
 
 MOST_LISTED = 12
-"""Most names that a list gives, and most rows of a table that is not folded up."""
+"""Largest number of names that a list gives, and of rows of a table that is shown unfolded."""
 
 AS_IT_IS = "class='tex2jax_ignore mathjax_ignore'"
-"""Where MathJax, which notebooks run, shall look for no formula: names may have dollars in them."""
+"""Keeps MathJax, which notebooks run, from reading dollar signs in names as formulas."""
 
 
 def listed(names: Iterable[str]) -> str:
-    """Return names in one line; of more than MANY the first and their number."""
+    """Return names in one line; of more than MOST_LISTED the first ones and how many there are."""
     known = list(names)
     shown = ", ".join(known[:MOST_LISTED]) or "none"
     return shown if len(known) <= MOST_LISTED else f"{shown}, ... ({len(known)})"
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> str:
-    """Return an HTML table under a title that folds up a long one; nothing for one without rows."""
+    """Return an HTML table under a title, folded if it is long; an empty text without rows."""
     if not rows:
         return ""
     head = "".join(f"<th style='text-align:left'>{html.escape(cell)}</th>" for cell in headings)

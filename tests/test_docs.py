@@ -82,11 +82,11 @@ def cosine(point: per.Point) -> float:
 
 
 def test_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert the touch by the linear response's closed form, and what is drawn of the orbit."""
+    """Assert grazing by the linear response's closed form, and what is drawn of the orbit."""
     said = run("tutorials/contact.md", tmp_path, monkeypatch)
-    touch = said["branch"].labelled("GR")[0].parameter
-    assert (1 - touch**2) ** 2 + (0.1 * touch) ** 2 == pytest.approx(0.25, rel=1e-7)
-    assert said["touching"].maximum["q"] > 1
+    grazing = said["branch"].labelled("GR")[0].parameter
+    assert (1 - grazing**2) ** 2 + (0.1 * grazing) ** 2 == pytest.approx(0.25, rel=1e-7)
+    assert said["in_contact"].maximum["q"] > 1
 
 
 def test_fitting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,10 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.doubling import known as known_spectrum
 from periodic.bifurcations.fold import VERTICAL
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.correction.solution import Solution
 from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex

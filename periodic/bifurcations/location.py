@@ -13,13 +13,13 @@ from typing import Protocol
 import numpy as np
 
 from periodic.bifurcations.branchcrossing import crossing
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.fold import FOLD, VERTICAL, has_fold, moves
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import entry, gaps
 from periodic.bifurcations.testfunction import PARABOLA_LEFT, Course, TestFunction
 from periodic.bifurcations.torus import TORUS
 from periodic.bifurcations.turningpoint import Found, is_one, named, shrinks, unstable
-from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import MINIMUM_TRIALS, RejectedError, WithinStep, second_change
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver

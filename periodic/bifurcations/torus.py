@@ -12,7 +12,7 @@ from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.correction.solution import Solution
 from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE, Complex
-from periodic.stability.winding import meetings
+from periodic.stability.winding import collisions
 from periodic.system.precision import LARGEST, SMALLEST
 
 
@@ -87,7 +87,7 @@ def _pair_nearest_the_circle(solution: Solution) -> float:
 
 def _dips(base: Solution, new: Solution) -> list[tuple[float, float]]:
     """Where two pairs meet, and |log |mu|| of the nearer to the circle, expected if they do not leave it."""
-    return [(m.place, abs(m.growth)) for m in meetings(base.spectrum, new.spectrum)]
+    return [(m.place, abs(m.growth)) for m in collisions(base.spectrum, new.spectrum)]
 
 
 TORUS = TestFunction(

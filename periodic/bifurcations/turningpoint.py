@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from periodic.bifurcations.branchpoint import branching
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import RejectedError, WithinStep
 from periodic.correction.identity import from_itself
 from periodic.correction.solution import Solution

@@ -29,7 +29,7 @@ from periodic.events.eventnodes import Crossing, KinkSettings
 from periodic.events.eventrows import event_rows
 from periodic.events.modes import inconsistency, of_held, relays
 from periodic.events.resting import bounced, lengthened, neglected
-from periodic.events.rewrites.untouched import untouched
+from periodic.events.rewrites.withoutgrazing import without_grazing
 from periodic.linear.operator import Operator
 from periodic.linear.unknowns import Increment
 from periodic.orbit.construction import transfer
@@ -60,7 +60,7 @@ class Collocation(MeshMethod):
     ntst, ntst_min, ntst_max : int
         Intervals to begin with, fewest and most.
     kinks : KinkSettings, optional
-        When the mesh is tied to a passage of a switch; default what the tolerance asks for.
+        When a crossing of a level by a switch gets an event node; default what the tolerance asks for.
     solver : callable
         The linear solver: elimination interval by interval, see `periodic.linear.operator.LinearSolver`.
     condense : bool, optional
@@ -160,7 +160,7 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
-        """Return the mesh with the events of the orbit's own motion; None where one of them touches."""
+        """Return the mesh with the events of the orbit's own motion; None where one of them grazes."""
         if impacts.tied(system, orbit):
             return None
         try:
@@ -168,7 +168,7 @@ class Collocation(MeshMethod):
         except FAILURES:
             return None
         own = list(zip(orbit.mesh.events, map(float, orbit.phases), strict=True))
-        if nodes is None or not untouched(system, own, nodes, orbit.mesh.period):
+        if nodes is None or not without_grazing(system, own, nodes, orbit.mesh.period):
             return None
         return None if inconsistency(system, [event for event, _ in nodes]) else self.with_nodes(orbit, nodes)
 

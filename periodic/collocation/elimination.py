@@ -51,7 +51,7 @@ class EliminatedStages:
 
     @cached_property
     def perturbed(self) -> Array | None:
-        """Steps (N, n, n+p) of perturbations at fixed tau, with saltation; None without jumps: see `step`.
+        """Steps (N, n, n+p) of perturbations at fixed tau, with saltation; None where nothing jumps.
 
         Raises numpy.linalg.LinAlgError where a jump has no rates.
         """
@@ -59,7 +59,7 @@ class EliminatedStages:
 
     @property
     def origin(self) -> NDArray[np.int_]:
-        """Each mesh point follows from the one before it."""
+        """Index of the mesh point from which each interval steps: the one before."""
         return np.arange(len(self.step))
 
     def reduced(self, row: Row) -> Row:

@@ -25,7 +25,7 @@ from periodic.correction.outcome import FAILURES, Outcome
 from periodic.events import eventnodes, motions
 from periodic.events.eventnodes import KinkSettings
 from periodic.events.modes import completed, group, of_held, of_kind, relays
-from periodic.events.relaypassages import switched
+from periodic.events.relaycrossings import switched
 from periodic.events.rewrites.first import ENDS_BELOW, first_change
 from periodic.events.rewrites.permuted import permuted
 from periodic.events.rewrites.sites import Node
@@ -148,7 +148,7 @@ class MeshMethod(Discretisation):
         return SteppedCorrection(**{**shallow(correction), "system": system, "equations": self.linearise})
 
     def change(self, system: System, before: Orbit, after: Orbit) -> Change | None:
-        """Return where a switch touches its level on the way, or two event nodes meet."""
+        """Return where a switch grazes its level on the way, or two event nodes meet."""
         return first_change(system, before, after, self.shortest, self.ends_below)
 
     def reordered(self, system: System, orbit: Orbit, phases: Array) -> tuple[Mesh, Array] | None:
@@ -189,7 +189,7 @@ class MeshMethod(Discretisation):
         return None if motion is None else self.guess(system, motion.parameter, motion)
 
     def _breached(self, found: list[Violation], breach: Breach) -> bool:
-        """Whether there is a violation of one kind; a passage through a stop must exceed the tolerance."""
+        """Whether there is a violation of one kind; an excursion beyond a stop must exceed the tolerance."""
         least = self.tolerance if breach is Breach.THROUGH else -np.inf
         return any(v.breach is breach and v.depth > least for v in found)
 

@@ -74,7 +74,7 @@ def estimate(
 class OneSided:
     """Equations linearised one after the other at orbits that differ by their errors, see `deferred`.
 
-    An orbit close to a contact may touch by its error alone: then the first linearisation stands, whose
+    An orbit close to a contact may reach it by its error alone: then the first linearisation stands, whose
     contacts are those of the mesh.
     """
 

@@ -143,11 +143,11 @@ class ModalFloquet:
         growth, own = self.given.response.growth[-1], np.zeros(len(self.given.others))
         count = len(growth)
         factor = np.concatenate([growth.real, growth.real, own])[self.kept]
-        across = np.concatenate([-growth.imag, growth.imag, own])[self.kept]
+        cross = np.concatenate([-growth.imag, growth.imag, own])[self.kept]
         place = np.zeros(2 * count + len(own), dtype=int)
         place[self.kept] = np.arange(len(self.kept))
         swapped = np.concatenate([np.arange(count) + count, np.arange(count), np.zeros(len(own), dtype=int)])
-        return factor[:, None], across[:, None], place[swapped[self.kept]]
+        return factor[:, None], cross[:, None], place[swapped[self.kept]]
 
     @property
     def light(self) -> int:
@@ -156,18 +156,18 @@ class ModalFloquet:
 
     def lightest(self, count: int) -> NDArray[np.int_]:
         """Return the coordinates of the uncoupled modes that are damped least."""
-        factor, across, _ = self._grown
-        return np.argsort(-np.hypot(factor, across)[:, 0], kind="stable")[:count]
+        factor, cross, _ = self._grown
+        return np.argsort(-np.hypot(factor, cross)[:, 0], kind="stable")[:count]
 
     def apart(self, values: Complex, vectors: Complex) -> Complex:
         """Return (value - E)^-1 vector of each column, E = exp(lambda T) of the uncoupled modes.
 
         Where a value is an eigenvalue of E, the vector's components there are unchanged.
         """
-        factor, across, partner = self._grown
+        factor, cross, partner = self._grown
         beside = values - factor
-        size = beside**2 + across**2
-        found = beside * vectors + across * vectors[partner]
+        size = beside**2 + cross**2
+        found = beside * vectors + cross * vectors[partner]
         return np.where(np.abs(size) < ALONE**2, vectors, found / np.where(size == 0, 1.0, size))
 
     def answers(self, basis: Array) -> Array:
@@ -204,8 +204,8 @@ class ModalFloquet:
                 return self.driven(None, basis, {})[1]
             square = basis.shape[0] == basis.shape[1]
             return self.free[1] @ basis if square or "free" in vars(self) else self.driven(None, basis)[1]
-        factor, across, partner = self._grown
-        return factor * basis + across * basis[partner] + self._left @ self.answers(basis)
+        factor, cross, partner = self._grown
+        return factor * basis + cross * basis[partner] + self._left @ self.answers(basis)
 
     def _stepped(self, steps: Array, basis: Array) -> Array:
         """Return free motion from the columns of `basis` at the mesh points, (N+1, coordinates, r)."""

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from periodic.collocation.residual import eliminate, evaluated, rows_of
 from periodic.condensed.modal.flexibility import Flexibility
-from periodic.condensed.modal.modalreduction import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.moments import Complex
+from periodic.condensed.modal.quasistatic import reduced, reduced_slope, retained_modes
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes, slopes_within
 from periodic.condensed.modalsaltation import ModalSaltation, saltations

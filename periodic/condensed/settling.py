@@ -167,7 +167,7 @@ def _goes_back(motion: Motion, joint: Joint, slip: Changed) -> bool:
 
 
 def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bool:
-    """Whether a stop of one step is a passage in fact: rates on both sides of the jump have one sign."""
+    """Whether a stop of one step is a crossing in fact: rates on both sides of the jump have one sign."""
     if release.step > stop.step + 1 or not joint.slides:
         return False
     k = stop.step + 1
@@ -176,7 +176,7 @@ def _passes(motion: Motion, joint: Joint, stop: Changed, release: Changed) -> bo
 
 
 def _together(motion: Motion, records: list[Changed]) -> list[Changed]:
-    """The changes, with a release at the phase of another joint's stop or passage that causes it at once."""
+    """The changes, with a release at the phase of another joint's stop or crossing that causes it at once."""
     records = _side_by_side(motion, records)
     sliding = {joint.index: joint for joint in motion.joints if joint.slides}
     own = [each for each in records if each.surface in sliding]

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from periodic.conditions.augmented import of_orbits
+from periodic.conditions.twoparameter.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.linear.unknowns import mean_weights, node_phase_gradient
 from periodic.orbit.orbit import FORCED, Orbit

@@ -24,7 +24,7 @@ from periodic.system import System
 class Beyond:
     """How an orbit goes on beyond a change: its mesh, the event nodes' phases, and the condition held there.
 
-    touches: whether that orbit is the one at which a switch just touches its level. spare: whether it is
+    grazes: whether that orbit is the one at which a switch grazes its level. spare: whether it is
     tried only where those before are none, or lie behind the change, beyond more folds than one. parameter:
     the parameters (p,) that it has, where they are not those of the orbit before.
     """
@@ -32,7 +32,7 @@ class Beyond:
     mesh: Mesh
     phases: Array
     condition: SideCondition
-    touches: bool
+    grazes: bool
     spare: bool = False
     parameter: Array | None = None
 
@@ -45,8 +45,8 @@ class Change(Protocol):
         """The condition that holds where the step ends, on the mesh that the orbits have so far."""
 
     @property
-    def touches(self) -> bool:
-        """Whether a switch just touches its level where the step ends."""
+    def grazes(self) -> bool:
+        """Whether a switch grazes its level where the step ends."""
 
     @property
     def strict(self) -> bool:
@@ -59,6 +59,10 @@ class Change(Protocol):
     @property
     def final(self) -> bool:
         """Whether the branch cannot be followed nearer to the change than where the step ends."""
+
+    @property
+    def nearer(self) -> bool:
+        """Whether the step ends nearer to it than where words are exchanged, which has been tried before."""
 
     @property
     def last(self) -> bool:

@@ -232,7 +232,7 @@ class Discretisation(Protocol):
         Returns
         -------
         Mesh, ndarray or None
-            None where the motion cannot be followed, and where a level is touched between both orbits.
+            None where the motion cannot be followed, and where a level is grazed between both orbits.
         """
         return None
 

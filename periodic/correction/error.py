@@ -30,7 +30,7 @@ Solved = Callable[[Equations, Orbit], LinearisedEquations]
 """A function that linearises equations at an orbit and solves them; raises FAILURES."""
 
 AT_WORST = 30.0
-"""Factor by which an error may exceed its estimate, as where it is small beside other errors."""
+"""Factor by which an error may exceed its estimate, for instance where other errors are far larger."""
 
 SAFETY = 3.0
 """Factor by which error estimates must be below a tolerance: beside kinks they are only approximate."""
@@ -49,9 +49,9 @@ class ErrorEstimate:
         that exceeds 1. The error of a multiplier at a distance d < 1 from the next one may be 2/d times as
         large, as it is where two of them meet.
     parameter : float
-        Relative error of the continuation parameter across the branch, and so of the place of an LP.
+        Relative error of the continuation parameter in the plane normal to the branch; so that of an LP.
     rounding : float
-        Part of the multipliers' error that is due to rounding of the states, about.
+        Approximate part of the multipliers' error that is due to rounding of the states.
     by_orbit : float
         Part of the multipliers' error that is due to the orbit's own, where the equations change at events.
     shares : ndarray, shape (N,), optional
@@ -170,7 +170,7 @@ def deferred(
     spectrum: Spectrum,
     how: Halving | None = None,
 ) -> ErrorEstimate:
-    """Estimate the errors of a converged orbit, held on the arclength constraint across its tangent.
+    """Estimate the errors of a converged orbit, held in the plane normal to the branch's tangent.
 
     Where the equations change at events, the multipliers depend on the events' phases, so on the orbit's own
     error: they are compared with those of the better orbit, at the same parameter except near a fold.
@@ -263,11 +263,12 @@ def relative(
 
 @dataclass(frozen=True)
 class _OnBranch:
-    """The equations at better orbits of a branch than the one that they were linearised at.
+    """The equations linearised again, at more accurate orbits of the branch.
 
-    Beside a fold the orbit of the same parameter is far away, or there is none. The way to it, the change of
-    parameter over d parameter / d arclength, is followed where it is short and this rate changes little on
-    it: the rate may also be small because orbits change much with the parameter, as beside a grazing.
+    Beside a fold the orbit at the same parameter is far away, or there is none. The arclength to it is the
+    change of parameter over d parameter / d arclength. It is followed where it is short and this rate changes
+    little on the way; near grazing the rate may be small without a fold, as orbits change much with the
+    parameter.
     """
 
     problem: Problem
@@ -275,10 +276,10 @@ class _OnBranch:
     size: float
 
     def at_same_parameter(self, found: LinearisedEquations) -> LinearisedEquations:
-        """Return them at the better orbit of the same parameter, beside a fold the nearest. Raises FAILURES.
+        """Return them at the better orbit at the same parameter; near a fold at the nearest. Raises FAILURES.
 
-        Rounding of the parameter, which beside a grazing moves a contact, is added to the way with the sign
-        for which lengths of excursions change more.
+        Rounding of the parameter, which near grazing moves the ends of a contact, is added to the change of
+        parameter, with the sign for which lengths of excursions change more.
         """
         shift = found.increment.parameter
         least = float(np.copysign(LAST_DIGITS * abs(self.problem.value(found.orbit)), shift))
@@ -291,7 +292,7 @@ class _OnBranch:
         return self.solve(self._moved(found, found.increment))
 
     def beyond(self, found: LinearisedEquations, way: float) -> LinearisedEquations:
-        """Return them where the parameter is `way` more; `found` beside a fold."""
+        """Return them at a parameter that is larger by `way`; near a fold, where none is found, `found`."""
         along = self._along(found, way)
         there = None if along is None else self._there(found, along)
         return found if there is None else there
@@ -320,7 +321,7 @@ class _OnBranch:
         return moved(self.problem.system, self.problem.free, found.orbit, by)
 
     def _length(self, found: LinearisedEquations) -> float:
-        """Arclength of the kernel without lengths of excursions, which do not show a fold."""
+        """Arclength of the kernel, lengths of excursions left out: their changes do not indicate a fold."""
         kernel = found.kernel
         still = replace(kernel, phases=np.zeros_like(kernel.phases))
         return float(np.sqrt(still.dot(still, found.orbit, self.problem.units(found.orbit), self.size)))

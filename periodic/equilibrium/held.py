@@ -1,8 +1,8 @@
 """Equilibria held at a fold or a Hopf point while two parameters vary.
 
 A fold is where R_v, v = (x, z), is singular: the corner of a bordered matrix vanishes, as of orbits (see
-`periodic.conditions.augmented`). At a Hopf point a pair of eigenvalues has the sum 0: with V a basis of its
-invariant subspace, R_v V + R_x' V B = 0, and W the left one, W R_x' V = I,
+`periodic.conditions.twoparameter.augmented`). At a Hopf point a pair of eigenvalues has the sum 0: with V a
+basis of its invariant subspace, R_v V + R_x' V B = 0, and W the left one, W R_x' V = I,
 
     d tr B = -tr W (dR_v V + dR_x' V B),
 

@@ -1,9 +1,9 @@
 """Which kinks of an orbit the mesh should be tied to.
 
-A switch passes a level in pairs: during an excursion it is below the level. The deepest of a switch's levels
-that it passes steeply marks the kink; deeper levels are reached only after the kink. Excursions (and returns)
-shorter than a threshold get no event nodes, as they are too weak to matter: an event node tied to a passage
-that is about to vanish would turn the continuation back on itself.
+A switch crosses a level in pairs: during an excursion it is below the level. The deepest of a switch's levels
+that it crosses steeply marks the kink; deeper levels are reached only after the kink. Excursions, and returns
+from them, that are shorter than a threshold get no event nodes, as they are too weak to matter: an event node
+tied to a crossing that is about to vanish would turn the continuation back on itself.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from periodic.checks import at_least_0, number
 from periodic.events import impacts
 from periodic.events.impactmodes import brought_about
 from periodic.events.modes import bends, relays, surface_of
-from periodic.events.relaypassages import switched
+from periodic.events.relaycrossings import switched
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import SAME_PHASE
 from periodic.orbit.mesh import EventNode, wrapped
@@ -35,7 +35,7 @@ MILD = 0.1
 
 @dataclass(frozen=True)
 class Crossing:
-    """A passage of a switch through a level along an orbit.
+    """A crossing of a level by a switch along an orbit.
 
     slope: the smaller of |ds/dtau| at the collocation points before and after it.
     """
@@ -47,7 +47,7 @@ class Crossing:
 
 @dataclass(frozen=True, kw_only=True)
 class KinkSettings:
-    """When the mesh is tied to a passage of a switch by an event node.
+    """When a crossing of a level by a switch gets an event node.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class KinkSettings:
     exchange : float
         How many times deeper another level must be to replace the one in use.
     steep : float
-        Least slope of a passage, as a part of the slope at the shallowest level.
+        Least slope of a crossing, as a part of the slope at the shallowest level.
 
     Raises
     ------
@@ -118,14 +118,14 @@ class KinkSettings:
 
 
 def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
-    """Return all passages, on the whole orbit, of the switches at whose level the equations change.
+    """Return all crossings, on the whole orbit, by the switches at whose level the equations change.
 
-    Of several passages at one phase, as of equal switches, only the first switch's is returned.
+    Of several crossings at one phase, as of equal switches, only the first switch's is returned.
     """
     dense, found = SwitchPolynomials(system, orbit), list[Crossing]()
     for k in bends(system):
-        passages = switched(system, orbit, k) if k in relays(system) else dense.crossings(k)
-        new = [Crossing(*passage, 0.0) for passage in passages]
+        pairs = switched(system, orbit, k) if k in relays(system) else dense.crossings(k)
+        new = [Crossing(*pair, 0.0) for pair in pairs]
         found += [
             c
             for c in new
@@ -135,7 +135,7 @@ def exact_crossings(system: System, orbit: Orbit) -> list[Crossing]:
 
 
 def crossings(system: System, orbit: Orbit) -> list[Crossing]:
-    """Return all passages of all switches through their levels, in order of phase for each level.
+    """Return all crossings of all levels by their switches, in order of phase for each level.
 
     Signs are read at the collocation points alone: only there do the states fulfil the equations exactly,
     and a switch with several levels may stay far closer to one than the interpolation error between them.
@@ -249,7 +249,7 @@ def _kink(
     orbit: Orbit,
     settings: KinkSettings,
 ) -> Crossing:
-    """The passage within an excursion that marks the kink at its beginning (-1) or end (+1)."""
+    """The crossing within an excursion that marks the kink at its beginning (-1) or end (+1)."""
     edge = excursion[0] if direction < 0 else excursion[1]
     candidates = []
     for level in kept:

@@ -14,7 +14,7 @@ import numpy as np
 
 from periodic.events.heldalong import placed
 from periodic.events.modes import of_kind, release, sides
-from periodic.events.relaypassages import mode_at
+from periodic.events.relaycrossings import mode_at
 from periodic.events.rewrites.sites import Node, in_order, ordered
 from periodic.events.rewrites.together import together
 from periodic.events.switchpolynomials import SwitchPolynomials
@@ -120,7 +120,7 @@ def _node(system: System, surface: SurfaceLike, each: Sequence[Happened]) -> Eve
     for event in each:
         if event.after == STUCK or (surfaces[event.surface].kind != Kind.IMPACT and event is not first):
             modes.append((surfaces[event.surface].switch, event.after))
-    switch, direction = _passage(system, surface, first)
+    switch, direction = _crossed(system, surface, first)
     return EventNode(switch, direction, modes=tuple(modes))
 
 
@@ -134,8 +134,8 @@ def _rank(surface: SurfaceLike, event: Happened) -> int:
     return (3 if event.before == STUCK else 1) + (surface.kind == Kind.SLIDER)
 
 
-def _passage(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
-    """The switch that passes its level at an event, and the direction."""
+def _crossed(system: System, surface: SurfaceLike, event: Happened) -> tuple[int, int]:
+    """The switch that crosses its level at an event, and the direction."""
     if surface.kind == Kind.IMPACT and event.before == STUCK:
         assert surface.leaves is not None
         return surface.leaves, 1

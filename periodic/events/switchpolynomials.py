@@ -268,7 +268,7 @@ class SwitchPolynomials:
         """Return the farthest point of each excursion past the level that has no event nodes.
 
         `otherwise` is the side on which a switch without event nodes is taken to be. An excursion that begins
-        or ends at an event node is left out: there the node is not yet, or not quite, at the passage.
+        or ends at an event node is left out: there the node is not yet, or not quite, at the crossing.
         """
         expected = self.expected(switch, otherwise)
         if self._bounded(switch, expected):
@@ -302,7 +302,7 @@ class SwitchPolynomials:
         return bool(least >= -NOISE * np.abs(values).max())
 
     def _beginning(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:
-        """Whether an excursion begins or ends at an event node of the switch that is not at its passage."""
+        """Whether an excursion begins or ends at an event node of the switch that is not at its crossing."""
         return bool(at_nodes[run].any())
 
     def _attached(self, along: Along, run: NDArray[np.int_], at_nodes: NDArray[np.bool_]) -> bool:

@@ -45,10 +45,10 @@ less than a step does.
 """
 
 LEAST_GRAZING = AT_LEVEL**0.5
-"""Least size of an excursion from a touch: its depth s'' size^2 is AT_LEVEL."""
+"""Least size of an excursion beyond grazing: its depth s'' size^2 is AT_LEVEL."""
 
 LEAST_CROSSING = MIN_INTERVALS * EPSILON / AT_LEVEL
-"""Least size of a segment between passages: in its intervals rounding leaves rates an error of AT_LEVEL."""
+"""Least size of a segment between crossings: in its intervals rounding leaves rates an error of AT_LEVEL."""
 
 VANISHING = 0.5
 """An excursion that a step along the tangent shortens to this part may end in the step.

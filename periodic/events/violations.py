@@ -46,7 +46,7 @@ class Breach(Enum):
 class Violation:
     """A violation: the switch, where (an extremum, or an event node), and the side on which it should be.
 
-    depth: how far it is past its level, for MODE as a part of its largest value; for a passage at an event
+    depth: how far it is past its level, for MODE as a part of its largest value; for a crossing at an event
     node the slope. arriving: whether it is taken in the state before the impact at the event node.
     """
 
@@ -143,7 +143,7 @@ def _held(own: SwitchPolynomials, base: SwitchPolynomials, surface: SurfaceLike)
 
 
 def limits(system: System, orbit: Orbit, surface: SurfaceLike) -> list[Violation]:
-    """Return the limits at a guard's event nodes: a passage is not held, and a stop does not slip on.
+    """Return the limits at a guard's event nodes: a crossing does not stick, and a stop does not slip on.
 
     At impacts at which the guard jumps: the limits of the modes before and after. The depths are negative as
     long as these hold.

@@ -97,7 +97,7 @@ class Balance:
 
     @property
     def effect(self) -> Array:
-        """About how much the states change with each free parameter, shape (q,)."""
+        """Approximate size of the change of states with each free parameter, shape (q,)."""
         first = 1 + 2 * self.orbit.nodes.shape[1]
         return np.asarray(np.abs(self.samples.columns[:, :, first:]).max(axis=(0, 1)))
 
@@ -118,7 +118,7 @@ class Balance:
         return tuple(self._recovered(*pair) for pair in zip(right[0], found.T, strict=True))
 
     def _recovered(self, constant: float, solution: Array) -> Increment:
-        """The increment of samples and unknowns that belongs to one of (c, y), for each column."""
+        """The increment of samples and unknowns for that of (c, y) in each column."""
         orbit, samples = self.orbit, self.samples
         basis, n = transform(orbit.harmonics), orbit.nodes.shape[1]
         size = basis.values.shape[1] * n

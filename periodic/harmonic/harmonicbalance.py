@@ -1,4 +1,4 @@
-"""Harmonic balance: the quick method for smooth orbits, with as many harmonics as each needs."""
+"""Harmonic balance, fast for smooth orbits; the number of harmonics adapts to each orbit."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ KNOWN = 1e-2
 """Error of the multipliers above which they locate no special points; few harmonics make them jump."""
 
 HILL = 8
-"""Fewest harmonics (of the excitation frequency) that Hill's method is given; the orbit's may be fewer."""
+"""Least number of harmonics (of the excitation frequency) in Hill's method; the orbit may have fewer."""
 
 LEAST_HARMONICS = 3
-"""Fewest harmonics that an orbit is given, unless it begins with fewer."""
+"""Least number of harmonics of an orbit, unless it begins with fewer."""
 
 
 @dataclass(frozen=True)
 class FourierCorrection(Correction):
-    """A correction that knows Floquet's form of its fundamental matrices."""
+    """A corrected orbit with Floquet's form of its fundamental matrices."""
 
     floquet: FloquetForm = field(kw_only=True)
 
@@ -62,11 +62,11 @@ class HarmonicBalance(Discretisation):
     Parameters
     ----------
     harmonics : int
-        Of the excitation frequency, to begin with. They become fewer or more as the tolerance asks for.
+        Their initial number, of the excitation frequency; it is adapted to the tolerance.
     most : int
         The largest number; with most = harmonics = H a tolerance that H harmonics do not meet is refused.
     tolerance : float
-        What their number is chosen for; set by the trace.
+        Tolerance to which their number is adapted; set by the trace.
 
     References
     ----------
@@ -85,7 +85,7 @@ class HarmonicBalance(Discretisation):
 
     @property
     def trusted(self) -> float:
-        """Error of the multipliers above which they tell no special points."""
+        """Error of the multipliers above which they locate no special points."""
         return KNOWN
 
     def at(self, tolerance: float) -> HarmonicBalance:
@@ -126,9 +126,9 @@ class HarmonicBalance(Discretisation):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors by a Newton step with half as many harmonics again (deferred correction).
+        """Estimate the errors by a Newton step with 3/2 times the harmonics (deferred correction).
 
-        Where the equations have kinks, by one on a mesh that is tied to them.
+        Where the equations have kinks: by a step on a mesh with event nodes at them.
         """
         assert isinstance(correction, FourierCorrection)
         system, orbit = problem.system, correction.orbit
@@ -154,7 +154,7 @@ class HarmonicBalance(Discretisation):
 def finer(
     linearise: Linearise, problem: Problem, orbit: Orbit, fine: Orbit, tangent: Increment
 ) -> tuple[float, Orbit]:
-    """Return the error of an orbit and a better one, by a Newton step from a finer one. Raises FAILURES."""
+    """Return the error and a better orbit, by a Newton step with more harmonics. Raises FAILURES."""
     direction = tangent.restricted(orbit, fine)
     arclength = ArclengthConstraint(fine, direction, 0.0, problem.units(fine), problem.index)
     closing = [*problem.side_conditions(fine), arclength]
@@ -178,7 +178,7 @@ class FourierRefinement(Refinement):
 
     @property
     def shortfall(self) -> str:
-        """How far the spectrum has fallen."""
+        """The sentence that says how far the spectrum has decayed."""
         left = tail(self.series, LEAST_SPAN)
         return (
             f"the spectrum's tail is {left:.1e} at {self.series.harmonics} harmonics (error estimate "
@@ -228,7 +228,7 @@ def needed(orbit: FourierOrbit, error: float, goal: float) -> int:
 
 
 def _at_least(system: System, orbit: FourierOrbit, harmonics: int) -> FourierOrbit:
-    """The same orbit with at least so many harmonics, the further ones zero."""
+    """The same orbit with at least a given number of harmonics, those added zero."""
     if orbit.harmonics >= harmonics:
         return orbit
     return with_unknowns(system, series(orbit, mesh_for(harmonics, orbit.mesh.period)))

@@ -3,10 +3,10 @@
     u' = J(tau) u,  J = -E^-1 A.     With u = exp(lambda tau) v(tau), v periodic:  J v - v' = lambda v,
 
 an eigenproblem in the Fourier coefficients of v. Every exponent comes with copies lambda + i k w, whose v is
-turned by k harmonics, and the truncation spoils those whose v reaches the last harmonics. Along the copies of
-one exponent the centroid of v's spectrum moves in steps of one harmonic: a window of that width about 0 holds
-each exponent once, with the v that is resolved best (Lazarus & Thomas 2010; Guillot, Lazarus et al. 2020 for
-the sorting by weighted means). The invariant subspace of the chosen ones, and not their eigenvectors, gives
+shifted by k harmonics, and the truncation spoils those whose v reaches the last harmonics. From copy to copy
+the centroid of v's spectrum moves by one harmonic: a window of that width about 0 holds each exponent once,
+with the v that is resolved best (Lazarus & Thomas 2010; Guillot, Lazarus et al. 2020 for the sorting by
+weighted means). The invariant subspace of the chosen ones, and not their eigenvectors, gives
 
     Phi(tau) = P(tau) exp(B tau) P(0)^-1,   J P - P' = P B,
 
@@ -54,7 +54,7 @@ WINDOW = 1.5
 class FloquetForm:
     """Floquet's form of the fundamental matrices: coefficients of P (2H+1, n, n), and B (n, n).
 
-    resolved: whether the exponents could be told from their copies.
+    resolved: whether the exponents could be distinguished from their copies.
     """
 
     shape: Complex
@@ -87,7 +87,7 @@ class FloquetForm:
         return fundamental
 
     def error(self, system: System, fine: FourierOrbit) -> float:
-        """Estimate the error of the multipliers from what is left of P's equation along a better orbit.
+        """Estimate the error of the multipliers from the residual of P's equation along a better orbit.
 
         With P^-1 (J P - P' - P B) = G the sums of powers of the multipliers are off by
         tr M^k: k period tr(exp(k period B) mean G), to first order; they are measured as in
@@ -148,7 +148,7 @@ def _dense(matrix: Array, n: int) -> _Subspace:
 def _krylov(matrix: Array, n: int) -> _Subspace:
     """The subspace of the exponents whose imaginary parts lie nearest to 0.
 
-    They are looked for in a Krylov space of (matrix - SHIFT)^-1, which grows until it holds them.
+    They are computed in a Krylov space of (matrix - SHIFT)^-1, which is enlarged until it holds them.
     """
     size, far, each = len(matrix), len(matrix) // n / 4, max(2, n // STATES_PER_VECTOR)
     factors = scipy.linalg.lu_factor(matrix - SHIFT * np.eye(size))

@@ -1,8 +1,8 @@
-"""A Fourier series held against the orbit with kinks that it stands for.
+"""The error of a Fourier series where the equations have kinks.
 
-Samples see an excursion past a kink where one of them lies in it, and the spectrum falls by powers of the
-harmonic. So the series is put on a mesh that is tied to all its passages, those between the samples as well,
-and one Newton step of the collocation equations there tells how far it is from the orbit.
+Samples miss an excursion past a kink that lies between them, and the spectrum decays by a power of the
+harmonic only. So the series is put on a mesh with event nodes at all its crossings, those between samples
+included, and one Newton step of the collocation equations there estimates its distance from the orbit.
 """
 
 from __future__ import annotations

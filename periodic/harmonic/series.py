@@ -2,8 +2,8 @@
 
     x(tau) = a_0 + sum_k a_k cos k w tau + b_k sin k w tau,   k = 1..H,   w = 2 pi / period
 
-The 2 (H+1) mesh points and the points midway between them are 4 (H+1) samples: so many that a cubic term is
-projected without aliasing. Coefficients are ordered a_0, a_1..a_H, b_1..b_H along the first axis.
+The 2 (H+1) mesh points and the points midway between them are 4 (H+1) samples, enough to project
+a cubic term without aliasing. Coefficients are ordered a_0, a_1..a_H, b_1..b_H along the first axis.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Halves(Scheme):
 
     @cached_property
     def weights(self) -> Array:
-        """Weights of the trapezoidal rule, which is exact for what the samples carry."""
+        """Weights of the trapezoidal rule, which is exact for the harmonics that the samples represent."""
         return np.array([0.5, 0.5])
 
 
@@ -44,7 +44,7 @@ NO_PHASES = np.zeros(0)
 
 
 def mesh_for(harmonics: int, period: float) -> Mesh:
-    """Return the mesh that carries so many harmonics of the orbit's period."""
+    """Return the mesh for a number of harmonics of the orbit's period."""
     return uniform(SAMPLES, 2 * (harmonics + 1), period)
 
 
@@ -68,7 +68,7 @@ def basis_slope(harmonics: int, angle: Array) -> Array:
 
 @dataclass(frozen=True)
 class Transform:
-    """Values and slopes of the basis at S samples (S, 2H+1) and at mesh points (N+1, 2H+1), and the way back.
+    """Values and slopes of the basis at S samples (S, 2H+1) and at mesh points (N+1, 2H+1), and the inverse.
 
     analysis (2H+1, S) takes samples to coefficients.
     """
@@ -138,7 +138,7 @@ class FourierOrbit(Orbit):
     def spread(
         self, index: NDArray[np.int_], theta: Array, by_state: Array, by_rate: Array
     ) -> tuple[Array, Array]:
-        """Return derivatives in the samples; those in the mesh points are 0, of which the series is free."""
+        """Return derivatives in the samples; those in the mesh points are 0: samples determine the series."""
         angle = self.frequency * (self.grid.left[index] + theta * self.grid.width[index])
         gradient = basis(self.harmonics, angle).T @ by_state
         gradient += self.frequency * basis_slope(self.harmonics, angle).T @ by_rate
@@ -176,6 +176,6 @@ def series(orbit: Orbit, mesh: Mesh) -> FourierOrbit:
 
 
 def tail(orbit: FourierOrbit, least: float) -> float:
-    """Peak to peak of the largest of the last quarter of the harmonics over the orbit's (or `least`)."""
+    """Largest peak to peak of a harmonic among the last quarter, over the orbit's or `least`."""
     last = max(orbit.harmonics // 4, min(2, orbit.harmonics))
     return float(2 * orbit.amplitudes[-last:].max() / max(orbit.span(), least))

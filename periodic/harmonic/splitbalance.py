@@ -107,7 +107,7 @@ class SplitBalance:
 
     @property
     def effect(self) -> Array:
-        """About how much the states change with each free parameter, shape (q,)."""
+        """Approximate size of the change of states with each free parameter, shape (q,)."""
         outer = self._assembled[1][:, 1:]
         return np.asarray(np.abs(outer).sum(axis=0))
 
@@ -179,7 +179,7 @@ class SplitBalance:
 
 @dataclass(frozen=True)
 class SplitCorrection(Correction):
-    """A correction that knows the leading multipliers. leading: their invariant subspace."""
+    """A corrected orbit with its leading multipliers. leading: their invariant subspace."""
 
     leading: Leading | None = None
 
@@ -229,7 +229,7 @@ class SeriesLeading(Leading):
     """The leading multipliers of a series, computed about it as a piecewise polynomial."""
 
     def start(self, change: Increment) -> Array:
-        """Return the change at the beginning of the period that a change of the series makes, (r,)."""
+        """Return the change of state at the beginning of the period for a change of the series, (r,)."""
         pieces = self.floquet.given.orbit
         samples = change.algebraic.reshape(-1, change.algebraic.shape[2])
         harmonics = len(samples) // 4 - 1

@@ -15,7 +15,7 @@ from periodic.results.signals import deferred
 if TYPE_CHECKING:
     import xarray as xr
 
-TOLD = ("status", "reason", "points", "newton", "seconds")
+RECORDED = ("status", "reason", "points", "newton", "seconds")
 """What a map says of each cell besides its numbers."""
 
 NONE = Outcome(())
@@ -42,7 +42,7 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
     statements: dict[str, Any] = {
         "status": np.array([_status(outcome) for outcome in outcomes], dtype=object),
         "reason": np.array([outcome.reason for outcome in outcomes], dtype=object),
-        **{name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in TOLD[2:]},
+        **{name: np.array([getattr(outcome, name) for outcome in outcomes]) for name in RECORDED[2:]},
     }
     data |= {name: (over, values.reshape(shape), {}) for name, values in statements.items()}
     data["seconds"][2]["units"] = "s"
@@ -53,7 +53,7 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
 
 def check_numbers(task: Task, names: Sequence[str]) -> None:
     """Raise ValueError for numbers that have the name of something else in the result."""
-    taken = {*TOLD, *names, "cell"}
+    taken = {*RECORDED, *names, "cell"}
     for name in task.numbers:
         if name in taken:
             raise ValueError(f"numbers has {name!r}, which a map has already; it must be another name")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from periodic.maps.cell import Cell, Outcome
-from periodic.maps.dataset import TOLD
+from periodic.maps.dataset import RECORDED
 from periodic.results.brancharrays import DAMAGE
 from periodic.results.database import bounded
 from periodic.results.described import differences
@@ -262,7 +262,7 @@ def _told(data: xr.Dataset) -> bool:
     ]
     held = [text for column in columns if column.dtype.kind in "OU" for text in column.values.ravel()]
     texts = (*data.variables, *data.dims, *said, *held)
-    return set(TOLD) <= set(data) and all(text.isprintable() for text in texts if isinstance(text, str))
+    return set(RECORDED) <= set(data) and all(text.isprintable() for text in texts if isinstance(text, str))
 
 
 def _said(there: xr.Dataset, path: Path) -> Any:

@@ -35,7 +35,7 @@ class EventNode:
     level : float
         0 for the kink itself; other levels mark one that lies close by.
     modes : tuple of (int, int)
-        Surfaces, by the index of their guard, with the modes that they have from there on, where the passage
+        Surfaces, by the index of their guard, with the modes that they have from there on, where the crossing
         itself does not say so: sticking that begins, and what an impact or another's event brings about.
     """
 

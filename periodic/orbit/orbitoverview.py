@@ -14,7 +14,7 @@ SAMPLES = 400
 """Times at which the signals are read."""
 
 MOST_SIGNALS = 12
-"""Signals that are told of."""
+"""Largest number of signals in the table."""
 
 
 def orbit_html(said: str, signals: Sequence[Signal], period: float) -> str:
@@ -23,7 +23,7 @@ def orbit_html(said: str, signals: Sequence[Signal], period: float) -> str:
     Parameters
     ----------
     said : str
-        A line about it.
+        A line about the orbit.
     signals : sequence of Signal
         Its states and unknowns.
     period : float

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from periodic.bifurcations.codimension2.remarks import noted
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, counts, gaps
-from periodic.bifurcations.twoparameter.remarks import noted
 from periodic.checks import one_of
 from periodic.correction.error import shortfall
 from periodic.orbit.scheme import Array

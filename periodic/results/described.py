@@ -1,8 +1,8 @@
 """What a branch is made with, as plain data: settings, conditions and functionals, compared by value.
 
 Data are None, booleans, numbers, texts, lists and dictionaries with texts for keys, as JSON has them. An
-object is a dictionary of its fields and of its type's name under "is", which is no field's name; a function
-its name and the digest of its code.
+object becomes a dictionary of its fields, with its type's name under "is", a keyword that no field can have.
+A function becomes its name and the digest of its code.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from periodic.checks import printable
 from periodic.results.files import digest
 
 IS, CODE = "is", "code"
-"""Under what a description has the name of a type or function, and the digest of its code."""
+"""Keys of a description: the name of a type or function, and the digest of its code."""
 
 DIGESTED_FROM = 32
 """Arrays of more numbers than these are described by a digest."""
@@ -29,13 +29,13 @@ PLAIN = (bool, int, float, str)
 
 
 def described(value: object) -> Any:
-    """Return plain data that are equal for values that are.
+    """Return a description of a value as plain data; equal values have equal descriptions.
 
     Parameters
     ----------
     value : object
         Numbers, texts, arrays, enums, mappings, sequences, dataclasses, functions, and objects made of such.
-        What a field beginning with an underscore holds is left out.
+        Fields whose names begin with an underscore are left out.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def _array(value: np.ndarray, inside: tuple[int, ...]) -> Any:
 
 
 def _function(value: Callable[..., object], inside: tuple[int, ...]) -> dict[str, Any]:
-    """A function by name, code, defaults and what it has from around it; a method with its object."""
+    """A function by its name, code, defaults and the variables of its closure; a method with its object."""
     plain = getattr(value, "__func__", value)
     found: dict[str, Any] = {IS: f"{plain.__module__}.{plain.__qualname__}"}
     if isinstance(plain, types.FunctionType):
@@ -108,7 +108,7 @@ def _object(value: object, inside: tuple[int, ...]) -> dict[str, Any]:
 
 
 def _code(code: types.CodeType) -> str:
-    """Digest of a function's instructions, names and constants; where it stands does not matter."""
+    """Digest of a function's instructions, names and constants, whatever its place in the file."""
     constants = [_constant(c) for c in code.co_consts]
     return digest(code.co_code, repr((code.co_names, code.co_varnames, constants)).encode())[:16]
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.bifurcations.codimension2.codim2 import marginal
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, growth, noise
-from periodic.bifurcations.twoparameter.codim2 import marginal
 from periodic.checks import ByName, one_of
 from periodic.correction.error import AT_WORST, ErrorEstimate
 from periodic.correction.solution import Solution

@@ -43,7 +43,7 @@ class Reason(Enum):
         return self in (Reason.MAX_POINTS, Reason.MAX_NEWTON, Reason.INTERRUPTED)
 
 
-TOLD = {
+COUNTED = {
     Reason.CLOSED: "it came back to its start after {} points",
     Reason.EQUILIBRIUM: "the orbits shrank to it after {} points",
     Reason.HOMOCLINIC: "the period grows without bound, {:.4g} s here",
@@ -99,11 +99,11 @@ class Stop:
         Parameters
         ----------
         reason : Reason
-            One of `TOLD`.
+            One of `COUNTED`.
         size : float
             How many points there are, for an orbit that grows or shrinks its period (s) or peak to peak.
         """
-        return cls(reason, TOLD[reason].format(size))
+        return cls(reason, COUNTED[reason].format(size))
 
     @classmethod
     def asked(cls, name: str, count: int) -> Stop:

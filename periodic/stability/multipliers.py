@@ -20,17 +20,17 @@ from periodic.system.precision import CONVERGED, SMALLEST
 Complex = NDArray[np.complex128]
 
 ERRORS_FROM_ONE = 100.0
-"""A multiplier cannot be told from 1 if it is nearer to it than so many times the multipliers' error,"""
+"""A multiplier counts as 1 if its distance from 1 is less than this many times the multipliers' error,"""
 
 ROUNDED_ONE = 1e-10
-"""... or nearer than this distance."""
+"""... or less than this."""
 
 LOST_FLOW = 0.1
-"""Distance of the multiplier that is 1 from it, above which the multipliers of a long orbit are rounding."""
+"""Distance of the trivial multiplier from 1 above which those of a long orbit are lost in rounding."""
 
 
 class Stability(Enum):
-    """What decides it: multipliers of an orbit on the unit circle, eigenvalues on the imaginary axis."""
+    """What decides stability: multipliers and the unit circle, or eigenvalues and the imaginary axis."""
 
     MULTIPLIERS = "Floquet multipliers"
     EIGENVALUES = "eigenvalues of the Jacobian"
@@ -42,8 +42,8 @@ class Pair:
 
     rotated: the mean rotation of all components, the integral of Im(w* dw)/|w|^2 over the period. Unlike
     that of a single component, which may pass through 0, it changes smoothly with the orbit.
-    left: left eigenvector (n,), of such a length that 2 |left x| is the most that the pair's part of a
-    disturbance, x at the beginning of the period, becomes within it; none where eigenvectors coincide.
+    left: left eigenvector (n,), scaled so that 2 |left x| is the largest size within the period of the pair's
+    part of a disturbance that is x at its beginning; None where eigenvectors coincide.
     place: its index among the multipliers.
     """
 
@@ -55,17 +55,17 @@ class Pair:
     place: int = 0
 
     def turn(self, other: Pair) -> float:
-        """Return by how much the multiplier turns to that of another orbit, whole turns included."""
+        """Return the change of argument to the multiplier of another orbit, whole turns included."""
         least = other.argument - self.argument
         return least + math.tau * round((other.rotated - self.rotated - least) / math.tau)
 
     def _apart(self, other: Pair, sign: int) -> float:
-        """How far another orbit's multiplier, its conjugate for -1, and its solution turn from here."""
+        """Distance of another orbit's pair, for -1 of its conjugate: changes of argument and of rotation."""
         least, along = sign * other.argument - self.argument, sign * other.rotated - self.rotated
         return abs(least + math.tau * round((along - least) / math.tau)) + abs(along)
 
     def nearest(self, others: Sequence[Pair]) -> Pair:
-        """Return the member of another orbit's pairs to which this one leads."""
+        """Return the member of another orbit's pairs that continues this one."""
         both = ((other, sign) for sign in (1, -1) for other in others)
         found, sign = min(both, key=lambda choice: self._apart(*choice))
         return found if sign > 0 else found.conjugate()
@@ -77,11 +77,11 @@ class Pair:
 
 
 FEW_PAIRS = 3
-"""Up to so many pairs each finds its nearest by itself sooner than all of them in arrays."""
+"""Up to this many pairs a loop over them is faster than arrays."""
 
 
 def nearest(pairs: Sequence[Pair], others: Sequence[Pair]) -> list[Pair]:
-    """Return the members of another orbit's pairs to which each of these leads, see `Pair.nearest`."""
+    """Return the members of another orbit's pairs that continue each of these, see `Pair.nearest`."""
     if len(pairs) <= FEW_PAIRS:
         return [pair.nearest(others) for pair in pairs]
     own, other = (np.array([(pair.argument, pair.rotated) for pair in some]) for some in (pairs, others))
@@ -101,7 +101,7 @@ class Spectrum:
         Fundamental matrices at the mesh points, the last of which is the monodromy matrix; of an equilibrium
         the Jacobian in 1/s, shape (1, n, n).
     trivial : int
-        How many multipliers are 1 whatever the parameters.
+        Number of trivial multipliers, which are 1 at all parameters.
     """
 
     fundamental: Array
@@ -155,7 +155,7 @@ class Spectrum:
         return Pair(cmath.phase(mu), abs(mu), abs(1 - mu), rotated, left, k)
 
     def _sizes(self, solutions: Complex, chosen: NDArray[np.int_]) -> Array:
-        """The most that solutions (N+1, n, k), begun with the chosen eigenvectors, are within the period."""
+        """Largest size within the period of solutions (N+1, n, k) that begin with the chosen eigenvectors."""
         return np.asarray(np.abs(solutions).max(axis=(0, 1), initial=0.0))
 
     @cached_property
@@ -176,8 +176,8 @@ class Spectrum:
     def _left(self, k: int) -> Complex | None:
         """The left eigenvector whose product with the right one is 1; None where these coincide with others.
 
-        By itself where the others are of no use: multipliers that all but vanish have no eigenvectors of
-        their own. In T it follows from its own entry on.
+        It is solved for alone, in the triangle T, where the matrix of all eigenvectors is singular: those of
+        multipliers near 0 coincide.
         """
         if self._inverse is not None:
             return np.asarray(self._inverse[k])
@@ -203,7 +203,7 @@ class Spectrum:
         monodromy : ndarray, shape (n, n)
             The monodromy matrix of the other.
         operator : Operator, optional
-            The equations that it belongs to, where these say more than their monodromy matrix.
+            The equations that the other belongs to, for spectra that compare more than monodromy matrices.
 
         Returns
         -------
@@ -234,7 +234,7 @@ class Spectrum:
 
     @property
     def known(self) -> bool:
-        """Whether rounding has left the multiplier that is 1, and so the others that are not huge."""
+        """Whether the trivial multiplier is near 1: then rounding has not spoilt others that are not huge."""
         return not self.trivial or bool(np.abs(self.multipliers - 1).min() <= LOST_FLOW)
 
 
@@ -260,7 +260,7 @@ def _rotations(begin: Complex, end: Complex) -> Array:
 
 
 def _directions(vectors: Complex) -> Complex:
-    """Vectors (K, n, k) of length 1; those that have died out, and turn no more, as they are."""
+    """Vectors (K, n, k) of length 1; those that have decayed to 0 are unchanged."""
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     found: Complex = vectors / np.where(size > SMALLEST, size, 1.0)
     return found

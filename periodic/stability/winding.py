@@ -149,20 +149,20 @@ def pair_crossings(before: Spectrum, after: Spectrum, sign: int) -> list[tuple[f
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Where two pairs meet between two orbits, as a part of the way, and log |mu| of that nearer the circle.
+class Collision:
+    """Two pairs that collide between two orbits: at which part of the way, and log |mu| nearer the circle.
 
-    Pairs that meet may leave the unit circle together, one outwards, and come back.
+    Pairs that collide may leave the unit circle together, one outwards, and come back.
     """
 
     place: float
     growth: float
 
 
-def meetings(before: Spectrum, after: Spectrum) -> list[Meeting]:
-    """Return where pairs that are coupled enough to leave the unit circle meet between two orbits."""
+def collisions(before: Spectrum, after: Spectrum) -> list[Collision]:
+    """Return where pairs that are coupled enough to leave the unit circle collide between two orbits."""
     if len(after.pairs) < len(before.pairs):
-        return [Meeting(1 - m.place, m.growth) for m in meetings(after, before)]
+        return [Collision(1 - m.place, m.growth) for m in collisions(after, before)]
     found, ways = [], [(a, b, a.turn(b)) for a, b in _matched(before, after)]
     for (i, (a, b, turn)), (j, (c, d, other)) in combinations(enumerate(ways), 2):
         if a.place == c.place or b.place == d.place:  # one pair that is the nearest of two
@@ -174,7 +174,7 @@ def meetings(before: Spectrum, after: Spectrum) -> list[Meeting]:
                 place = (math.tau * past - gap) / closing
                 growth = min((_growth(*pairs, place) for pairs in ((a, b), (c, d))), key=abs)
                 if _coupling(before, after)[i, j] > COUPLED * abs(growth):
-                    found.append(Meeting(place, growth))
+                    found.append(Collision(place, growth))
     return found
 
 

@@ -37,7 +37,7 @@ def check_value(parameter: VariableLike, value: float) -> None:
 class SwitchLike(Protocol):
     """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
 
-    direction -1: only a falling passage is a kink, +1 a rising one, 0 both. Levels fall; each marks the
+    direction -1: only a falling crossing is a kink, +1 a rising one, 0 both. Levels fall; each marks the
     same kink more sharply than the one before, as long as s goes that far below it.
     """
 

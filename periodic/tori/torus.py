@@ -50,13 +50,13 @@ def torus(
     value : float
         Its value (SI), on the side of the point on which the tori are.
     angles : int
-        Odd number of angles around the section.
+        Number of angles theta on the invariant circle, odd.
     tol : float
         Largest residual, scaled; integration is a hundred times finer.
     step : float
         Longest step along the family, in amplitudes of the scaled states.
     max_steps : int
-        Most of them.
+        Largest number of steps.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def torus(
 
 
 def first(system: System, point: Point, angles: int) -> tuple[Torus, Array]:
-    """Return the bifurcation's orbit as a curve without extent, and the circle along which tori grow."""
+    """Return the bifurcation's orbit as a circle of radius 0, and the direction of tori that grow from it."""
     orbit = point.orbit
     flowing, period = cast(Flowing, system), float(orbit.mesh.period)
     begin = orbit.state(np.zeros(1))[0]
@@ -163,7 +163,7 @@ class Family:
         return found
 
     def _weights(self, torus: Torus) -> Array:
-        """Weights of the unknowns in a length: the mean square over the angles, rho and parameter besides."""
+        """Weights of the unknowns in the arclength: states by 1/M, M the number of angles, others by 1."""
         count, n = torus.states.shape
         return np.concatenate([np.full(count * n, 1 / count), [1.0, 1.0]])
 

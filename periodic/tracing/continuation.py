@@ -10,10 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.testfunction import Course
 from periodic.bifurcations.turningpoint import Found, at_once
-from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.identity import closes, repeats, same
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver, SpentError
@@ -287,32 +287,34 @@ class Continuation:
     def _crossed(self, at: Reached, wanted: float) -> Iterator[Point]:
         """Yield the orbit beyond a change of pattern, from which the branch goes on.
 
-        wanted: the intended length of the step that met the change. After a change without a touch the next
+        wanted: the intended length of the step that met the change. After a change without grazing the next
         step may be as long.
         """
         assert self.state is not None
         found = crossed(self.solver, at)
         labels = [] if found is None else at_once(at.end, found.solution)
-        if labels and found is not None and not (found.touches or at.change.touches or at.change.final):
+        if labels and found is not None and not (found.grazes or at.change.grazes or at.change.final):
             found = None  # nearer to the change it shows whether they lie at it, or before or after it
         if found is not None:
-            at_grazing = found.solution if found.touches else at.end
+            at_grazing = found.solution if found.grazes else at.end
             named = [Found(label, 0.0, at_grazing) for label in labels]
-            for special in [] if found.touches else named:
+            for special in [] if found.grazes else named:
                 yield from self._met(special)
-            self._emitted(found.solution, Label.GRAZING if found.touches else Label.NONE)
-            if found.touches:
+            self._emitted(found.solution, Label.GRAZING if found.grazes else Label.NONE)
+            if found.grazes:
                 self._counted(Label.GRAZING)
-            ds = self.control.ds if found.touches or at.change.touches else max(found.distance, wanted)
+            ds = self.control.ds if found.grazes or at.change.grazes else max(found.distance, wanted)
             kept, last = len(self.collected), found.solution
             least = min(self.control.ds_min, NEARLY * ds)
             self.state = replace(self.state, last=last, ds=ds, kept=kept, least=least, course=Course())
             yield self.collected[-1]
-            for special in named if found.touches else []:
+            for special in named if found.grazes else []:
                 yield from self._met(special)
         elif at.change.last:
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, beyond which the motion is another one")
-        elif (at.change.strict or at.change.final) and self._reread(at.end, other=True):
+        elif (at.change.strict or (at.change.final and not at.change.nearer)) and self._reread(
+            at.end, other=True
+        ):
             yield self.collected[-1]
         elif at.change.strict or (at.change.final and codim2.picked(self.solver.problem) is not None):
             self.stop = Stop(Reason.SMALL_STEP, f"{at.change.name}, and no orbit was found beyond it")

@@ -28,7 +28,7 @@ from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
 
 MOST_READINGS = 5
-"""How often the word of an orbit is read again."""
+"""Largest number of times that the word of an orbit is read again."""
 
 DISTANCES_BEYOND = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 """Distances ahead at which an orbit beyond a change is sought, in first steps."""
@@ -38,14 +38,14 @@ BEFORE = (0, 3)
 pulled past its limit, slips to another place, at which it is held again."""
 
 FARTHEST = 2.0
-"""Largest distance of that orbit from the base, in lengths of the step along the tangent."""
+"""Largest distance from the base of the orbit found ahead, in lengths of the step along the tangent."""
 
 NEARER = 0.25
-"""Part of the step at which the search is repeated if an orbit is farther off."""
+"""Part of the step with which the search is repeated where the orbit found is farther away."""
 
 
 def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
-    """Return the orbit near a motion at its parameters; a word that it violates is read again."""
+    """Return the orbit found from a motion at its parameters; a word that it violates is read again."""
     found = _fixed(solver, guess, sign)
     for _ in range(MOST_READINGS):
         if not found.ok or np.isfinite(found.error.motion):
@@ -60,8 +60,8 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
 def reread(solver: Solver, base: Solution, first: float, other: bool = False) -> Crossed | None:
     """Return an orbit a little ahead on a branch, with the word of the motion there; None if there is none.
 
-    first: length of a first step. other: whether its word must not be that of the base, which may lie nearer
-    and nearer to a change.
+    first: length of a first step. other: whether its word must differ from that of the base, as steps of
+    the same word may come closer and closer to a change.
     """
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
@@ -101,7 +101,7 @@ class _Search:
         return (found for found in each if found is not None)
 
     def _nearer(self, found: Crossed, ds: float, read: Reading) -> bool:
-        """Whether there are orbits nearer in proportion: the branch goes another way, but goes on."""
+        """Whether a shorter step leads to an orbit as much nearer: the branch goes on another way."""
         if read != self.settled:
             return False
         nearer = next(self._each(NEARER * ds, read), None)
@@ -135,7 +135,7 @@ class _Search:
         if self.other and same_word(base, found.orbit):
             return None
         onward = found.tangent.parameter * self.sign > 0
-        return Crossed(found, apart, touches=False) if onward else None
+        return Crossed(found, apart, grazes=False) if onward else None
 
 
 def same_word(one: Orbit, other: Orbit) -> bool:
@@ -146,7 +146,7 @@ def same_word(one: Orbit, other: Orbit) -> bool:
 
 
 def _distances(system: System, base: Solution) -> tuple[float, ...]:
-    """Distances ahead: short ones from unstable orbits with impacts, as motions may leave for others."""
+    """Distances ahead: only short ones from unstable orbits with impacts, which simulated motions leave."""
     leaves = (np.abs(base.spectrum.multipliers) > 1).any() and tied(system, base.orbit)
     return DISTANCES_BEYOND[2:] if leaves else DISTANCES_BEYOND
 

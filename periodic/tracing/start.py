@@ -24,13 +24,13 @@ from periodic.tracing.heldplaces import amid, unplaced
 from periodic.tracing.settling import held, settled
 
 ELSEWHERE = (1.5, 2.0, 3.0, 0.5, 0.25)
-"""Starts of a branch that leads to the first orbit, over the wanted parameter, tried in turn."""
+"""Parameters, over the wanted one, from which a branch to the first orbit is traced, tried in turn."""
 
 BESIDE_BOUND = 1e-6
 """How far outside the bounds, as a part of their range, an orbit at a fold on a bound may be."""
 
 GROWN = 300
-"""Most steps in which another parameter is grown from 0."""
+"""Largest number of steps in which another parameter is raised from 0."""
 
 SPENT = (
     "more iterations, another start or guess=per.sampled(...), a motion from a simulation, may lead to one"
@@ -72,7 +72,7 @@ class Start:
 
     @property
     def _sought(self) -> str:
-        """From which guesses no orbit has been found so far."""
+        """The sentence that says from which guesses no orbit has been found so far."""
         also = f", nor yet from {', '.join(self.tried)}" if self.tried else ""
         return f"none was found at the start itself{also}"
 
@@ -151,7 +151,7 @@ class Start:
         yield from self._grown(guess)
 
     def _rest(self, guess: Orbit) -> Orbit | None:
-        """Equilibrium under the mean load, unless the guess begins there; none as in `_settled`."""
+        """Equilibrium under the mean load; None where the guess begins there or `_settled` yields none."""
         problem, method = self.solver.problem, self.solver.discretisation
         if problem.autonomous or method.stability is Stability.EIGENVALUES:
             return None
@@ -191,7 +191,7 @@ class Start:
         return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)
 
     def _by_others(self, guess: Orbit, sign: float) -> Solution | None:
-        """Find the first orbit by that of another discretisation; None where there is none."""
+        """Find the first orbit from that of another discretisation; None where none is found."""
         solver, system = self.solver, self.solver.problem.system
         loose = self._loosely(solver, COARSEST)
         for method in solver.discretisation.alternatives:

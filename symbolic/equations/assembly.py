@@ -151,7 +151,7 @@ class Assembly(Workbench):
         expression : casadi.SX
             s.
         direction : int
-            -1 where only a falling passage is a kink, +1 for a rising one, 0 for both.
+            -1 where only a falling crossing is a kink, +1 for a rising one, 0 for both.
         levels : tuple of float
             Falling values; each marks the same kink more sharply than the one before.
 

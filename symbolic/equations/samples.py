@@ -1,4 +1,4 @@
-"""Values of functions of state, phase and parameters at sample points: are two alike, and of what order."""
+"""Functions of state, phase and parameters at sample points: their size, and whether two are multiples."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PARAMETER_SETS = 3
 """Sets of parameters on which two functions are compared, the nominal one first."""
 
 SAMPLE_POINTS = 24
-"""Points at which they are compared for each."""
+"""Number of points at which they are compared, for each set."""
 
 
 class Samples:
@@ -53,7 +53,7 @@ class Samples:
         return [list(rows) for rows in zip(*self._evaluated(column), strict=True)]
 
     def size(self, expression: ca.SX) -> float:
-        """How much a function changes with states of their scales and with the phase: its order."""
+        """Order of magnitude of a function, by its gradient in the phase and the scaled states."""
         packed = self.packed
         moving = ca.vertcat(packed.state, packed.phase)
         columns = self._evaluated(ca.jacobian(packed.scaled([expression]), moving).T)[0]

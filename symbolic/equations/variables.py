@@ -61,7 +61,7 @@ class Variable:
 class SwitchInfo:
     """A function s(x, tau, p) that has a kink in time where it passes one of its `levels`.
 
-    `direction` is -1 where only a falling passage is a kink, +1 for a rising one, 0 for both. Levels fall:
+    `direction` is -1 where only a falling crossing is a kink, +1 for a rising one, 0 for both. Levels fall:
     each marks the same kink more sharply than the one before, as long as s falls that far.
     """
 

@@ -28,12 +28,12 @@ def file_name(source: str) -> str:
 
 
 def built(source: str) -> ctypes.CDLL | None:
-    """Return the library of a C source that came with the package, if one did that loads."""
+    """Return the library of a C source that came with the package; None without one that loads."""
     path = FOLDER / file_name(source)
     if not path.is_file():
         return None
     try:
         return ctypes.CDLL(str(path))
-    except OSError as error:  # of another machine
+    except OSError as error:  # built for another machine
         _log.debug("%s is not used: %s", path, error)
         return None

@@ -50,8 +50,8 @@ from symbolic.system.compiled import CompiledSystem
 def build(scene: Scene, *, condense: bool = True) -> CompiledSystem:
     """Return the system of a scene. Its states, unknowns and outputs are those that its parts need.
 
-    condense: whether structures bring their places alone, or all that small motion about rest needs. Raises
-    InputError where the environment asks for kernels that cannot be, and for numbers that no model may have.
+    condense: whether structures are condensed to their places, or keep all that small motion needs. Raises
+    InputError where the environment asks for kernels that cannot be, and for numbers that the model refuses.
     """
     if isinstance(scene, ModelScene):
         return scene.system(_kernels(), condense=condense)
@@ -206,7 +206,7 @@ def oscillator_model(scene: OscillatorScene) -> Model:
 
 
 def static_deflection(part: Oscillator) -> float:
-    """Return about what the force bends the springs by when it is steady: the scale of x."""
+    """Return the approximate deflection under the steady force: the scale of x."""
     linear = part.force / part.stiffness if part.stiffness else math.inf
     cubic = (part.force / abs(part.cubic)) ** (1 / 3) if part.cubic else math.inf
     return min(linear, cubic)

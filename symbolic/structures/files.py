@@ -37,7 +37,7 @@ def read_matrices(
         Files of single matrices, also beside `file`: all of those, scipy.sparse.save_npz, Matrix Market .mtx
         and Abaqus' .mtx (COORDINATE and MATRIX INPUT).
     names : mapping of str to str, optional
-        What the file calls M, C, K and G, if not that: ``{"M": "MAA", "K": "KAA"}``.
+        Names that the file has for M, C, K and G, where they differ: ``{"M": "MAA", "K": "KAA"}``.
     at : mapping of str to int, optional
         Places: names of degrees of freedom by their index, counted from 0.
 

@@ -16,7 +16,7 @@ from symbolic.structures.matrices import RELATIVE_STEP, index
 from symbolic.structures.modal import DEFECTIVE
 
 NOT_MIXED = 1e-9
-"""Part of the largest below which modes are not mixed: those that meet by symmetry are left alone."""
+"""Couplings of modes below this part of the largest count as 0, as between modes equal by symmetry."""
 
 SAME_MATRIX = 16 * np.finfo(float).eps
 """Largest difference of equal matrices by rounding, as a part of the largest coefficient."""
@@ -32,7 +32,7 @@ class Eigen:
     rates: Array
 
     def faster(self, times: float, scales: Array) -> Eigen:
-        """Return that of all rates so many times as large, in states that are (n,) times as large."""
+        """Return the modes for rates `times` as large, in states that are `scales` (n,) as large."""
         vectors = scales[:, None] * self.vectors
         lengths = np.linalg.norm(vectors, axis=0)
         inverse = lengths[:, None] * self.inverse / scales
@@ -40,35 +40,35 @@ class Eigen:
 
     @cached_property
     def kept(self) -> NDArray[np.bool_]:
-        """One of each conjugate pair."""
+        """Which modes are kept: real ones, and one of each conjugate pair."""
         return self.values.imag >= 0
 
     @cached_property
     def twice(self) -> Array:
-        """Two for one that stands for both."""
+        """2 for a mode that stands for its conjugate too, 1 for a real one."""
         return np.where(self.values[self.kept].imag > 0, 2.0, 1.0)
 
     @cached_property
     def inputs(self) -> Complex:
-        """How forces drive them, (J, k)."""
+        """Forces on the modes that are kept, by those of the system, (J, k)."""
         return self.inverse[self.kept] @ self.rates
 
     @cached_property
     def shapes(self) -> Complex:
-        """States of them, (n, J)."""
+        """States by these modes, of which the real part is taken, (n, J)."""
         return self.vectors[:, self.kept] * self.twice
 
 
 @dataclass(frozen=True)
 class RowsPart:
-    """What `periodic.system.LinearPart` asks for, of n states.
+    """A `periodic.system.LinearPart` of n states.
 
     Parameters
     ----------
     matrices : callable
         Parameters (p,) to E and A, (n, n) each, scaled.
     loads : ndarray, shape (n, k)
-        What the k forces are on each row.
+        Coefficients of the k forces in each row.
     places : tuple of int
         States that are given.
     forces : tuple of int
@@ -78,7 +78,7 @@ class RowsPart:
     scales : ndarray, shape (n,)
         SI value of one internal unit of each state.
     rates : tuple of int
-        Which of `places`, by their order, are velocities.
+        Positions in `places` of velocities.
     moving : tuple of int
         Which of all states are velocities, dq/dtau in the phase: Omega scales them.
     omega : callable
@@ -131,7 +131,7 @@ class RowsPart:
         return self._known[key]
 
     def _beside(self, parameter: Array) -> Eigen:
-        """The modes, from those at other parameters where Omega alone differs, and only scales the time."""
+        """The modes; where they are known and Omega alone is another, those with the time scaled."""
         given, omega = self._explicit(parameter), self.omega(parameter)
         for before, other, known in self._latest:
             slower = before / omega
@@ -142,13 +142,13 @@ class RowsPart:
         return found
 
     def _speeds(self, times: float) -> Array:
-        """How many times as large states are, (n,), where Omega is so many times smaller."""
+        """Factors of the states, (n,), where Omega is `times` smaller: velocities dq/dtau are larger."""
         found = np.ones(self.size)
         found[list(self.moving)] = times
         return found
 
     def _faster(self, given: tuple[Array, Array], times: float) -> tuple[Array, Array]:
-        """The same equations where Omega is so many times smaller."""
+        """The same equations where Omega is `times` smaller."""
         scales = self._speeds(times)[:, None]
         return times * scales * given[0] / scales[:, 0], times * scales * given[1]
 
@@ -204,7 +204,7 @@ class RowsPart:
         freedoms : sequence of int
             Indices of d states of the model that was split, counted from 0.
         structure : str, optional
-            None: there is but one.
+            Must be None: the model has no structures with names.
 
         Returns
         -------
@@ -214,7 +214,7 @@ class RowsPart:
         Raises
         ------
         ValueError
-            For an index that is none.
+            For an index out of range, and for the name of a structure.
         """
         if structure is not None:
             raise refusal("structure", structure, "left out: the model has none by name")

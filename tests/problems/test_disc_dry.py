@@ -34,7 +34,7 @@ SPEEDS: dict[Case, tuple[float, float]] = {
 
 PHASES = np.linspace(0.0, 2 * np.pi, 401)
 GRAZING_FREQUENCY, GRAZING_DEFLECTION = 0.95310, 2.5 ** (2 / 3)
-"""Of the undamped free vibration that just touches zero load, over omega0 and delta0."""
+"""Of the undamped free vibration that grazes zero load, over omega0 and delta0."""
 
 each_case = pytest.mark.parametrize("case", FOLDS, ids=str)
 

@@ -1,6 +1,6 @@
 """Orbits of `reference.contact` in extended precision, where doubles do not tell them.
 
-What a period makes of a state's last digit grows with the fundamental matrices; beside a touch it is much of
+What a period makes of a state's last digit grows with the fundamental matrices; beside grazing it is much of
 a contact's depth, and so of the multipliers. Here the events found in doubles are followed in
 `numpy.longdouble` (64 bits of mantissa on x86), exponentials by Taylor's series.
 """

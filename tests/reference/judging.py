@@ -21,7 +21,7 @@ FOLD = 1e-4
 
 BESIDE = 1e-2
 """Least singular value of M - 1 below which multipliers are those of the orbit as it is: beside a fold on a
-touch the last digit of the parameter changes them by 1e-3."""
+grazing orbit the last digit of the parameter changes them by 1e-3."""
 
 CIRCLE = 1e-4
 """Multipliers nearer to the unit circle decide nothing."""

@@ -1,4 +1,4 @@
-"""Piecewise linear systems in closed form: exact to rounding through every touch.
+"""Piecewise linear systems in closed form: exact to rounding through every grazing.
 
 Between passages of the switches s_i(y) = c_i . y - g_i the equations are linear with a harmonic excitation,
 

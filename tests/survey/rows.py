@@ -197,9 +197,9 @@ class Verdicts:
 
 
 def verdicts(case: Case | JointCase, branch: per.Branch, seed: int, count: int = JUDGED) -> Verdicts:
-    """Judge points of a branch in closed form; at a touch itself multipliers have two values."""
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
-    points = [point for point in branch if point.parameter not in touched]
+    """Judge points of a branch in closed form; at grazing itself multipliers have two values."""
+    grazings = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    points = [point for point in branch if point.parameter not in grazings]
     found = Verdicts(0, 0.0, [], [])
     for k in np.random.default_rng(seed).permutation(len(points))[:count]:
         point = points[int(k)]

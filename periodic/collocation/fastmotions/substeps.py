@@ -27,13 +27,13 @@ from periodic.system import System, jumps_of, resets_of
 from periodic.system.precision import EPSILON
 
 GROWING = 1.0
-"""Re z, z an interval's width times an eigenvalue of the Jacobian, beyond which it is divided."""
+"""Largest Re z, z its width times an eigenvalue of the Jacobian, of an interval that is not divided."""
 
 EACH, FASTEST = 0.7, 2.0
 """Largest Re z and largest |z| of the motions in a substep."""
 
 MOST_SUBSTEPS = 64
-"""Most substeps of an interval."""
+"""Largest number of substeps of an interval."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def stepping(
 ) -> Operator | None:
     """Return equations that resolve how perturbations of an orbit grow: `operator` if its mesh does.
 
-    finer: by which factor substeps are shorter than needed, so that an error estimate can compare. Raises
+    finer: factor by which substeps are shorter than needed, for an error estimate that compares two. Raises
     FAILURES.
     """
     if resets_of(system) or jumps_of(system) or not (operator is None or isinstance(operator, Chain)):
@@ -82,7 +82,7 @@ def substeps(system: System, orbit: Orbit, finer: float = 1.0) -> NDArray[np.int
 
 
 def divided(orbit: Orbit, counts: NDArray[np.int_]) -> Orbit:
-    """Return the same piecewise polynomial with each interval divided into so many."""
+    """Return the same piecewise polynomial with each interval divided into its number of substeps."""
     mesh, breaks, begin = orbit.mesh, [], 0
     for ends in mesh.breaks:
         own = counts[begin : begin + len(ends) - 1]

@@ -84,7 +84,7 @@ class Flexibility:
         return self.response.circulant(None if self.closing is None else self.closing[0], states, forces)
 
     def between(self, states: NDArray[np.int_], forces: NDArray[np.int_]) -> Flexibility:
-        """Return the flexibility of some of the states by some of the forces."""
+        """Return the flexibility with some of the states and some of the forces alone."""
         return replace(self, response=self.response.between(states, forces))
 
     def part(

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from periodic.condensed.modal.modalreduction import Modes
 from periodic.condensed.modal.moments import Complex, Moments, Table
+from periodic.condensed.modal.quasistatic import Modes
 from periodic.orbit.mesh import Grid
 from periodic.orbit.scheme import Array, Scheme
 from periodic.system import ModesLike

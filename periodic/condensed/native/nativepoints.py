@@ -37,7 +37,7 @@ class _Points(ctypes.Structure):
 class Eliminated:
     """Rows at the points in (1, d rate, d state, dphi, dp), dphi the phases of `Mesh.ties`.
 
-    own (P, o, w): differential rows that are not 0 everywhere, `filled` of all, without the unknowns;
+    own (P, o, w): the differential rows that are not 0 everywhere, `filled`, unknowns eliminated;
     unknowns (P, m, w): increments of the unknowns; residual: the largest one.
     """
 
@@ -48,7 +48,7 @@ class Eliminated:
 
 
 def eliminated(system: System, part: LinearPart, orbit: Orbit, line: LinearisationLike) -> Eliminated | None:
-    """Return the rows of evaluated equations; None where NumPy must be used, or says what is wrong."""
+    """Return the rows of evaluated equations; None where NumPy must be used, also to report errors."""
     library = library_of(system, _SOURCE)
     (count, ncol, n), m = orbit.stages.shape, orbit.algebraic.shape[2]
     if library is None or line.d_state.shape[1:] != (n + m, n) or line.d_algebraic.shape[2] != m:

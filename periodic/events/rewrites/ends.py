@@ -46,7 +46,7 @@ from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Sp
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import BESIDE_EXTREMUM, SHALLOW
 from periodic.events.violations import largest
-from periodic.orbit.mesh import INSIDE
+from periodic.orbit.mesh import INSIDE, EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.system import STUCK, Kind, SurfaceLike, System
 
@@ -153,7 +153,7 @@ def _end(system: System, orbit: Orbit, row: Row, i: int) -> Site:
 
 
 def _pair(orbit: Orbit, row: Row, removed: tuple[int, int], segment: int) -> Site:
-    """An excursion between two event nodes, touching midway of a segment."""
+    """An excursion between two event nodes, which grazes at the middle of a segment."""
     last = orbit.mesh.events[removed[1]]
     held = Clearance(last.switch, last.direction, _middle(orbit, segment))
     return Site(row, last.switch, segment, held, 0.0, removed=removed)
@@ -296,10 +296,20 @@ def _vanishing(system: System, orbit: Orbit, row: Row, i: int) -> Site:
         held = Clearance(guard, second.direction, _middle(orbit, i))
         return Site(row, guard, i, held, 0.0, removed=(i, j))
     held = Clearance(first.switch, -first.direction, _middle(orbit, i))
-    others_stay = without(system, second, guard)
-    if others_stay is not None:
-        return Site(row, first.switch, i, held, 0.0, (), (i,), ((j, others_stay),))
+    others_stop = _others_stop(system, first, second, guard)
+    if others_stop is not None:
+        return Site(row, first.switch, i, held, 0.0, (), (i,), ((j, others_stop),))
     return Site(row, first.switch, i, held, 0.0, removed=(i, j))
+
+
+def _others_stop(system: System, first: EventNode, second: EventNode, guard: int) -> EventNode | None:
+    """The second event node of a slip without what the first one lets go; None where nothing else stops."""
+    released = (switch for switch, mode in first.modes_beside(guard) if mode != STUCK)
+    left: EventNode | None = second
+    for switch in (guard, *released):
+        if left is not None and mode_after(surface_of(system, switch), left) == STUCK:
+            left = without(system, left, switch)
+    return left
 
 
 def longest_slip(system: System, orbit: Orbit, switch: int) -> float:

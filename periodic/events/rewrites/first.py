@@ -9,7 +9,8 @@ import numpy as np
 from periodic.correction.change import Change
 from periodic.events.modes import held_all_along, of_held, sliding, surface_of
 from periodic.events.rewrites.ends import Excursion, ends, excursions, longest_slip
-from periodic.events.rewrites.onsets import begins, beside_node
+from periodic.events.rewrites.grazingonsets import begins, beside_node
+from periodic.events.rewrites.letgo import slip_that_joins
 from periodic.events.rewrites.rewrite import Begins, Ends
 from periodic.events.rewrites.sites import Site
 from periodic.events.rewrites.strained import strained_away
@@ -47,8 +48,8 @@ def first_change(
     """
     if not system.switches:
         return None
-    ending = _alone(_endings(system, before, after, shortest))
-    found = [*ending, *_onsets(system, before, after, ending, shortest)]
+    ending, begun = _joined(system, before, after, _alone(_endings(system, before, after, shortest)))
+    found = [*ending, *begun, *_onsets(system, before, after, ending, shortest)]
     first = min(found, key=lambda change: (not change.strict, change.part), default=None)
     if isinstance(first, Begins) and first.site.row is GRAZING:
         return _or_end(first, before, after, ending, ends_below)
@@ -75,6 +76,22 @@ def _alone(ending: list[Ends]) -> list[Ends]:
     """The ends, without swaps within slips that end as a whole."""
     whole = {j for end in ending if end.site.row is ADDING_ABOUT for j in end.excursion.segments}
     return [end for end in ending if end.site.row is not SWAP or end.excursion.index not in whole]
+
+
+def _joined(
+    system: System, before: Orbit, after: Orbit, ending: list[Ends]
+) -> tuple[list[Ends], list[Begins]]:
+    """The ends, and what begins where releases come together; these are no ends."""
+    found, begun = list[Ends](), list[Begins]()
+    for end in ending:
+        slip = slip_that_joins(system, before, end.excursion)
+        if slip is None:
+            found.append(end)
+        elif slip.added:
+            now, then = (slip.held.linearise(system, orbit, ()).value for orbit in (before, after))
+            if then < -AT_LEVEL * largest(SwitchPolynomials(system, before), slip.switch) < now:
+                begun.append(Begins(system, slip, max(now, 0.0) / (now - then), end.shortest))
+    return found, begun
 
 
 def _onsets(

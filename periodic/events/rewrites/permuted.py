@@ -17,9 +17,9 @@ from periodic.system import HELD, System
 
 
 def permuted(system: System, orbit: Orbit, phases: Array) -> list[Node] | None:
-    """Return the event nodes of an orbit in the order of other phases, with these.
+    """Return the event nodes of an orbit with new phases, sorted by these.
 
-    None where they are in order, and where it takes a row of the table other than swaps.
+    None where their order is unchanged, and where changing it takes other rows of the table than swaps.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float
 
 
 def short_of(system: System, orbit: Orbit, switch: int, phase: float) -> float:
-    """Return how far short of its level a touch is held: 0 except where friction reverses the motion."""
+    """Return how far short of its level an extremum is held: 0 except where friction reverses the motion."""
     begin, end = held(system, orbit, switch, phase)
     events = zip(orbit.mesh.events, orbit.phases, strict=True)
     far = [apart(begin, float(tau), orbit) for e, tau in events if sliding(system, e.switch) is not None]

@@ -19,7 +19,7 @@ from periodic.correction.condition import SideCondition
 from periodic.events.heldalong import all_along, still
 from periodic.events.modes import inconsistency, releases, sliding
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import at_once
+from periodic.events.rewrites.grazingonsets import at_once
 from periodic.events.rewrites.sites import Site, edited, has, in_order, index_of, ordered
 from periodic.events.rewrites.table import CORNER, GRAZING, GRAZING_SLIDING, IMPACT, RELAY
 from periodic.events.rewrites.together import together
@@ -32,6 +32,7 @@ from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import density, redistribute, spread
 from periodic.system import HELD, System
+from periodic.system.precision import CONVERGED
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,12 @@ class Begins:
 
     strict = True
     final = True
+    nearer = False
 
     @property
-    def touches(self) -> bool:
-        """Whether a switch just touches its level."""
-        return self.site.row.touches
+    def grazes(self) -> bool:
+        """Whether a switch grazes its level."""
+        return self.site.row.grazes
 
     @property
     def last(self) -> bool:
@@ -73,7 +75,7 @@ class Begins:
             return f"{surface} grazes the threshold at which it would switch"
         jump = sliding(self.system, self.site.switch)
         if jump is None or self.site.row is GRAZING_SLIDING:
-            return f"{surface} is touched"
+            return f"{surface} is grazed"
         name = self.system.switches[jump].name
         if isinstance(self.site.at, int):
             return f"a stop at {name} begins or is broken"
@@ -93,7 +95,7 @@ class Begins:
                 mesh = replace(mesh, modes=still(system, orbit.mesh.modes, events))
                 begin = index_of(events, phases, node, orbit)
                 held = self._held(system, orbit, begin, size)
-                yield Beyond(mesh, phases, held, touches=False, spare=size in row.spare)
+                yield Beyond(mesh, phases, held, grazes=False, spare=size in row.spare)
 
     def _held(self, system: System, orbit: Orbit, begin: int, size: float) -> SideCondition:
         """The side condition that keeps the excursion at a size."""
@@ -123,9 +125,14 @@ class Ends:
     otherwise = None
 
     @property
-    def touches(self) -> bool:
-        """Whether a switch just touches its level."""
+    def grazes(self) -> bool:
+        """Whether a switch grazes its level."""
         return self.last
+
+    @property
+    def nearer(self) -> bool:
+        """Whether it is smaller than any size at which words are exchanged."""
+        return self.size < self.site.row.least * self.excursion.unit * (1 - CONVERGED)
 
     @property
     def last(self) -> bool:
@@ -151,7 +158,7 @@ class Ends:
                 held = self._held(system, orbit, own, events, phases)
                 modes, parameter = all_along(system, orbit, events)
                 mesh = replace(mesh, modes=modes)
-                yield Beyond(mesh, phases, held, own.row.touches, parameter=parameter)
+                yield Beyond(mesh, phases, held, own.row.grazes, parameter=parameter)
 
     def _alike(self, system: System, orbit: Orbit, own: Site) -> list[Site]:
         """The sites of excursions of the same row that are as small as this one."""

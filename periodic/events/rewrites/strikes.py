@@ -1,8 +1,8 @@
-"""Grazing of an impact whose rebound reverses the sliding of the mass: friction's events at the touch.
+"""Grazing of an impact whose rebound reverses the sliding of the mass: friction's events at grazing.
 
-The speed of a mass that just touches a wall is 0 there, and so is its sliding speed: the orbit without the
-impact has an event node of friction at the touch. On the orbit with the impact, the impact takes the guard to
-its other side; where friction held the mass at the touch, it stops the mass again after the rebound.
+The speed of a mass that grazes a wall is 0 there, and so is its sliding speed: the orbit without the
+impact has an event node of friction at grazing. On the orbit with the impact, the impact takes the guard to
+its other side; where friction held the mass at grazing, it stops the mass again after the rebound.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SOON = 0.3
 
 
 def first_impact(system: System, orbit: Orbit, at: Extremum, side: int, value: float) -> Site:
-    """Return the site where an impact begins: the event nodes of friction at the touch give way to it."""
+    """Return the site where an impact begins: the event nodes of friction at grazing give way to it."""
     modes, removed, added = list[tuple[int, int]](), list[int](), list[Added]()
     for j, event in enumerate(orbit.mesh.events):
         surface = surface_of(system, event.switch)

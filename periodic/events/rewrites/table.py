@@ -54,14 +54,14 @@ from periodic.events.thresholds import LEAST_CROSSING, LEAST_GRAZING, LONGEST, d
 from periodic.system.precision import CONVERGED
 
 ROOT, LINEAR = 0.5, 1.0
-"""Powers of the size in the depth: after a touch of a level, and after a passage."""
+"""Powers of the size in the depth: after the grazing of a level, and after its crossing."""
 
 SHORT = decades(LONGEST, LEAST_GRAZING)
 SHORTER = decades(LONGEST, LEAST_CROSSING)[len(SHORT) :]
 FLAT = tuple(size ** (2 / 3) for size in decades(LONGEST, LEAST_GRAZING**1.5))
 """Sizes (rad; of impacts speeds, as parts of the range) at which words are exchanged, tried in turn: SHORT
-after touches; SHORTER, further ones after passages; FLAT of slips between two sticking segments. Slips change
-the states by the cube of their length, touches by the square: FLAT are the sizes of equal effect.
+after grazing; SHORTER, further ones after crossings; FLAT of slips between two sticking segments. Slips
+change the states by the cube of their length, grazing by the square: FLAT are the sizes of equal effect.
 """
 
 
@@ -69,14 +69,14 @@ the states by the cube of their length, touches by the square: FLAT are the size
 class Row:
     """A row of the table.
 
-    name: the usual one. touches: whether a switch just touches its level there (GR). power: of the size
+    name: the usual one. grazes: whether a switch grazes its level there (GR). power: of the size
     in the depth. sizes: at which words are exchanged, tried in turn; spare: tried where those lead to none.
     gradual: whether steps shorten so much on the way that each size is tried as it is passed. by_speed:
     whether the size is the speed with which a level is passed. last: whether no orbits are near beyond it.
     """
 
     name: str
-    touches: bool
+    grazes: bool
     power: float
     sizes: tuple[float, ...] = SHORT
     spare: tuple[float, ...] = ()
@@ -103,35 +103,35 @@ class Row:
         return min((now - size) / (now - then), 1.0)
 
 
-GRAZING = Row(name="grazing", touches=True, power=ROOT)
-IMPACT = Row(name="grazing of an impact", touches=True, power=ROOT, spare=SHORTER, by_speed=True)
-GRAZING_SLIDING = Row(name="grazing-sliding", touches=True, power=ROOT)
-ADDING_SLIDING = Row(name="adding-sliding", touches=False, power=ROOT, sizes=FLAT)
+GRAZING = Row(name="grazing", grazes=True, power=ROOT)
+IMPACT = Row(name="grazing of an impact", grazes=True, power=ROOT, spare=SHORTER, by_speed=True)
+GRAZING_SLIDING = Row(name="grazing-sliding", grazes=True, power=ROOT)
+ADDING_SLIDING = Row(name="adding-sliding", grazes=False, power=ROOT, sizes=FLAT)
 ADDING_ABOUT = Row(
-    name="adding-sliding about another event", touches=False, power=ROOT, sizes=FLAT, gradual=True
+    name="adding-sliding about another event", grazes=False, power=ROOT, sizes=FLAT, gradual=True
 )
 FIRST_SLIPS = Row(
-    name="adding-sliding of what is held all along", touches=True, power=ROOT, sizes=FLAT, gradual=True
+    name="adding-sliding of what is held all along", grazes=True, power=ROOT, sizes=FLAT, gradual=True
 )
 FIRST_DEPARTURES = Row(
-    name="adding-sliding of what slides all along", touches=False, power=ROOT, sizes=FLAT, gradual=True
+    name="adding-sliding of what slides all along", grazes=False, power=ROOT, sizes=FLAT, gradual=True
 )
-LIMIT_GRAZING = Row(name="grazing of a limit", touches=True, power=ROOT, sizes=FLAT)
-CROSSING_SLIDING = Row(name="crossing-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
-SWITCHING_SLIDING = Row(name="switching-sliding", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
-SWITCHING_ABOUT = Row(name="switching-sliding about another event", touches=False, power=ROOT)
-REVERSAL = Row(name="grazing about a reversal of friction", touches=True, power=ROOT)
-CORNER = Row(name="grazing in the corner of an impact", touches=True, power=LINEAR)
+LIMIT_GRAZING = Row(name="grazing of a limit", grazes=True, power=ROOT, sizes=FLAT)
+CROSSING_SLIDING = Row(name="crossing-sliding", grazes=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+SWITCHING_SLIDING = Row(name="switching-sliding", grazes=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+SWITCHING_ABOUT = Row(name="switching-sliding about another event", grazes=False, power=ROOT)
+REVERSAL = Row(name="grazing about a reversal of friction", grazes=True, power=ROOT)
+CORNER = Row(name="grazing in the corner of an impact", grazes=True, power=LINEAR)
 BEFORE_IMPACT = Row(
-    name="corner collision before an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+    name="corner collision before an impact", grazes=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
 )
 AFTER_IMPACT = Row(
-    name="corner collision after an impact", touches=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
+    name="corner collision after an impact", grazes=True, power=LINEAR, sizes=(*SHORT, *SHORTER)
 )
-RELEASE_AT_IMPACT = Row(name="release at an impact", touches=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
-CAUGHT = Row(name="caught after an impact", touches=False, power=LINEAR)
+RELEASE_AT_IMPACT = Row(name="release at an impact", grazes=False, power=LINEAR, sizes=(*SHORT, *SHORTER))
+CAUGHT = Row(name="caught after an impact", grazes=False, power=LINEAR)
 RELAY = Row(
-    name="grazing of a relay", touches=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
+    name="grazing of a relay", grazes=True, power=LINEAR, sizes=SHORTER[-1:], by_speed=True, last=True
 )
-SWAP = Row(name="two events change places", touches=False, power=LINEAR)
-MERGING = Row(name="two stops become one", touches=False, power=LINEAR)
+SWAP = Row(name="two events change places", grazes=False, power=LINEAR)
+MERGING = Row(name="two stops become one", grazes=False, power=LINEAR)

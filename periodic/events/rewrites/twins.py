@@ -66,28 +66,43 @@ def slipping_together(system: System, orbit: Orbit, sites: Sequence[Site]) -> li
         if k is None:
             found.append(site)
         else:
-            found[k] = _both(found[k], site)
+            found[k] = _both(system, found[k], site)
     return found
 
 
 def _one_slip(system: System, orbit: Orbit, one: Site, other: Site) -> bool:
-    if not (one.row is other.row is LIMIT_GRAZING) or len(one.added) != 2 or len(other.added) != 2:
+    """Whether two sliders slip at once, and stop at event nodes of their own or at one that there is."""
+    if not (one.row is other.row is LIMIT_GRAZING) or len(one.added) != len(other.added):
         return False
     assert isinstance(one.at, Extremum)
     assert isinstance(other.at, Extremum)
     guards = [surface_of(system, site.switch).switch for site in (one, other)]
     alike = guards[1] in twins(system, guards[0], held_in(system, orbit, one.at.interval))
-    return alike and apart(one.at.phase, other.at.phase, orbit) < BESIDE_EXTREMUM
+    turns = ([node for node, _ in site.replaced] for site in (one, other))
+    return (
+        alike and next(turns) == next(turns) and apart(one.at.phase, other.at.phase, orbit) < BESIDE_EXTREMUM
+    )
 
 
-def _both(one: Site, other: Site) -> Site:
+def _both(system: System, one: Site, other: Site) -> Site:
     """The site at which the sliders of two slip and are held again at the same event nodes."""
-    release, stop = one.added
-    slips, held = (added.event for added in other.added)
-    onward = (*release.event.modes, (held.switch, slips.direction), *slips.modes)
-    first = replace(release, event=replace(release.event, modes=onward))
-    last = replace(stop, event=replace(stop.event, modes=(*stop.event.modes, *held.modes)))
-    return replace(one, added=(first, last))
+    release, slips = one.added[0], other.added[0].event
+    guard = surface_of(system, slips.switch).switch
+    first = _with(release, (guard, slips.direction), *slips.modes)
+    stops = [pair for pair in _stops(other) if pair not in _stops(one)]
+    last = [_with(stop, *stops) for stop in one.added[1:]]
+    turn = tuple((node, replace(event, modes=(*event.modes, *stops))) for node, event in one.replaced)
+    return replace(one, added=(first, *last), replaced=turn)
+
+
+def _with(added: Added, *modes: tuple[int, int]) -> Added:
+    """The same with further modes."""
+    return replace(added, event=replace(added.event, modes=(*added.event.modes, *modes)))
+
+
+def _stops(site: Site) -> tuple[tuple[int, int], ...]:
+    """The modes at the event node at which a site's slider stops."""
+    return site.added[1].event.modes if len(site.added) > 1 else site.replaced[0][1].modes
 
 
 def _turn(system: System, orbit: Orbit, at: Extremum, both: dict[int, int]) -> int | None:

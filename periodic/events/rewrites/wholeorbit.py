@@ -1,4 +1,4 @@
-"""An orbit that touches a level everywhere at once, as a circle in a ring: it has no extremum, so no row."""
+"""An orbit that grazes a level everywhere at once, as a circle in a ring: it has no extremum, so no row."""
 
 from __future__ import annotations
 
@@ -25,15 +25,16 @@ FLAT = 1e-5
 
 @dataclass(frozen=True)
 class WholeOrbit:
-    """A touch of a level by a whole orbit: the branch goes on beyond it on the same mesh."""
+    """Grazing of a level by a whole orbit: the branch goes on beyond it on the same mesh."""
 
     name: str
     condition: Clearance
     part: float
 
-    touches = True
+    grazes = True
     strict = True
     final = True
+    nearer = False
     last = False
     otherwise = None
 
@@ -43,11 +44,11 @@ class WholeOrbit:
         at = dense.nearest(held.switch, held.side, held.phase)
         for depth in SHORT:
             beyond = Clearance(held.switch, -held.side, at.phase, depth * dense.size(held.switch))
-            yield Beyond(orbit.mesh, orbit.phases, beyond, touches=False)
+            yield Beyond(orbit.mesh, orbit.phases, beyond, grazes=False)
 
 
 def whole_orbit(system: System, before: Orbit, violation: Violation, part: float) -> WholeOrbit | None:
-    """Return the touch of a whole orbit, if a violation is one; it is held where there still is a tangent."""
+    """Return the grazing of a whole orbit, if a violation is one, held where there still is a tangent."""
     k, dense = violation.switch, SwitchPolynomials(system, before)
     if violation.breach is not Breach.EXCURSION or not isinstance(violation.at, Extremum):
         return None
@@ -55,4 +56,4 @@ def whole_orbit(system: System, before: Orbit, violation: Violation, part: float
         return None
     ripple = RIPPLES * float(np.ptp(dense.knots[:, :, k]))
     held = Clearance(k, violation.side, violation.at.phase, ripple)
-    return WholeOrbit(f"{system.switches[k].name} is touched", held, part) if ripple else None
+    return WholeOrbit(f"{system.switches[k].name} is grazed", held, part) if ripple else None

@@ -40,7 +40,7 @@ def extremes(system: System, orbit: Orbit) -> Array | None:
 def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) -> Array | None:
     """Return the values that a function of C writes, or None where NumPy must be used.
 
-    Only piecewise polynomials are read in C: what a Fourier series is between its samples, it knows itself.
+    Only piecewise polynomials are read in C; a Fourier series interpolates between its samples itself.
     """
     if type(orbit) is not Orbit:
         return None

@@ -22,14 +22,14 @@ from periodic.system import System
 LENGTHS = ("x", "y", "size", "depth")
 
 SHAPE_INSTANTS, MOST_NODES = 32, 20
-"""Of the shape of a structure: instants in a period, and nodes."""
+"""Instants of a period at which the shape of a structure is drawn, and its largest number of nodes."""
 
 LARGEST_MOVEMENT = 0.4
 """Magnified size of the largest movement, in units of the drawing."""
 
 
 def sketch_of(system: object) -> list[dict[str, Any]]:
-    """Return the shapes of a system; none of most that are not made by `symbolic.compile`."""
+    """Return the shapes of a system; few have any that are not made by `symbolic.compile`."""
     return [dict(shape) for shape in getattr(system, "sketch", ())]
 
 
@@ -50,7 +50,7 @@ def drawing(
     points : sequence of Point
         The points that are shown.
     signals : dict of str to (int, float)
-        Where the page has each output, and the SI value of the unit that it has it in.
+        Index of each output on the page, and the SI value of its unit there.
     orbits : ndarray, shape (points, signals, samples)
         Its signals.
     units : dict of str to str
@@ -101,7 +101,7 @@ def packed(values: Array) -> str:
 
 
 def _bar(largest: float, unit: str) -> dict[str, Any]:
-    """A round length near the largest movement: how long it is drawn, and what it says."""
+    """The scale bar, a round length near the largest movement: its length as drawn, and its text."""
     power = 10.0 ** np.floor(np.log10(largest))
     length = max(step * power for step in (1, 2, 5) if step * power <= largest * (1 + 1e-9))
     shown = prefixed(unit, length)

@@ -17,7 +17,7 @@ KINDS: dict[str, tuple[str, str]] = {
     "NS": ("D", "torus"),
     "BP": ("^", "branch point"),
     "HB": ("v", "Hopf"),
-    "GR": ("d", "touch"),
+    "GR": ("d", "grazing"),
     "MX": ("X", "failed"),
     "CP": ("*", "cusp"),
     "R1": ("h", "resonance 1:1"),

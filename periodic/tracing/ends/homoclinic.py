@@ -14,8 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.fold import LEAST_SLOPE
-from periodic.bifurcations.twoparameter import codim2
 from periodic.conditions.phase import PhaseCondition
 from periodic.correction.problem import Problem
 from periodic.results.point import Point

@@ -45,7 +45,7 @@ def level_test(functional: Functional, level: float, label: Label, name: str) ->
         except FAILURES as error:
             place = f"{problem.parameter} = {base.value:.6g} to {new.value:.6g}"
             message = (
-                f"{name or label} has no derivative ({error}); a touch in {place} is seen by values alone"
+                f"{name or label} has no derivative ({error}); grazing in {place} is seen by values alone"
             )
             warnings.warn(message, RuntimeWarning, stacklevel=2)
             return False

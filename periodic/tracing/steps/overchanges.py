@@ -1,9 +1,9 @@
-"""Steps over changes of the word at which no level is touched, however many, taken at once.
+"""Steps over changes of the word at which no level is grazed, however many, taken at once.
 
 Where events of different surfaces pass each other, where friction begins to stick as it reverses, or slips
 amid a stick, multipliers do not jump and no point is to be located. A step along the tangent leads to an
 orbit with the word that it has there, and is judged as any other. Where only the order of events changes the
-tangent tells the word, else the motion from a predicted state. Where a level is touched, or a special point
+tangent tells the word, else the motion from a predicted state. Where a level is grazed, or a special point
 may have been passed, the step is left to those that stop there.
 """
 
@@ -16,9 +16,9 @@ from itertools import chain
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.location import sign_between
 from periodic.bifurcations.testfunction import Course, TestFunction
-from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.newton import in_order
 from periodic.correction.predictor import at_fixed_phases, tangent
@@ -46,7 +46,7 @@ class Over:
 def over_changes(
     foresight: Foresight, control: ArclengthControl, base: Solution, ds: float, course: Course
 ) -> Over | None:
-    """Return the end of a step in which the word changes without a touch, if there is one.
+    """Return the end of a step in which the word changes without grazing, if there is one.
 
     Parameters
     ----------
@@ -99,11 +99,11 @@ class _Way:
         return self.foresight.solver
 
     def changes(self, distance: float) -> bool:
-        """Whether the word changes within a distance, and not by a touch as far as is foreseen."""
+        """Whether the word changes within a distance, and not by grazing as far as is foreseen."""
         if not in_order(tangent(self.solver.problem, self.base, distance)):
             return True
         change = self.foresight.change(self.base, distance)
-        return change is not None and not change.touches
+        return change is not None and not change.grazes
 
     def over(self, ds: float, course: Course) -> Over | None:
         """The end of a step of one length, if it is as it should be."""

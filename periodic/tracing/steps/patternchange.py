@@ -48,7 +48,7 @@ class Reached:
 
 
 def standing(base: Solution, change: Change | None) -> Reached | None:
-    """Return the base itself as the end of a step, where a switch touches that would pass in it."""
+    """Return the base itself as the end of a step, where a switch grazes that would cross in the step."""
     if change is None or not change.strict or change.part > CONVERGED:
         return None
     return Reached(base, 0.0, change)
@@ -83,7 +83,7 @@ def _comes_back(found: Solution, change: Change, at_base: bool) -> bool:
     """Whether the branch comes back there from orbits that violate their word: the change began before.
 
     at_base: whether the change lies where the step begins. Extrema do not come and go within a step, but one
-    that touches at its beginning may leave its level there.
+    that grazes at its beginning may leave its level there.
     """
     row = change.condition.linearise(found.problem.system, found.orbit, found.problem.free)
     if not change.strict or (row.stages is not None and not at_base):
@@ -123,11 +123,11 @@ def progress(solver: Solver, base: Solution, orbit: Orbit) -> float:
 
 @dataclass(frozen=True)
 class Crossed:
-    """The orbit beyond a change of pattern, its distance from the one before, and whether it touches."""
+    """The orbit beyond a change of pattern, its distance from the one before, and whether it grazes."""
 
     solution: Solution
     distance: float
-    touches: bool
+    grazes: bool
 
 
 def crossed(solver: Solver, at: Reached) -> Crossed | None:
@@ -174,12 +174,12 @@ def _along(solver: Solver, at: Reached, way: Beyond) -> Crossed | None:
         if solver.discretisation.change(problem.system, new.orbit, new.orbit) is not None:
             continue
         apart = distance(problem, old, new.orbit) / size_of(old)
-        swaps = not (at.change.touches or way.touches)  # beside what touches a fold may be near
+        swaps = not (at.change.grazes or way.grazes)  # beside grazing a fold may be near
         if (
             apart <= (max(FARTHEST_BEYOND, ACROSS * at.ds) if swaps else FARTHEST_BEYOND)
             and problem.low <= new.value <= problem.high
         ):
-            return Crossed(new, apart, way.touches)
+            return Crossed(new, apart, way.grazes)
     return None
 
 

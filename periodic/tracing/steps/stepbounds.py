@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from periodic.bifurcations.twoparameter import codim2
+from periodic.bifurcations.codimension2 import codim2
 from periodic.correction.solution import Solution
 from periodic.linear.unknowns import Increment, size_of
 from periodic.orbit.orbit import LEAST_SPAN

@@ -27,6 +27,10 @@ from periodic.tracing.steps.stepsize import ArclengthControl
 MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
 
+FARTHER = 2.0
+"""Where Newton fails a change is sought so many steps ahead. An excursion whose length is as the square root
+of the way left has lost less than a third of it half way to where it ends; Newton hardly converges beyond."""
+
 
 class WordError(RejectedError):
     """A step to an orbit that violates its word."""
@@ -141,6 +145,10 @@ class Stepper:
         guess = spaced(base.orbit, tangent(solver.problem, base, ds))
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
+            farther = self.foresight.change(base, FARTHER * ds) if foreseen is None else None
+            at = None if farther is None else reached(solver, base, None, FARTHER * ds, farther)
+            if at is not None:
+                return at.end, at
             where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
             raise RejectedError(f"{new.outcome.value}{where}")
         found = method.change(system, base.orbit, new.orbit)

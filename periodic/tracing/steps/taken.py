@@ -12,12 +12,12 @@ from functools import cached_property
 
 import numpy as np
 
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
 from periodic.bifurcations.ledger import Entry, Gap, entry, gaps
 from periodic.bifurcations.location import Sought, special_points
 from periodic.bifurcations.testfunction import Course, TestFunction, margins
 from periodic.bifurcations.turningpoint import Found
-from periodic.bifurcations.twoparameter import codim2
 from periodic.bifurcations.withinstep import RejectedError
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
@@ -48,8 +48,8 @@ class Step:
 
     @property
     def label(self) -> Label:
-        """The label of its end: GRAZING where a switch touches its level there."""
-        return Label.GRAZING if self.change is not None and self.change.change.touches else Label.NONE
+        """The label of its end: GRAZING where a switch grazes its level there."""
+        return Label.GRAZING if self.change is not None and self.change.change.grazes else Label.NONE
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from reports.studies.extremes import disc, duffing, grazing, multipliers, nearresonance, touch, vanderpol
+from reports.studies.extremes import disc, duffing, grazing, multipliers, nearresonance, stop, vanderpol
 from reports.studies.extremes.survey import Outcome, Row
 from reports.studies.extremes.words import domain, error
 from reports.studies.pages.page import Page, Sections
@@ -18,7 +18,7 @@ STUDIES = {
         duffing.STUDY,
         multipliers.STUDY,
         grazing.STUDY,
-        touch.STUDY,
+        stop.STUDY,
         nearresonance.STUDY,
     )
 }

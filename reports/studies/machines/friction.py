@@ -48,17 +48,17 @@ SLIDER = Machine(
 
 
 def grazing(machine: Machine, found: Branch) -> Curve:
-    """Return where the orbit just touches the wall, over frequency and force."""
-    touch = next(p for p in found.special_points if p.label is Label.GRAZING)
+    """Return where the orbit grazes the wall, over frequency and force."""
+    point = next(p for p in found.special_points if p.label is Label.GRAZING)
     border = trace(
         machine.system,
         "Omega",
         (0.5, 2.0),
-        guess=touch.orbit,
+        guess=point.orbit,
         determined={"A": GrazingCondition("impact at x = gap")},
     )
     frequency = np.array([p.parameter for p in border])
-    return Curve(frequency, border.column("A"), ("frequency Ω", "force A at which it touches"))
+    return Curve(frequency, border.column("A"), ("frequency Ω", "force A at which it grazes"))
 
 
 IMPACT = Machine(
@@ -70,7 +70,7 @@ IMPACT = Machine(
     marched=(0.9, 0.6, 0.3, 0.05),
     words="COCO's problem hspo: a linear oscillator with an impact of restitution 0.8 in each period, "
     "followed from large forces down to grazing, where the impact has no speed left, and on without impacts. "
-    "The orbit touches at A = c Ω d = 0.1, and over the frequency at d |k - Ω² + i c Ω|; the fold just below "
+    "The orbit grazes at A = c Ω d = 0.1, and over the frequency at d |k - Ω² + i c Ω|; the fold just below "
     "is known in closed form.",
     known=(
         Known(name="fold (closed form), A", value=0.0999707536, ours=place(Label.FOLD, 0)),

@@ -1,8 +1,8 @@
 """Equations that jump, with the side of the jump as an argument.
 
-Where a sign or a comparison makes the right-hand side jump at the zero of a switch, collocation points beside
-it must take the branch of their own side whatever the last digits of the state say. For each switch with a
-jump the equations get a number: 1 for s > 0, -1 for s < 0, 0 where the state decides.
+Where a sign or a comparison makes the right-hand side jump at the zero of a switch, it must be evaluated at
+collocation points on their own side of the jump, even where rounding puts the state on the other.
+For each switch with a jump the equations get a number: 1 for s > 0, -1 for s < 0, 0 where the state decides.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ ZERO_VALUE = 1e-10
 class Sided:
     """The residual with sides: a symbol each for the switches with the indices `jumps`, among them sliders.
 
-    slides: the switches along which a motion can slide, each with the two functions that pass 0 where sliding
-    ends: s' with the equations of the positive side and with those of the negative one, other jumps being on
-    their given sides. The motion is held as long as 0 lies between the two. alone: those at which
-    what is held all along is determined without a place.
+    slides: the switches along which a motion can slide, each with the two functions one of which changes
+    sign where sliding ends: s' with the equations of the positive side and with those of the negative one,
+    other jumps being on their given sides. The motion slides as long as 0 lies between the two. alone: those
+    along which a motion that slides for the whole period is determined by the equations, without a place.
     """
 
     residual: ca.SX
@@ -70,9 +70,9 @@ def sided(
     sliders : tuple of int
         Further switches that have a side.
     places : mapping of int to casadi.SX, optional
-        Of switches at which something may be held all along: its distance from the place there.
+        For switches along which a motion may slide for the whole period: the distance from its given place.
     relays : mapping of int to (casadi.SX, casadi.SX), optional
-        Of relays, by their guard: the symbol that stands for one in all of these, and its side.
+        For each relay, by its guard: the symbol that stands for it in these expressions, and its side.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def sided(
 
 
 def _undecided(rows: ca.SX, sides: ca.SX) -> ca.SX:
-    """Rows where the state decides of relays."""
+    """Rows with the sides of relays at 0, where the state decides."""
     return ca.substitute(rows, sides, ca.SX.zeros(sides.numel()))
 
 

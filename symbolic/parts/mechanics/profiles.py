@@ -51,7 +51,7 @@ class Profile(Protocol):
         Returns
         -------
         Terms
-            They can be valued and differentiated.
+            The mean and the harmonics, which can be evaluated and differentiated.
         """
         ...
 
@@ -92,7 +92,7 @@ class FourierSeries(Profile):
     sines : tuple of float or Parameter
         b_1, b_2, ...; zero where there are none.
     mean : float
-        The mean, which is there without excitation too.
+        The mean, which stays in the unexcited system.
 
     Raises
     ------
@@ -131,14 +131,14 @@ class Samples(Profile):
     values : tuple of float
         As measured, evenly over the period, its end left out.
     harmonics : int, optional
-        Highest order that is kept; by default all that n values tell, (n - 1)/2.
+        Highest order that is kept; by default all that n values determine, (n - 1)/2.
     factor : float or Parameter
         What the values are multiplied by.
 
     Raises
     ------
     ValueError
-        For fewer than three values, and for more harmonics than they tell.
+        For fewer than three values, and for more harmonics than they determine.
     """
 
     EXAMPLE: ClassVar[Mapping[str, object]] = {"values": [0.0, 0.1, -0.1]}

@@ -121,9 +121,12 @@ class Inline:
         if not isinstance(value, dict):
             raise InputError(where, "is no table", f"it must be {self.allowed}")
         names = {entry.name: entry for entry in self.entries}
+        known = listed(list(names))
         kind = value.get(KIND, self.entries[0].name if len(self.entries) == 1 else None)
+        if kind is None:
+            raise InputError(f"{where} {KIND}", "is missing", f"it must be {known}")
         if not isinstance(kind, str) or kind not in names:
-            raise unknown(f"{where} {KIND}", kind, list(names), listed(list(names)))
+            raise unknown(f"{where} {KIND}", kind, list(names), known)
         table = {name: item for name, item in value.items() if name != KIND}
         return bench.place((kind, table), lambda: names[kind].made(bench, where, table))
 

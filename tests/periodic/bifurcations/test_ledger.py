@@ -234,7 +234,7 @@ PAIR = (0.8 + 0.6j, 0.8 - 0.6j)
     ],
 )
 def test_balanced(entries: list[Entry]) -> None:
-    """Assert that labelled points account for what they let pass, a touch at a turn and a turn included."""
+    """Assert that labelled points account for what they let pass, grazing at a fold and a fold included."""
     assert gaps(entries) == []
 
 
@@ -291,8 +291,8 @@ def test_torus_beside_events_that_change_places() -> None:
     control = per.ArclengthControl(max_points=400, max_newton=4000)
     branch = per.trace(case.system, "Omega", case.bounds, start=case.start, tol=1e-6, control=control)
     assert branch.unaccounted == ()
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}  # there multipliers jump
-    points = [p for p in branch.labelled(per.Label.TORUS) if p.parameter not in touched]
+    grazings = {point.parameter for point in branch.labelled(per.Label.GRAZING)}  # there multipliers jump
+    points = [p for p in branch.labelled(per.Label.TORUS) if p.parameter not in grazings]
     assert len(points) >= 30
     for point in points:
         beside = np.sort(np.abs(np.abs(point.multipliers[point.multipliers.imag != 0]) - 1))

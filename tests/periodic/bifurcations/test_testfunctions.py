@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from periodic.bifurcations import branchpoint, doubling, fold, stationary, testfunction, torus
+from periodic.bifurcations.codimension2 import codim2
 from periodic.bifurcations.label import Label
-from periodic.bifurcations.twoparameter import codim2
 from periodic.correction.error import ErrorEstimate
 from periodic.stability.multipliers import ERRORS_FROM_ONE, ROUNDED_ONE
 

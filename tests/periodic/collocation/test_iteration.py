@@ -91,7 +91,7 @@ def lost_contact() -> Orbit:
 
 
 def brief_contact() -> Orbit:
-    """An orbit just beyond a touch, of whose excursion, a milliradian, the constraint takes the length."""
+    """An orbit just beyond grazing, of whose excursion, a milliradian, the constraint takes the length."""
     orbits = [p.orbit for p in per.trace(compiled("stop"), "Omega", (0.7, 1.8)) if len(p.orbit.phases)]
     brief = [orbit for orbit in orbits if orbit.mesh.segment_lengths(orbit.phases).min() > 5e-4]
     return min(brief, key=lambda orbit: orbit.mesh.segment_lengths(orbit.phases).min())

@@ -58,12 +58,12 @@ def test_last_gap_of_a_rotor(start: float) -> None:
 
 
 @each_way
-def test_touches_of_a_rotor(start: float) -> None:
+def test_grazings_of_a_rotor(start: float) -> None:
     """Assert where contact and gaps begin and end: there the rotor just reaches the stator's surface."""
-    touches = rotor(start).labelled(per.Label.GRAZING)
+    grazings = rotor(start).labelled(per.Label.GRAZING)
     expected = [0.89535324, 0.97103452, 1.17866921, 1.17958135, 1.18462761, 1.19334947]
-    assert sorted(point.parameter for point in touches) == pytest.approx(expected, abs=1e-7)
-    for point in touches:
+    assert sorted(point.parameter for point in grazings) == pytest.approx(expected, abs=1e-7)
+    for point in grazings:
         dense = SwitchPolynomials(sym.scene("jeffcott-rub"), point.orbit)
         depths = [abs(dense.value(e)) for side in (-1, 1) for e in dense.minima(0, side)]
         assert min(depths) == pytest.approx(0, abs=1e-9)
@@ -74,20 +74,22 @@ def test_preloaded_stop(way: tuple[float, float]) -> None:
     """Assert orbits and multipliers of a mass pressed against its stop, which lifts off near resonance."""
     found, exact = per.trace(stopped(20.0, -0.3), "Omega", way), exactly(20.0, -0.3)
     assert found.stop.reason is per.Reason.BOUND
-    (touch,) = found.labelled(per.Label.GRAZING)
-    assert touch.minimum["q"] == pytest.approx(-0.3, abs=1e-8)
+    (grazing,) = found.labelled(per.Label.GRAZING)
+    assert grazing.minimum["q"] == pytest.approx(-0.3, abs=1e-8)
     for point in found:
-        if point is not touch:
+        if point is not grazing:
             gap, apart = errors(exact, point)
             assert gap < 1e-9
             assert apart < 1e-7
-            assert len(point.orbit.mesh.events) == (0 if point.parameter > touch.parameter else 2)
+            assert len(point.orbit.mesh.events) == (0 if point.parameter > grazing.parameter else 2)
 
 
 def test_extremes_are_none_of_the_mesh_points() -> None:
     """Assert that a switch has as many minima as the motion, wherever intervals meet."""
-    (touch,) = rotor(0.2).labelled(per.Label.GRAZING)[:1]
-    dense = SwitchPolynomials(sym.scene("jeffcott-rub"), touch.orbit)
-    radius = np.hypot(*(touch.orbit[name](np.linspace(0, touch.orbit.period, 4001)[:-1]) for name in "xy"))
+    (grazing,) = rotor(0.2).labelled(per.Label.GRAZING)[:1]
+    dense = SwitchPolynomials(sym.scene("jeffcott-rub"), grazing.orbit)
+    radius = np.hypot(
+        *(grazing.orbit[name](np.linspace(0, grazing.orbit.period, 4001)[:-1]) for name in "xy")
+    )
     peaks = (radius >= np.roll(radius, 1)) & (radius > np.roll(radius, -1))
     assert len(dense.minima(0, -1)) == peaks.sum()

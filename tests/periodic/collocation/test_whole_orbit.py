@@ -1,4 +1,4 @@
-"""A rotor in a stator: its orbit is a circle, all of which touches at once. Known in closed form.
+"""A rotor in a stator: its orbit is a circle, all of which grazes at once. Known in closed form.
 
 x'' + .1 x' + x + k (x - .1 y) = .2 W^2 cos, y'' + .1 y' + y + k (y + .1 x) = .2 W^2 sin,
 
@@ -64,19 +64,19 @@ def exponents(r: float, W: float) -> np.ndarray:
 
 @pytest.mark.parametrize("bounds", [(0.8, 4.0), (4.0, 0.8)])
 def test_branch_passes_both_corners(bounds: tuple[float, float]) -> None:
-    """Assert touches, fold and multipliers in closed form both ways, and what sits on the touches."""
+    """Assert grazing, fold and multipliers in closed form both ways, and what sits on grazing points."""
     system = sym.compile(sym.Equations(rotor, dict.fromkeys("xyuv", 0.1), {"W": 1.0}, frequency="W"))
     branch = per.trace(system, "W", bounds, at=(0.9, 2.0), tol=1e-6)
     assert branch[-1].parameter == bounds[1] and branch.unaccounted == ()
-    touches = sorted(p.parameter for p in branch.labelled("GR"))
+    grazings = sorted(p.parameter for p in branch.labelled("GR"))
     expected = [brentq(lambda W: defect(1.0, W), *between) for between in ((0.8, 1.0), (1.0, 1.3))]
-    assert touches == pytest.approx(expected, rel=1e-7)
+    assert grazings == pytest.approx(expected, rel=1e-7)
     furthest = minimize_scalar(
         lambda r: -fastest(r), bounds=(1.05, 2.5), method="bounded", options={"xatol": 1e-9}
     )
     fold = max(branch.labelled("LP"), key=lambda p: p.parameter)
     assert fold.parameter == pytest.approx(-furthest.fun, rel=1e-7)
-    assert sorted(p.parameter for p in branch.labelled("NS")) == touches
+    assert sorted(p.parameter for p in branch.labelled("NS")) == grazings
     inside = [p for p in branch.labelled("UZ")]
     assert len(inside) == 4
     for point in inside:

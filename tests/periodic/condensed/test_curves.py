@@ -123,7 +123,7 @@ def torus(condense: bool) -> list[float]:
 
 
 def grazing(condense: bool) -> list[float]:
-    """A touch, and the force at which it is at another frequency."""
+    """A grazing point, and the force at which it is at another frequency."""
 
     def stop(tip: Any) -> list[sym.Part]:
         return [sym.Stop(tip, sym.HertzLaw(3.0, 1.0), 0.05)]
@@ -131,8 +131,8 @@ def grazing(condense: bool) -> list[float]:
     system = cantilever(1, stop, condense=condense, force=0.02)
     of = per.trace(system, "Omega", (3.2, 3.4), tol=1e-8, watch=per.Watch(stop={"GR": 1}))
     found = of.labelled(per.Label.GRAZING)[0]
-    touching = {"F": per.GrazingCondition(system.switches[0].name)}
-    return [found.parameter, curve(system, found, ("Omega", 1.01), touching)]
+    condition = {"F": per.GrazingCondition(system.switches[0].name)}
+    return [found.parameter, curve(system, found, ("Omega", 1.01), condition)]
 
 
 @pytest.mark.parametrize("found", [fold, level, peak, doubling, branching, torus, grazing])

@@ -44,7 +44,7 @@ def test_motion_is_that_of_all_states(
     assert len(ours.orbit.phases) == len(full.orbit.phases) > 0
 
 
-def test_fold_beside_a_touch() -> None:
+def test_fold_beside_grazing() -> None:
     """Assert the LP 1e-5 past the GR where a spring engages: to 1e-10, its multipliers to 1e-7.
 
     Its contact is held by the error estimate, else the orbit would be asked for to 1e-12 (890 intervals).

@@ -1,4 +1,4 @@
-"""Curves of grazing orbits in two parameters, where a stop is just touched: known in closed form."""
+"""Curves of grazing orbits in two parameters, at which a stop is just reached: known in closed form."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import periodic as per
 
 
 @pytest.mark.parametrize("stiffness", [5.0, 1e3])
-def test_force_at_which_a_stop_is_touched(stiffness: float) -> None:
+def test_force_at_which_a_stop_is_grazed(stiffness: float) -> None:
     """Assert F = gap |1 - W^2 + i c W| along the curve of GR over the frequency, to 7 digits."""
     system = stopped(stiffness)
     branch = per.trace(system, "Omega", (0.3, 0.8), watch=per.Watch(stop={"GR": 1}), tol=1e-8)
@@ -36,8 +36,8 @@ def test_switch_that_there_is_not() -> None:
         per.trace(stopped(5.0), "Omega", (0.5, 1.0), determined=condition)
 
 
-def test_doubling_that_sits_on_a_touch() -> None:
-    """Assert that a stop 1e4 times as stiff, whose touch makes the orbit unstable, has a PD at the GR."""
+def test_doubling_that_sits_on_grazing() -> None:
+    """Assert that a stop 1e4 times as stiff, whose grazing makes the orbit unstable, has a PD at the GR."""
     branch = per.trace(stopped(1e4), "Omega", (0.3, 0.8), watch=per.Watch(stop={"PD": 1}))
     graze, double = (p for p in branch.special_points if p.label is not per.Label.END)
     assert (graze.label, double.label) == ("GR", "PD") and graze.parameter == double.parameter

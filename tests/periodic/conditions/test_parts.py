@@ -12,8 +12,9 @@ from support.numpy_systems import LinearOscillator
 from support.surfaces import along
 
 import periodic as per
-from periodic.conditions import augmented, extremes
+from periodic.conditions import extremes
 from periodic.conditions.functionals import Component, apart, output_index
+from periodic.conditions.twoparameter import augmented
 from periodic.conditions.variations import weighted
 from periodic.orbit.gradients import collocation_points
 from periodic.orbit.row import Row

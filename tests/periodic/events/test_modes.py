@@ -12,7 +12,7 @@ from support.surfaces import Surfaces, along, joint
 
 from periodic.events import modes, motions
 from periodic.events.heldalong import all_along, placed, still
-from periodic.events.relaypassages import mode_at, switched
+from periodic.events.relaycrossings import mode_at, switched
 from periodic.orbit.mesh import EventNode
 from periodic.system import HELD, MINUS, PLUS, STUCK, Kind
 from periodic.system.events import Surface
@@ -284,12 +284,12 @@ def test_switches_that_pass_at_events() -> None:
     """Assert the switch and the direction of stops, releases, passages, impacts and departures."""
     system = Surfaces([WALL, joint(1, 2)], [[1.0]] * 5, directions=[-1, 1])
     wall, friction = system.surfaces
-    assert motions._passage(system, friction, happened(1, 0.0, -1, STUCK)) == (2, 1)
-    assert motions._passage(system, friction, happened(1, 0.0, STUCK, 1)) == (3, 1)
-    assert motions._passage(system, friction, happened(1, 0.0, STUCK, -1)) == (4, -1)
-    assert motions._passage(system, friction, happened(1, 0.0, 1, -1)) == (2, -1)
-    assert motions._passage(system, wall, happened(0, 0.0, 0, 0)) == (0, -1)
-    assert motions._passage(system, wall, happened(0, 0.0, STUCK, 0)) == (1, 1)
+    assert motions._crossed(system, friction, happened(1, 0.0, -1, STUCK)) == (2, 1)
+    assert motions._crossed(system, friction, happened(1, 0.0, STUCK, 1)) == (3, 1)
+    assert motions._crossed(system, friction, happened(1, 0.0, STUCK, -1)) == (4, -1)
+    assert motions._crossed(system, friction, happened(1, 0.0, 1, -1)) == (2, -1)
+    assert motions._crossed(system, wall, happened(0, 0.0, 0, 0)) == (0, -1)
+    assert motions._crossed(system, wall, happened(0, 0.0, STUCK, 0)) == (1, 1)
 
 
 def test_word_of_events() -> None:

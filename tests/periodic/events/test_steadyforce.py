@@ -9,7 +9,7 @@ import pytest
 from support.surfaces import Surfaces, along, joint
 
 from periodic.events.rewrites.ends import Excursion, ends, excursions
-from periodic.events.rewrites.onsets import at_once, begins
+from periodic.events.rewrites.grazingonsets import at_once, begins
 from periodic.events.rewrites.sites import Site, edited, in_order
 from periodic.events.rewrites.steadyforce import slipping_on
 from periodic.events.rewrites.table import ADDING_ABOUT, SWAP, SWITCHING_ABOUT, SWITCHING_SLIDING

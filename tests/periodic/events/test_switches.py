@@ -236,7 +236,7 @@ def test_change_begins_with_what_is_replaced_or_added() -> None:
 def test_sizes_of_the_table() -> None:
     """Assert the next smaller size, the least one, and how sizes fall on the way.
 
-    After a touch size^2 falls evenly: (1 - 0.25) / (2 * 1 * 0.5) of the way from 1 towards 0.5; after a
+    After grazing size^2 falls evenly: (1 - 0.25) / (2 * 1 * 0.5) of the way from 1 towards 0.5; after a
     passage the size itself does.
     """
     assert GRAZING.size_below(SHORT[0]) == SHORT[1]
@@ -270,7 +270,7 @@ def test_stop_soon_after_an_impact(later: float, gone: int | None) -> None:
         assert found[0].added[0].event == EventNode(0, 1, modes=((0, STUCK),))
 
 
-def test_impact_takes_the_place_of_friction_at_the_touch() -> None:
+def test_impact_takes_the_place_of_friction_at_grazing() -> None:
     """Assert the impact's node with the reversal, and the stop after it where friction held the mass."""
     system, _ = struck()
     at: Any = SwitchPolynomials(system, along(sine)).nearest(3, 1, 4.7)
@@ -360,9 +360,31 @@ def test_sites_of_sliders_that_slip_together_are_one() -> None:
         )
         for g, stop in ((0, STOPS), (3, EventNode(3, -1, modes=((3, STUCK),))))
     )
-    release, stop = (added.event for added in twins._both(one, other).added)
+    system = Surfaces([joint(), joint(1, 3, Kind.SLIDER)], [[0.0, 1.0]] * 6)
+    release, stop = (added.event for added in twins._both(system, one, other).added)
     assert release == EventNode(1, 1, modes=((3, 1),))
     assert stop == EventNode(0, -1, modes=((0, STUCK), (3, STUCK)))
+
+
+def test_sites_of_sliders_that_stop_at_one_turn_are_one() -> None:
+    """Assert that the modes of both stand at their release, and at the event node at which others stop."""
+    system = Surfaces([joint(), joint(1, 3, Kind.SLIDER)], [[0.0, 1.0]] * 6)
+    turn, held = EventNode(9, -1, modes=((9, STUCK),)), Length(0, 0.0)
+    one, other = (
+        Site(
+            table.LIMIT_GRAZING,
+            guard + 1,
+            0,
+            held,
+            0.0,
+            (Added(EventNode(guard + 1, 1), 1.0, -1.0),),
+            replaced=((4, EventNode(9, -1, modes=((9, STUCK), (guard, STUCK)))),),
+        )
+        for guard in (0, 3)
+    )
+    both = twins._both(system, one, other)
+    assert [added.event for added in both.added] == [EventNode(1, 1, modes=((3, 1),))]
+    assert both.replaced == ((4, EventNode(9, -1, modes=(*turn.modes, (0, STUCK), (3, STUCK)))),)
 
 
 def test_slider_that_slips_where_others_stop() -> None:

@@ -32,7 +32,7 @@ def axes() -> Axes:
 
 @kept
 def gears() -> per.Branch:
-    """The gear pair: four folds and seven touches, some close together."""
+    """The gear pair: four folds and seven grazing points, some close together."""
     return per.trace(sym.scene("gear-pair"), "Omega", (0.4, 1.2), start=1.2)
 
 
@@ -81,7 +81,7 @@ def test_legend_names_what_is_drawn(axes: Axes) -> None:
     legend = axes.get_legend()
     assert legend is not None
     names = [text.get_text() for text in legend.get_texts()]
-    assert names == ["gears", "unstable", "GR touch", "LP fold", "Duffing", "asked for"]
+    assert names == ["gears", "unstable", "GR grazing", "LP fold", "Duffing", "asked for"]
 
 
 def test_units(axes: Axes) -> None:
@@ -125,7 +125,7 @@ def test_column_in_the_place_of_a_peak_to_peak(axes: Axes) -> None:
 
 
 def test_orbit(axes: Axes) -> None:
-    """Assert a signal over its period, with a line where the gears touch."""
+    """Assert a signal over its period, with a line where the gears come into contact."""
     point = gears()[len(gears()) // 2]
     assert per.plots.orbit(point, axes=axes) is axes
     x, y = np.asarray(axes.get_lines()[0].get_xydata()).T

@@ -11,7 +11,7 @@ from support.numpy_systems import Array
 from periodic.stability.graded import spectrum_of
 from periodic.stability.multipliers import Pair, Spectrum, nearest
 from periodic.stability.product import multipliers
-from periodic.stability.winding import meetings
+from periodic.stability.winding import collisions
 
 
 @pytest.mark.parametrize("growth", [-0.6, 0.0, 0.4])
@@ -41,10 +41,10 @@ def turning(first: float, second: float, mixed: float = 0.0) -> Spectrum:
 def test_pairs_that_pass_each_other_meet(way: int) -> None:
     """Assert where two coupled pairs meet on the circle, where 0.5 + 0.4 s = 0.8 - 0.1 s; else nothing."""
     before, after = turning(0.5, 2 * np.pi + 0.8), turning(0.9, 2 * np.pi + 0.7, mixed=0.2)
-    (meeting,) = meetings(*(before, after)[::way])
+    (meeting,) = collisions(*(before, after)[::way])
     assert meeting.place == pytest.approx(0.6 if way > 0 else 0.4, abs=1e-9)
     assert meeting.growth == pytest.approx(0.0, abs=1e-12)
-    assert meetings(before, turning(0.55, 2 * np.pi + 0.85, mixed=0.2)) == []
+    assert collisions(before, turning(0.55, 2 * np.pi + 0.85, mixed=0.2)) == []
 
 
 def test_each_of_many_pairs_leads_where_it_does_alone() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from periodic.stability import graded, multipliers, product, shares, winding
 from periodic.stability.multipliers import Pair, Spectrum, apart, nearest, without_trivial
-from periodic.stability.winding import Motion, WindingLimits, meetings, pair_crossings, rotated
+from periodic.stability.winding import Motion, WindingLimits, collisions, pair_crossings, rotated
 
 
 def pair(argument: float, rotated: float = 0.0, modulus: float = 1.0, place: int = 0) -> Pair:
@@ -263,10 +263,10 @@ def test_pairs_that_meet_half_way() -> None:
     mixed = spectrum((1.1 + math.tau, 0.98), (1.05, 0.9))
     basis = np.linalg.qr(np.eye(4) + 0.4 * np.random.default_rng(1).standard_normal((4, 4)))[0]
     other = Spectrum(basis @ mixed.fundamental @ basis.T)
-    (one,), (back,) = meetings(first, other), meetings(other, first)
+    (one,), (back,) = collisions(first, other), collisions(other, first)
     assert (one.place, one.growth) == (pytest.approx(0.5), pytest.approx(np.log(0.98)))
     assert (back.place, back.growth) == (pytest.approx(0.5), pytest.approx(np.log(0.98)))
-    assert meetings(first, mixed) == []
+    assert collisions(first, mixed) == []
     assert winding._growth(pair(0.0, modulus=0.5), pair(0.0, modulus=2.0), 0.25) == pytest.approx(
         -0.5 * np.log(2)
     )

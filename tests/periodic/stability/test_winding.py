@@ -10,7 +10,7 @@ import pytest
 
 from periodic.condensed.floquet import LeadingSpectrum
 from periodic.stability.multipliers import Spectrum
-from periodic.stability.winding import meetings
+from periodic.stability.winding import collisions
 
 TURN = 2 * np.pi
 
@@ -33,13 +33,13 @@ def test_meetings_do_not_depend_on_the_basis() -> None:
     """Assert those of two spectra to 10 digits where each is written in a basis of its own."""
     first = turning((0.99, 1.0 + TURN), (0.85, 1.05), mixed=0.1)
     last = turning((0.99, 1.1 + TURN), (0.85, 1.06), mixed=0.15)
-    plain = meetings(Spectrum(first), Spectrum(last))
+    plain = collisions(Spectrum(first), Spectrum(last))
     bases = [np.linalg.qr(np.random.default_rng(k).standard_normal((4, 4)))[0] for k in (1, 2)]
     kept = [
         LeadingSpectrum(b.T @ m @ b, 0, cast(Any, SimpleNamespace(basis=b, states=b[None])))
         for b, m in zip(bases, (first, last), strict=True)
     ]
-    found = [(one.place, one.growth) for one in meetings(*kept)]
+    found = [(one.place, one.growth) for one in collisions(*kept)]
     assert len(plain) > 0
     assert found == [pytest.approx((one.place, one.growth), rel=1e-10) for one in plain]
 
@@ -53,4 +53,4 @@ def test_subspaces_of_other_sizes_are_compared() -> None:
         basis = np.eye(size)[:, : matrix.shape[1]]
         leading = cast(Any, SimpleNamespace(basis=basis, states=basis[None]))
         ends.append(LeadingSpectrum(matrix, 0, leading))
-    assert len(meetings(*ends)) > 0
+    assert len(collisions(*ends)) > 0

@@ -138,11 +138,11 @@ def test_few_impacts() -> None:
     """
     beam = Beam(2, 0.9, light=True)
     branch = beam.traced(3.497, 3.5, 3.4975, tol=1e-8)
-    (touch,) = branch.labelled(Label.GRAZING)
-    assert touch.parameter == pytest.approx(3.4982075, abs=1e-7)
+    (grazing,) = branch.labelled(Label.GRAZING)
+    assert grazing.parameter == pytest.approx(3.4982075, abs=1e-7)
     assert {len(point.orbit.phases) for point in branch} == {2, 3}
     for point in branch:
-        if distance := abs(point.parameter - touch.parameter):
+        if distance := abs(point.parameter - grazing.parameter):
             known = 1e-13 * abs(point.multipliers[0]) / distance
             beam.check(point, orbit=1e-10, multipliers=max(1e-9, known))
 
@@ -157,8 +157,8 @@ def test_beside_a_joint() -> None:
 
 
 @pytest.mark.parametrize("bounds", [(3.3, 3.352), (3.68, 3.75)])
-def test_touch(bounds: tuple[float, float]) -> None:
-    """Assert that a branch from either end touches the stop where the linear response is the gap."""
+def test_grazing(bounds: tuple[float, float]) -> None:
+    """Assert that a branch from either end grazes the stop where the linear response is the gap."""
     beam, low = Beam(2, 0.6), bounds[0] < 3.5
     start, first = bounds[0] if low else bounds[1], per.Watch(stop={"GR": 1})
     branch = per.trace(beam.system, "Omega", bounds, start=start, watch=first)
@@ -169,8 +169,8 @@ def test_touch(bounds: tuple[float, float]) -> None:
         dynamic = stiffness + 1j * omega * damping - omega**2 * mass
         return float(abs(FORCE * np.linalg.inv(dynamic)[tip, tip]) - GAP)
 
-    touch = scipy.optimize.brentq(past, *((3.3, 3.5) if low else (3.6, 3.8)), xtol=1e-14)
-    assert branch.labelled(Label.GRAZING)[0].parameter == pytest.approx(touch, rel=1e-9)
+    grazing = scipy.optimize.brentq(past, *((3.3, 3.5) if low else (3.6, 3.8)), xtol=1e-14)
+    assert branch.labelled(Label.GRAZING)[0].parameter == pytest.approx(grazing, rel=1e-9)
 
 
 @pytest.mark.long
@@ -179,8 +179,8 @@ def test_through_chatter() -> None:
     beam = Beam(2, 0.6)
     branch = per.trace(beam.system, "Omega", (3.3, 3.45))
     assert branch.stop.reason is per.Reason.BOUND
-    touches = [point.parameter for point in branch.labelled(Label.GRAZING)]
-    gaps = np.diff(touches)[3:]
+    grazings = [point.parameter for point in branch.labelled(Label.GRAZING)]
+    gaps = np.diff(grazings)[3:]
     assert gaps[1:] / gaps[:-1] == pytest.approx(0.6, abs=0.05)
     last = branch[-1]
     assert (0, 2) in {pair for event in last.orbit.mesh.events for pair in event.modes}

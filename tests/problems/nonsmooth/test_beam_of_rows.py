@@ -65,7 +65,7 @@ def test_one_place_is_found() -> None:
     assert str(sym.structure_of(system())) == "12 states, 11 linear, 1 place"
 
 
-def test_motion_past_the_touch() -> None:
+def test_motion_past_grazing() -> None:
     """Assert tip and multipliers at two places to what is claimed; the contact's force alone has unknowns."""
     branch = per.trace(system(), "W", (3.37, 3.4), start=3.37, at=PLACES)
     assert branch.stop.reason is per.Reason.BOUND and branch.shortfall == ""
@@ -81,7 +81,7 @@ def test_motion_past_the_touch() -> None:
 
 
 def test_free_flight_only_shows_the_motion() -> None:
-    """Assert multipliers beside a fold that lies beside a touch, where rounding moves the contact.
+    """Assert multipliers beside a fold that lies beside grazing, where rounding moves the contact.
 
     Out of contact the motion is exact, and no finer mesh betters them. What is claimed is the error of sums
     of their powers: two of them, .04 from each other, are each off by more. Rounding decides how far

@@ -70,7 +70,7 @@ def test_orbits() -> None:
 
 
 def test_special_points() -> None:
-    """Assert that the branch touches, folds twice in contact and parts, in this order."""
+    """Assert that the branch grazes, folds twice in contact and parts, in this order."""
     labels = [point.label for point in branch().special_points if point.label is not per.Label.USER]
     assert [str(label) for label in labels] == ["EP", "GR", "LP", "LP", "GR", "EP"]
 

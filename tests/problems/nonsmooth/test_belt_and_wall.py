@@ -44,15 +44,15 @@ def branch(request: pytest.FixtureRequest) -> per.Branch:
 
 
 def test_whole_range(branch: per.Branch) -> None:
-    """Assert that it gets through, and where it folds, touches and passes corners, alike from both ends.
+    """Assert that it gets through, and where it folds, grazes and passes corners, alike from both ends.
 
     To 1e-8. The corners are the third and the fourth GR.
     """
     assert branch.stop.reason is per.Reason.BOUND
     assert not branch.unaccounted
-    touches = sorted(p.parameter for p in branch.labelled(per.Label.GRAZING))
+    grazings = sorted(p.parameter for p in branch.labelled(per.Label.GRAZING))
     expected = [0.605005828, 0.685163692, 0.997374247, 1.212027277, 1.370055530, 1.652876641]
-    assert touches == pytest.approx(expected, abs=1e-8)
+    assert grazings == pytest.approx(expected, abs=1e-8)
     folds = sorted(p.parameter for p in branch.labelled(per.Label.FOLD))
     assert folds == pytest.approx([1.212027277, 1.382358578], abs=1e-8)
 
@@ -85,9 +85,9 @@ def test_before_and_after(machine: BeltWall, bounds: tuple[float, float], words:
 
 
 def judged(branch: per.Branch, machine: BeltWall) -> int:
-    """Assert orbits against the closed form, but those at a corner or a touch; return how many."""
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
-    points = [point for point in branch[::4] if point.parameter not in touched]
+    """Assert orbits against the closed form, but those at a corner or grazing; return how many."""
+    grazings = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    points = [point for point in branch[::4] if point.parameter not in grazings]
     for point in points:
         begin, state = away(point, machine)
         end, matrix, _ = machine.after(begin, state, point.parameter)

@@ -1,6 +1,6 @@
 """Impacts where inertia couples the coordinates: what a branch claims of its multipliers, point by point.
 
-Two coordinates with a full mass matrix, one before a rigid wall. Beside a touch a multiplier of 5000
+Two coordinates with a full mass matrix, one before a rigid wall. Beside grazing a multiplier of 5000
 goes with the inverse of the impact's speed: rounding of the model's matrices alone would be 1e-4 in it,
 as is that of an orbit followed in doubles. So these are such that M^-1 K, M^-1 C and M^-1 e have none.
 """
@@ -27,7 +27,7 @@ DAMPING = STIFFNESS / 32
 
 @kept
 def branch() -> per.Branch:
-    """From beyond the resonance down to the touch, and with one to three impacts, beside two more touches."""
+    """From beyond the resonance down to grazing, and with one to three impacts, beside two more grazings."""
     structure = sym.Structure(MASS, DAMPING, STIFFNESS, at={"a": 0, "b": 1})
     struck = structure["b"]
     model = structure + sym.RigidStop(struck, GAP, RESTITUTION) + sym.HarmonicForce(struck, 1.0, 1.0)
@@ -56,18 +56,18 @@ def apart(one: ArrayLike, two: ArrayLike) -> float:
 
 
 def beyond_doubt() -> list[per.Point]:
-    """Points with impacts, but at touches, where multipliers have two values, and at folds.
+    """Points with impacts, but at grazing points, where multipliers have two values, and at folds.
 
     Beside a fold they are those of the orbit of the same parameter: 2e-7 from one that is 40 times as much as
     they are off on the branch itself.
     """
-    touches = {point.parameter for point in branch().labelled(Label.GRAZING)}
+    grazings = {point.parameter for point in branch().labelled(Label.GRAZING)}
     folds = {point.parameter for point in branch().labelled(Label.FOLD)}
-    return [p for p in branch() if len(p.orbit.phases) and p.parameter not in touches | folds]
+    return [p for p in branch() if len(p.orbit.phases) and p.parameter not in grazings | folds]
 
 
 def test_multipliers_are_off_by_what_is_claimed() -> None:
-    """Assert orbits and multipliers of all points, beside touches too: errors are told to a fifth."""
+    """Assert orbits and multipliers of all points, beside grazing too: errors are told to a fifth."""
     points = beyond_doubt()
     assert len(points) > 20
     assert max(np.abs(point.multipliers).max() for point in points) > 4000
@@ -76,8 +76,8 @@ def test_multipliers_are_off_by_what_is_claimed() -> None:
         assert apart(point.multipliers, found.multipliers) < max(1.2 * point.error.multiplier, 1e-9)
 
 
-def test_touches_and_patterns() -> None:
-    """Assert that there are up to three impacts; the first touch is that of the linear orbit, |b| = gap."""
+def test_grazing_and_patterns() -> None:
+    """Assert that there are up to three impacts; the first grazing is that of the linear orbit, |b| = gap."""
     assert {len(point.orbit.phases) for point in branch()} == {0, 1, 2, 3}
     first = branch().labelled(Label.GRAZING)[0].parameter
     dynamic = STIFFNESS + 1j * first * DAMPING - first**2 * MASS

@@ -28,13 +28,13 @@ def branch(request: pytest.FixtureRequest) -> per.Branch:
 
 
 def test_whole_range(branch: per.Branch) -> None:
-    """Assert that it gets through, and where it folds and touches, alike from both ends to 1e-8."""
+    """Assert that it gets through, and where it folds and grazes, alike from both ends to 1e-8."""
     assert branch.stop.reason is per.Reason.BOUND
     assert sorted(p.parameter for p in branch.labelled(per.Label.FOLD)) == pytest.approx(
         [0.736520968, 0.740141755, 1.594574433, 1.770295407], abs=1e-8
     )
-    touches = sorted({round(p.parameter, 9) for p in branch.labelled(per.Label.GRAZING)})
-    assert touches == pytest.approx([0.736520968, 0.988952011, 1.594574433], abs=1e-8)
+    grazings = sorted({round(p.parameter, 9) for p in branch.labelled(per.Label.GRAZING)})
+    assert grazings == pytest.approx([0.736520968, 0.988952011, 1.594574433], abs=1e-8)
 
 
 def test_orbits_close(branch: per.Branch) -> None:

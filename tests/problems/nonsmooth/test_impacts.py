@@ -84,7 +84,7 @@ def test_fold_and_grazing() -> None:
 
 @pytest.mark.parametrize("tol", [1e-6, 1e-9])
 def test_branch_without_impact_gains_one(tol: float) -> None:
-    """Assert that linear orbits are followed to the touch, and from there those with an impact."""
+    """Assert that linear orbits are followed to grazing, and from there those with an impact."""
     found = per.trace(bouncing(), "A", (0.01, 1.0), tol=tol)
     (graze,) = found.labelled(per.Label.GRAZING)
     np.testing.assert_allclose(graze.parameter, C * D, rtol=1e-8)
@@ -93,7 +93,7 @@ def test_branch_without_impact_gains_one(tol: float) -> None:
 
 
 def test_errors_beside_a_fold() -> None:
-    """Assert multipliers of up to 50 to what is claimed, between the touch and the fold just beside it.
+    """Assert multipliers of up to 50 to what is claimed, between grazing and the fold just beside it.
 
     They are those of the orbit of the same A, though the range of A is far wider than the fold is away.
     """

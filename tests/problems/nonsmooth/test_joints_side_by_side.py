@@ -145,10 +145,10 @@ def test_a_slip_begins_shortly_after_a_stop_at_both_places_of_a_symmetric_orbit(
 
 
 @pytest.mark.long
-def test_a_slip_that_begins_slowly_touches_nothing() -> None:
+def test_a_slip_that_begins_slowly_grazes_nothing() -> None:
     """Assert a step from an orbit whose slips begin slowly, where rounding makes an extremum beside them.
 
-    Before, the branch ended where it began: the extremum was taken for a touch.
+    Before, the branch ended where it began: the extremum was taken for grazing.
     """
     case, few = drawn("joints down", 162), per.ArclengthControl(max_points=4)
     branch = per.trace(case.system, "Omega", (4.0, case.start), start=case.start, tol=TOL, control=few)

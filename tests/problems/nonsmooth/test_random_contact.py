@@ -63,21 +63,21 @@ def test_some(kind: str, seed: int) -> None:
 
 
 SHORT_STOPS = [(4, 0.7730, 0.7690, 1), (4, 0.77166, 0.7700, 0), (106, 0.6830, 0.6815, 1), (133, 0.7, 0.6, 0)]
-"""Seeds, stretches of the branch in which a stop begins or ends, and how often one touches there (GR)."""
+"""Seeds, stretches of the branch in which a stop begins or ends, and how often one grazes there (GR)."""
 
 
 @pytest.mark.drawn
-@pytest.mark.parametrize(("seed", "begin", "end", "touches"), SHORT_STOPS)
-def test_stops_however_short(seed: int, begin: float, end: float, touches: int) -> None:
+@pytest.mark.parametrize(("seed", "begin", "end", "grazings"), SHORT_STOPS)
+def test_stops_however_short(seed: int, begin: float, end: float, grazings: int) -> None:
     """Assert multipliers where sliding just stops: they jump there, and no stop is too short to be seen.
 
-    At a touch itself they have two values.
+    At grazing itself they have two values.
     """
     case = drawn("friction", seed)
     bounds = (min(begin, end), max(begin, end))
     branch = per.trace(case.system, "Omega", bounds, start=begin, tol=TOL, control=FEW.control)
     assert branch.stop.reason is Reason.BOUND
-    assert len(branch.labelled(per.Label.GRAZING)) == touches
+    assert len(branch.labelled(per.Label.GRAZING)) == grazings
     for point in branch:
         if point.label is not per.Label.GRAZING:
             assert judged(case.exact, point, case.names).wrong(point, TOL) == ""
@@ -85,7 +85,7 @@ def test_stops_however_short(seed: int, begin: float, end: float, touches: int) 
 
 @pytest.mark.long
 def test_goes_on_without_a_contact() -> None:
-    """Assert that a branch goes on where a contact has ended, not back with it: it touches there yet."""
+    """Assert that a branch goes on where a contact has ended, not back with it: it grazes there yet."""
     branch = traced(drawn("chains", 123))
     values = [point.parameter for point in branch]
     end = next(k for k, value in enumerate(values) if abs(value - 1.0820931653) < 1e-9)
@@ -94,7 +94,7 @@ def test_goes_on_without_a_contact() -> None:
 
 
 @pytest.mark.long
-def test_folds_beside_a_touch() -> None:
+def test_folds_beside_grazing() -> None:
     """Assert both folds where the branch turns back at a first impact and on again 5e-5 beyond it."""
     case = drawn("impacts", 132)
     branch = per.trace(case.system, "Omega", (0.75, 0.7556), start=0.75, tol=TOL, control=FEW.control)
@@ -107,7 +107,7 @@ def test_folds_beside_a_touch() -> None:
 def test_impact_and_end_of_a_contact_swap() -> None:
     """Assert that a branch goes on where an impact comes to lie before the end of a contact, not after it.
 
-    Before that another contact is touched a short way after one that is deeper (impacts 104, Omega 0.536).
+    Before that another contact is grazed a short way after one that is deeper (impacts 104, Omega 0.536).
     """
     case = drawn("impacts", 104)
     control = per.ArclengthControl(max_points=90)
@@ -135,10 +135,10 @@ def test_impacts_that_follow_each_other(seed: int, reason: Reason | None) -> Non
 
 @pytest.mark.drawn
 def test_last_digits_of_the_parameter() -> None:
-    """Assert that errors tell what the parameter's last digits are to multipliers beside a touch, 2e-7."""
+    """Assert that errors tell what the parameter's last digits are to multipliers beside grazing, 2e-7."""
     case = drawn("clearances", 130)
-    touched = 1.715949071
-    beside = [point for point in traced(case) if 1e-10 < point.parameter - touched < 1e-7]
+    grazed = 1.715949071
+    beside = [point for point in traced(case) if 1e-10 < point.parameter - grazed < 1e-7]
     assert beside
     for point in beside:
         assert judged(case.exact, point, case.names).multipliers < max(1e-8, 3 * point.error.by_orbit)
@@ -170,7 +170,7 @@ def test_contact_ends_beside_a_fold() -> None:
 def test_contact_that_is_brief_already(ends_below: float | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Assert that it ends where a step has gone past where contacts do, and no false label on the way.
 
-    Also where the touch that is foreseen within it, which is its end, is not known to be that.
+    Also where the grazing that is foreseen within it, which is its end, is not known to be that.
     """
     case = drawn("chains", 1019)
     monkeypatch.setattr(taken, "special_points", _never_final)
@@ -205,7 +205,7 @@ def _never_final(*given: Any) -> list[Found]:
 
 
 @pytest.mark.long
-def test_rounding_beside_a_touch() -> None:
+def test_rounding_beside_grazing() -> None:
     """Assert orbits to 1e-14 and multipliers from a contact of 1e-4 rad on, to what is claimed, at k = 2e4.
 
     Rounding of 1e-13 in the states was 1.6e-5 in the multipliers.

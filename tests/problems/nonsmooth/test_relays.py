@@ -111,7 +111,7 @@ def test_thermostat_folds_and_grazes() -> None:
 
 
 def test_relay_that_does_not_switch() -> None:
-    """Assert that an orbit below the threshold ends where it touches it, the amplitude to 1e-9."""
+    """Assert that an orbit below the threshold ends where it grazes it, the amplitude to 1e-9."""
     system, gain = thermostat(), np.hypot(1.0, TAU)
     branch = per.trace(system, "A", (1.0, 20.0), start=2.0, values={"h": 0.0}, tol=1e-9)
     (last,) = branch.labelled(per.Label.GRAZING)

@@ -38,7 +38,7 @@ SURVEYED = {
     "detail$": 1e-5,  # as many digits as it has
 }
 WHOLE = {"damping": SURVEYED, "grazing": {"multiplier_error$": TIME} | SURVEYED}
-"""Quick studies, computed whole; at a touch multipliers have two values, so that their error is none."""
+"""Quick studies, computed whole; at grazing multipliers have two values, so that their error is none."""
 
 
 @pytest.mark.parametrize("name", WHOLE)
@@ -225,7 +225,7 @@ def test_period_of_van_der_pol() -> None:
 
 @pytest.mark.parametrize("stiffness", [1.0, 1e3])
 def test_orbits_at_a_stop_in_closed_form(stiffness: float) -> None:
-    """Assert orbit and multipliers of the study's closed form against that of the tests, past the touch."""
+    """Assert orbit and multipliers of the study's closed form against that of the tests, past grazing."""
     phase, guess = 2.0, np.array([0.0, 0.7])
     state, monodromy = piecewise.orbit(stiffness, 0.72, phase, guess)
     exact = periodic(exactly(stiffness), 0.72, state, phase=phase)

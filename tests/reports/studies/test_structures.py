@@ -79,7 +79,7 @@ def test_peer_is_fresh() -> None:
 
 
 def test_stop_is_fresh() -> None:
-    """Assert touches and folds of the stop, 20 degrees of freedom, to 1e-6, and the truths that are kept."""
+    """Assert grazing and folds of the stop, 20 degrees of freedom, to 1e-6, and the truths that are kept."""
     kept = REPORT.kept(FOLDER)["modes"]
     first = next(row for row in kept.rows if row["name"] == "stop")
     found = modes.row("stop", modes.CASES["stop"].elements[0])["special"]

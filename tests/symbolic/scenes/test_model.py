@@ -500,10 +500,11 @@ def test_parameter_as_number_or_table(tmp_path: Path, given: str, value: float, 
     [
         ('{kind = "Fourier", cosines = [0.1]}', 'is "Fourier"; it must be {}; nearest is "FourierSeries"'),
         ("{kind = 3, cosines = [0.1]}", "is 3; it must be {}; there is FourierSeries, Harmonic and Samples"),
+        ("{cosines = [0.1]}", "is missing; it must be {}"),
     ],
 )
 def test_kind_of_a_table_in_a_part(tmp_path: Path, variation: str, said: str) -> None:
-    """Assert that a kind that is none is refused with those there are."""
+    """Assert that a kind that is none, or is missing, is refused with those there are."""
     given = 'variation = {kind = "FourierSeries", cosines = [0.1, 0.0, 0.05], sines = [0.2]}'
     found = sentence(tmp_path, TEXT.replace(given, f"variation = {variation}"))
     among = said.format("FourierSeries, Harmonic or Samples")

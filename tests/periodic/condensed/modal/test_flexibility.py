@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from periodic.condensed.modal.flexibility import Flexibility
-from periodic.condensed.modal.modalreduction import Modes
+from periodic.condensed.modal.quasistatic import Modes
 from periodic.condensed.modal.response import Response
 from periodic.orbit.mesh import Mesh
 from periodic.orbit.scheme import Family, Scheme

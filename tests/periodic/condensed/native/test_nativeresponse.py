@@ -11,7 +11,7 @@ from support.cantilevers import cantilever, cubic
 import periodic as per
 from periodic.condensed.linearised import answer
 from periodic.condensed.modal.flexibility import Flexibility
-from periodic.condensed.modal.modalreduction import Modes
+from periodic.condensed.modal.quasistatic import Modes
 from periodic.condensed.modal.response import Response
 from periodic.condensed.modal.slopes import slopes, slopes_within
 from periodic.condensed.native.nativeresponse import MANY, NativeResponse, response_of

@@ -218,7 +218,7 @@ def test_longest_slip_of_a_joint(events: tuple[EventNode, ...], length: float) -
 
 @pytest.mark.parametrize("soon", [True, False])
 def test_end_of_an_impact_that_reverses_friction(soon: bool) -> None:
-    """Assert that friction passes its level at the touch, or stops there where it stopped soon after."""
+    """Assert that friction passes its level at grazing, or stops there where it stopped soon after."""
     impact = EventNode(WALL, -1, modes=((FRICTION, 1),))
     nodes = [(impact, 1.0), (stop(FRICTION, -1), 1.2 if soon else 1.4), (EventNode(1, 1), 3.0)]
     orbit = along(lambda tau: np.column_stack([np.sin(tau), np.cos(tau)]), nodes, intervals=12)

@@ -262,7 +262,7 @@ def test_turn_of_a_strain_that_friction_holds(since: float, kind: Kind, found: i
 def test_when_an_excursion_is_near_its_end(
     row: table.Row, sizes: tuple[float, float], ends: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Assert that after a touch half of the size must be left, else less than the next of the sizes."""
+    """Assert that after grazing half of the size must be left, else less than the next of the sizes."""
     site = SimpleNamespace(row=row, switch=0)
     monkeypatch.setattr(first, "ends", lambda *_: [site])
     monkeypatch.setattr(first, "_name", lambda *_: "")
@@ -283,7 +283,7 @@ def test_when_an_excursion_is_near_its_end(
 )
 def test_part_of_the_way_to_a_size(power: float, part: float) -> None:
     """Assert it from 4 to 0 at 2: half if the size is linear, 12/32 of twice that way if its square is."""
-    row = table.Row(name="", touches=True, power=power, sizes=(2.0, 1.0))
+    row = table.Row(name="", grazes=True, power=power, sizes=(2.0, 1.0))
     if part == 1.0:
         assert row.part(4.0, 3.0, 1.0) == 1.0
         return

@@ -1,4 +1,4 @@
-"""Events and limits that a branch touches within one step."""
+"""Events and limits that a branch grazes within one step."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_both_passages_in_a_first_step(start: float, level: float) -> None:
 
 
 @pytest.mark.parametrize(("start", "depth"), [(0.9998, 1e-5), (0.998, 1e-3), (0.9, 1e-4)])
-def test_limit_that_is_touched(start: float, depth: float) -> None:
+def test_limit_that_is_grazed(start: float, depth: float) -> None:
     """Assert that orbits of one height end where their force is at its limit, just above the least force.
 
     With the amplitude A the force of a linear oscillator is A ((1 - Omega^2)^2 + (c Omega)^2)^(1/2).

@@ -181,7 +181,7 @@ def test_values_with_a_point(begin: float, values: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("touches", "distance", "wanted", "ds", "least"),
+    ("grazes", "distance", "wanted", "ds", "least"),
     [
         (False, 0.001, 0.05, 0.05, 1e-7),
         (False, 0.1, 0.05, 0.1, 1e-7),
@@ -190,16 +190,16 @@ def test_values_with_a_point(begin: float, values: Any) -> None:
     ],
 )
 def test_step_beyond_a_change(
-    touches: bool, distance: float, wanted: float, ds: float, least: float, monkeypatch: pytest.MonkeyPatch
+    grazes: bool, distance: float, wanted: float, ds: float, least: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Assert its length and the least one: as long as before, the first one again after a touch."""
+    """Assert its length and the least one: as long as before, the first one again after grazing."""
     from periodic.tracing import continuation
 
-    found = SimpleNamespace(touches=touches, distance=distance, solution=SimpleNamespace(name="beyond"))
+    found = SimpleNamespace(grazes=grazes, distance=distance, solution=SimpleNamespace(name="beyond"))
     monkeypatch.setattr(continuation, "crossed", lambda *_: found)
     monkeypatch.setattr(continuation, "at_once", lambda *_: [])
     monkeypatch.setattr(continuation, "replace", lambda state, **changed: changed)
-    change = SimpleNamespace(touches=False, final=False, last=False, strict=False)
+    change = SimpleNamespace(grazes=False, final=False, last=False, strict=False, nearer=False)
     own: Any = SimpleNamespace(
         state=object(), solver=None, control=ArclengthControl(), collected=["point"], _emitted=lambda *_: None
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from periodic.condensed.modal.modalreduction import SHARE, Modes, reduced, reduced_slope, retained_modes
+from periodic.condensed.modal.quasistatic import SHARE, Modes, reduced, reduced_slope, retained_modes
 
 
 def along(step: float) -> Modes:

@@ -1,4 +1,4 @@
-"""Words that differ without a touch, and steps over such changes."""
+"""Words that differ without grazing, and steps over such changes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 import periodic as per
 import symbolic as sym
 from periodic.events.rewrites.sites import Node
-from periodic.events.rewrites.untouched import untouched
+from periodic.events.rewrites.withoutgrazing import without_grazing
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import FORCED
 from periodic.system import STUCK, Kind
@@ -60,29 +60,29 @@ SHAKEN = (1.0, 1, -1), (2.0, -1, 1), (2.5, 1, -1), (4.0, -1, 1)
         (STICKING, STICKING, True),
     ],
 )
-def test_what_begins_without_a_touch(
+def test_what_begins_without_grazing(
     rubbing: sym.CompiledSystem,
     one: tuple[tuple[float, int, int], ...],
     other: tuple[tuple[float, int, int], ...],
     free: bool,
 ) -> None:
-    """Assert that rows of the table that touch a level are told from those that do not, both ways round."""
+    """Assert that rows of the table that graze a level are told from those that do not, both ways round."""
     words = [_word(rubbing, *changes) for changes in (one, other)]
-    assert untouched(rubbing, *words, FORCED) is free
-    assert untouched(rubbing, *words[::-1], FORCED) is free
+    assert without_grazing(rubbing, *words, FORCED) is free
+    assert without_grazing(rubbing, *words[::-1], FORCED) is free
 
 
-def test_a_stick_elsewhere_is_a_touch(rubbing: sym.CompiledSystem) -> None:
+def test_a_stick_elsewhere_is_grazing(rubbing: sym.CompiledSystem) -> None:
     """Assert that a stick inside a slip is the same one only where its phases overlap."""
     moved = (0.5, 1, STUCK), (0.8, STUCK, 1), (1.0, 1, -1), (4.0, -1, 1)
     gone = (5.0, 1, STUCK), (5.5, STUCK, 1), (1.0, 1, -1), (4.0, -1, 1)
     words = [_word(rubbing, *changes) for changes in (PAUSING, moved, sorted(gone))]
-    assert untouched(rubbing, words[0], words[1], FORCED)
-    assert not untouched(rubbing, words[0], words[2], FORCED)
+    assert without_grazing(rubbing, words[0], words[1], FORCED)
+    assert not without_grazing(rubbing, words[0], words[2], FORCED)
 
 
 def test_steps_over_sticks_that_begin(rubbing: sym.CompiledSystem) -> None:
-    """Assert that steps over changes without a touch lead to the points that stopping at each leads to."""
+    """Assert that steps over changes without grazing lead to the points that stopping at each leads to."""
     bounds, at = (0.5, 0.62), (0.6,)
     branch = per.trace(rubbing, "Omega", bounds, start=0.62, tol=1e-6, at=at)
     with pytest.MonkeyPatch.context() as patched:

@@ -24,7 +24,7 @@ The contact's force, where d = x - g > 0, is k d (1 + e sign v) + c v + F.
 """
 
 
-def touch() -> float:
+def grazed() -> float:
     """Omega at which x'' + .05 x' + x = .4 cos Omega t, above its resonance, has the amplitude g."""
     square = np.roots([1.0, DAMPING**2 - 2, 1 - (FORCE / GAP) ** 2])
     return float(np.sqrt(square.real.max()))
@@ -108,12 +108,12 @@ BOUNDS = pytest.mark.parametrize("bounds", [(1.8, 1.45), (1.45, 1.8)], ids=["dow
 
 @BOUNDS
 @pytest.mark.parametrize("law", LAWS)
-def test_touch_of_a_jump_is_located(law: str, bounds: tuple[float, float]) -> None:
-    """Assert that the branch passes the touch to its bound, and has it as GR where it is in closed form."""
+def test_grazing_of_a_jump_is_located(law: str, bounds: tuple[float, float]) -> None:
+    """Assert that the branch passes grazing to its bound, and has it as GR where it is in closed form."""
     _, branch = traced(law, bounds)
     assert branch.stop.reason is per.Reason.BOUND
     (grazing,) = branch.labelled(per.Label.GRAZING)
-    assert grazing.parameter == pytest.approx(touch(), abs=1e-7)
+    assert grazing.parameter == pytest.approx(grazed(), abs=1e-7)
 
 
 @BOUNDS
@@ -121,7 +121,7 @@ def test_touch_of_a_jump_is_located(law: str, bounds: tuple[float, float]) -> No
 def test_every_contact_that_jumps_is_followed(law: str, bounds: tuple[float, float]) -> None:
     """Assert orbits and multipliers against event-exact shooting, and that no contact is left out."""
     depth, branch = traced(law, bounds)
-    beside = [point for point in branch if abs(point.parameter - touch()) < BESIDE / 1000]
+    beside = [point for point in branch if abs(point.parameter - grazed()) < BESIDE / 1000]
     assert len(beside) > 1
     for point in {id(point): point for point in (*beside, *branch[::3])}.values():
         begin = within(depth, point)
@@ -160,11 +160,11 @@ def test_force_that_vanishes_in_flight() -> None:
 
 @pytest.mark.parametrize("tol", [1e-4, 1e-8])
 @BOUNDS
-def test_both_sides_are_touched_at_once(bounds: tuple[float, float], tol: float) -> None:
-    """Assert touches of a spring that jumps on both sides: a fold above the resonance, a branch point below.
+def test_both_sides_are_grazed_at_once(bounds: tuple[float, float], tol: float) -> None:
+    """Assert grazing of a spring that jumps on both sides: a fold above the resonance, a branch point below.
 
     Beyond the latter an odd number of multipliers is outside the circle while the branch goes on: orbits that
-    touch one side alone leave there.
+    graze one side alone leave there.
     """
     f = sym.functions
 

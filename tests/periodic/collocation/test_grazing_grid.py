@@ -25,7 +25,7 @@ RESOLVED = 4e-13
 
 @pytest.mark.parametrize(("stiffness", "tol", "way"), spread(SHORT, 4))
 def test_every_point_is_right(stiffness: float, tol: float, way: tuple[float, float]) -> None:
-    """Assert that a branch comes to its bound through the touch, on small meshes, and what it claims."""
+    """Assert that a branch comes to its bound through grazing, on small meshes, and what it claims."""
     confirmed(stiffness, tol, way)
 
 
@@ -37,16 +37,16 @@ def test_every_point_of_the_grid_is_right(stiffness: float, tol: float, way: tup
 
 
 def confirmed(stiffness: float, tol: float, way: tuple[float, float]) -> None:
-    """Assert that a branch passes the touch and that its points are as accurate as they claim."""
+    """Assert that a branch passes grazing and that its points are as accurate as they claim."""
     branch, system = per.trace(stopped(stiffness), "Omega", way, tol=tol), exactly(stiffness)
     assert branch.stop.reason is per.Reason.BOUND
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
-    assert len(touched) == 1
+    grazings = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    assert len(grazings) == 1
     for point in branch:
         found = judged(system, point)
         assert point.orbit.mesh.ntst <= 200
         assert found.orbit < max(tol, 3 * point.error.orbit) * point.orbit.span()
-        if point.parameter not in touched:  # there multipliers have two values
+        if point.parameter not in grazings:  # there multipliers have two values
             assert found.wrong < 1e-13
             assert found.multiplier < max(tol, 3 * point.error.multiplier)
             assert found.multiplier < 10 * max(point.error.multiplier, RESOLVED)

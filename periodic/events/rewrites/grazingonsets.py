@@ -43,7 +43,7 @@ def begins(system: System, orbit: Orbit, violation: Violation) -> Site | None:
     if violation.breach not in (Breach.EXCURSION, Breach.MODE):
         return None
     if isinstance(violation.at, Extremum):
-        return _touch(system, orbit, surface, violation.at, violation.side, -violation.depth)
+        return _at_extremum(system, orbit, surface, violation.at, violation.side, -violation.depth)
     return _limit(system, orbit, surface, violation)
 
 
@@ -52,11 +52,11 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
 
     Empty where there is no such site on that orbit.
     """
-    near = [site for site in _all(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
+    near = [site for site in sites_of(system, orbit, own.row.name) if abs(site.value) <= TOGETHER]
     if isinstance(own.at, Extremum) and own.row in (GRAZING, IMPACT):
         assert isinstance(own.held, Clearance)
         at = SwitchPolynomials(system, orbit).nearest(own.switch, own.held.side, own.held.phase)
-        first: Site | None = _touch(
+        first: Site | None = _at_extremum(
             system, orbit, surface_of(system, own.switch), at, own.held.side, own.value
         )
     else:
@@ -65,7 +65,7 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
         return []
     found, guard = [first], surface_of(system, own.switch).switch
     if own.row is FIRST_SLIPS:  # a joint that slips one way alone would drift
-        back = (site for site in _all(system, orbit, own.row.name) if site.switch != own.switch)
+        back = (site for site in sites_of(system, orbit, own.row.name) if site.switch != own.switch)
         other = (site for site in back if surface_of(system, site.switch).switch == guard)
         near = [*near, *sorted(other, key=lambda site: abs(site.value))[:1]]
     for site in near:
@@ -74,8 +74,8 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     return slipping_together(system, orbit, [turning_back(system, orbit, site) for site in found])
 
 
-def _all(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
-    """All sites of a row on an orbit, with how far each is from being reached."""
+def sites_of(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
+    """Yield all sites of a row on an orbit, with how far each is from being reached."""
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
         for switch in (surface.switch, *(surface.releases or ())):
@@ -115,7 +115,7 @@ def _extrema(dense: SwitchPolynomials, surface: SurfaceLike, switch: int) -> Ite
     for side in (int(side) for side in np.unique(sides) if side):
         for e in dense.minima(switch, side):
             if sides[e.interval] == side and not beside_node(dense, e):
-                yield _touch(dense.system, dense.orbit, surface, e, side, side * e.value / most)
+                yield _at_extremum(dense.system, dense.orbit, surface, e, side, side * e.value / most)
 
 
 def beside_node(dense: SwitchPolynomials, at: Extremum) -> bool:
@@ -136,7 +136,9 @@ def beside_node(dense: SwitchPolynomials, at: Extremum) -> bool:
     return False
 
 
-def _touch(system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float) -> Site:
+def _at_extremum(
+    system: System, orbit: Orbit, surface: SurfaceLike, at: Extremum, side: int, value: float
+) -> Site:
     """The site of an extremum on a given side of its level."""
     k = at.switch
     if surface.kind == Kind.IMPACT:

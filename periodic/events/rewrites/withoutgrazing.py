@@ -1,8 +1,8 @@
-"""Whether two words differ without a touch: only by events that change places, and by slips and sticks.
+"""Whether two words differ without grazing: only by events that change places, and by slips and sticks.
 
-Where a level is just touched (grazing, a stick inside a slip, the first slip of a slider) multipliers jump,
+Where a level is grazed (by an excursion, a stick inside a slip, the first slip of a slider) multipliers jump,
 and the branch has a labelled point. Swaps, adding-, crossing- and switching-sliding, and stops that become
-one, touch nothing: between two orbits whose words differ by these alone no point is to be located.
+one, graze nothing: between two orbits whose words differ by these alone no point is to be located.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class Stay:
         return later < self.length or period - later < other.length
 
 
-def untouched(system: System, one: Sequence[Node], other: Sequence[Node], period: float) -> bool:
-    """Return whether no level is touched between two orbits that are near each other, by their words.
+def without_grazing(system: System, one: Sequence[Node], other: Sequence[Node], period: float) -> bool:
+    """Return whether no level is grazed between two orbits that are near each other, by their words.
 
-    What may only begin or end with a touch must be in both words, at phases that overlap.
+    What may only begin or end with grazing must be in both words, at phases that overlap.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def _alike(stays: Sequence[Stay], others: Sequence[Stay], period: float) -> bool
 
 
 def _persist(stays: Iterable[Stay], others: Sequence[Stay], period: float) -> bool:
-    """Whether what friction does in one word may be there, in the other word, or begin without a touch.
+    """Whether what friction does in one word may be there, in the other word, or begin without grazing.
 
     A slip may begin where friction holds, and a stick where it reverses.
     """

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.surfaces import Surfaces, along, joint
 
-from periodic.events.rewrites import onsets, table
+from periodic.events.rewrites import grazingonsets, table
 from periodic.events.rewrites.reversals import Reversal, held, reversals, short_of
 from periodic.events.rewrites.rewrite import Begins
 from periodic.events.rewrites.sites import Added, Site, apart, edited, has, index_of, ordered
@@ -50,50 +50,50 @@ def sine(*nodes: tuple[EventNode, float], modes: Any = ()) -> Orbit:
     return along(lambda tau: np.column_stack([np.sin(tau), np.cos(tau)]), nodes, modes, intervals=40)
 
 
-def touched(switch: int, side: int, orbit: Orbit) -> Site:
+def grazed(switch: int, side: int, orbit: Orbit) -> Site:
     """The site of an extremum of a switch at pi / 2."""
     surface = next(s for s in system().surfaces if switch in (s.switch, *(s.releases or ())))
     at = Extremum(switch, 9, 0.5, np.pi / 2, -0.25)
-    return onsets._touch(system(), orbit, surface, at, side, -0.5)
+    return grazingonsets._at_extremum(system(), orbit, surface, at, side, -0.5)
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_touch_of_a_kink(side: int) -> None:
+def test_grazing_of_a_kink(side: int) -> None:
     """Assert an excursion half before and half after the extremum, whose length is held."""
-    site, tau = touched(KINK, side, sine()), np.pi / 2
+    site, tau = grazed(KINK, side, sine()), np.pi / 2
     added = Added(EventNode(KINK, -side), tau, -0.5), Added(EventNode(KINK, side), tau, 0.5)
     assert site == Site(table.GRAZING, KINK, site.at, Clearance(KINK, side, tau), -0.5, added)
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_touch_of_a_relay_and_of_a_wall(side: int) -> None:
+def test_grazing_of_a_relay_and_of_a_wall(side: int) -> None:
     """Assert that a relay ends the branch without event nodes, and that a wall has one impact."""
     tau, held_at = np.pi / 2, Clearance(RELAY, side, np.pi / 2)
-    site = touched(RELAY, side, sine())
+    site = grazed(RELAY, side, sine())
     assert site == Site(table.RELAY, RELAY, site.at, held_at, -0.5)
-    site = touched(WALL, side, sine())
+    site = grazed(WALL, side, sine())
     impact = (Added(EventNode(WALL, -side), tau, 0.0),)
     assert site == Site(table.IMPACT, WALL, site.at, Clearance(WALL, side, tau), -0.5, impact)
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_touch_of_a_joint_that_slips(side: int) -> None:
+def test_grazing_of_a_joint_that_slips(side: int) -> None:
     """Assert a stop before the extremum, and the release to the side on which it slips: friction's at it."""
     tau = np.pi / 2
     for guard, (early, late) in ((FRICTION, (-1.0, 0.0)), (SLIDER, (-1 / 3, 2 / 3))):
         release = EventNode(guard + (1 if side > 0 else 2), side)
-        site = touched(guard, side, sine())
+        site = grazed(guard, side, sine())
         added = Added(stop(guard, -side), tau, early), Added(release, tau, late)
         assert site == Site(table.GRAZING_SLIDING, guard, site.at, Clearance(guard, side, tau), -0.5, added)
 
 
 @pytest.mark.parametrize(("guard", "row"), [(FRICTION, table.ADDING_SLIDING), (SLIDER, table.LIMIT_GRAZING)])
 @pytest.mark.parametrize("side", SIDES)
-def test_touch_of_a_limit(guard: int, row: table.Row, side: int) -> None:
+def test_grazing_of_a_limit(guard: int, row: table.Row, side: int) -> None:
     """Assert a release and a stop about the extremum, or up to it, as far short of the limit as rounding."""
     tau, switch = np.pi / 2, guard + 1
     early, late = (-1.0, 0.0) if guard == SLIDER else (-1 / 3, 2 / 3)
-    site = touched(switch, side, sine())
+    site = grazed(switch, side, sine())
     added = Added(EventNode(switch, -side), tau, early), Added(stop(guard, side), tau, late)
     assert site.added == added and site.row is row
     assert isinstance(site.held, Clearance)
@@ -116,15 +116,15 @@ def test_touch_of_a_limit(guard: int, row: table.Row, side: int) -> None:
 def test_row_of_an_extremum(switch: int, modes: Any, name: str) -> None:
     """Assert it by the kind of the surface, and whether it is its guard."""
     surface = next(s for s in system().surfaces if switch in (s.switch, *(s.releases or ())))
-    assert onsets.row_of(sine(modes=modes), surface, switch) == name
-    assert onsets.row_of(sine(), Surface(Kind.MARKER, "marker", 9), 9) == ""
+    assert grazingonsets.row_of(sine(modes=modes), surface, switch) == name
+    assert grazingonsets.row_of(sine(), Surface(Kind.MARKER, "marker", 9), 9) == ""
 
 
 @pytest.mark.parametrize("place", [None, (0, ())])
 def test_first_slips_of_what_is_held_all_along(place: Any) -> None:
     """Assert that a joint with a place slips, and that one without departs."""
     own = joint(0, FRICTION, place=place)
-    found = onsets.row_of(sine(modes=[(FRICTION, HELD)]), own, 1)
+    found = grazingonsets.row_of(sine(modes=[(FRICTION, HELD)]), own, 1)
     assert found == (table.FIRST_DEPARTURES if place is None else table.FIRST_SLIPS).name
 
 
@@ -135,7 +135,7 @@ def test_passage_that_begins_to_be_held(way: int) -> None:
     orbit = sine((event, 1.0), (EventNode(FRICTION, -way), 3.0))
     switch = 1 if way > 0 else 2
     limit = Violation(Breach.MODE, switch, 0, -way, 0.25)
-    site = onsets.begins(system(), orbit, limit)
+    site = grazingonsets.begins(system(), orbit, limit)
     stops = EventNode(FRICTION, way, modes=((FRICTION, STUCK), (9, 1)))
     added = (Added(EventNode(switch, way), 1.0, 1.0),)
     held_at = Limit(0, switch, -way, site.held.level) if site and isinstance(site.held, Limit) else None
@@ -149,7 +149,7 @@ def test_stop_that_breaks(way: int) -> None:
     event = EventNode(FRICTION, way, modes=((FRICTION, STUCK), (9, 1)))
     orbit = sine((event, 1.0), (EventNode(1, 1), 3.0))
     limit = Violation(Breach.MODE, 2, 0, 1, 0.25)
-    site = onsets.begins(system(), orbit, limit)
+    site = grazingonsets.begins(system(), orbit, limit)
     passes, added = EventNode(FRICTION, way, modes=((9, 1),)), (Added(stop(FRICTION, -way), 1.0, 1.0),)
     assert site is not None
     expected = Site(table.SWITCHING_SLIDING, 2, 0, site.held, -0.25, added, (), ((0, passes),))
@@ -159,7 +159,7 @@ def test_stop_that_breaks(way: int) -> None:
 @pytest.mark.parametrize("breach", [b for b in Breach if b not in (Breach.EXCURSION, Breach.MODE)])
 def test_violations_that_no_row_is_for(breach: Breach) -> None:
     """Assert that there is no site."""
-    assert onsets.begins(system(), sine(), Violation(breach, KINK, 0, 1, 0.1)) is None
+    assert grazingonsets.begins(system(), sine(), Violation(breach, KINK, 0, 1, 0.1)) is None
 
 
 @pytest.mark.parametrize(("offset", "side"), [(-0.9, -1), (0.9, 1)])
@@ -167,16 +167,16 @@ def test_excursion_that_a_word_leaves_out(offset: float, side: int) -> None:
     """Assert that a shallow excursion past a kink, found as a violation, is the grazing that begins there."""
     kink: Any = Surfaces([Surface(Kind.KINK, "kink", 0, column=0)], [[1.0, 0.0]], [offset])
     (found,) = violations(kink, sine())
-    site = onsets.begins(kink, sine(), found)
+    site = grazingonsets.begins(kink, sine(), found)
     assert site is not None and site.row is table.GRAZING
     assert site.value == pytest.approx(-0.1, abs=1e-6)
     phase = np.pi / 2 if offset < 0 else 3 * np.pi / 2
     assert [each.event.direction for each in site.added] == [-side, side]
     assert [each.phase for each in site.added] == pytest.approx([phase] * 2, abs=1e-6)
     assert isinstance(site.at, Extremum) and site.at.phase == pytest.approx(phase, abs=1e-6)
-    every = [each.value for each in onsets._all(kink, sine(), "grazing")]
+    every = [each.value for each in grazingonsets.sites_of(kink, sine(), "grazing")]
     assert every and every == pytest.approx([-0.1 / 1.9] * len(every), abs=1e-6)
-    assert list(onsets._all(kink, sine(), "grazing of an impact")) == []
+    assert list(grazingonsets.sites_of(kink, sine(), "grazing of an impact")) == []
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_excursion_that_a_word_leaves_out(offset: float, side: int) -> None:
         (0.1, (), (), 0),
     ],
 )
-def test_friction_at_the_touch_of_a_wall(
+def test_friction_at_grazing_of_a_wall(
     beside: float, modes: Any, removed: tuple[int, ...], stops: int
 ) -> None:
     """Assert that its event gives way to the impact, after which it stops again where it was stopped."""
@@ -240,7 +240,7 @@ def test_sticking_about_a_phase(phase: float, found: tuple[float, float]) -> Non
     assert held(turning(), orbit, 3, phase) == pytest.approx(found, abs=1e-12)
 
 
-def test_touch_where_friction_reverses_is_short_of_its_level() -> None:
+def test_grazing_where_friction_reverses_is_short_of_its_level() -> None:
     """Assert a part of the largest value there, and 0 elsewhere."""
     orbit = moving((EventNode(FRICTION, -1), np.pi / 2), (EventNode(FRICTION, 1), 3 * np.pi / 2))
     assert short_of(turning(), orbit, 3, np.pi / 2) == pytest.approx(AT_LEVEL, rel=1e-2)
@@ -253,8 +253,8 @@ def test_touch_where_friction_reverses_is_short_of_its_level() -> None:
     ("row", "switch", "at", "said"),
     [
         (table.RELAY, RELAY, None, "s7 grazes the threshold at which it would switch"),
-        (table.GRAZING, KINK, None, "s6 is touched"),
-        (table.GRAZING_SLIDING, FRICTION, None, "s0 is touched"),
+        (table.GRAZING, KINK, None, "s6 is grazed"),
+        (table.GRAZING_SLIDING, FRICTION, None, "s0 is grazed"),
         (table.CROSSING_SLIDING, 1, 0, "a stop at s0 begins or is broken"),
         (table.ADDING_SLIDING, 2, None, "a slip begins while s0 holds"),
     ],
@@ -265,7 +265,7 @@ def test_what_begins_in_words(row: table.Row, switch: int, at: int | None, said:
     site = Site(row, switch, place, Clearance(switch, 1, 0.0), 0.0)
     begins = Begins(system(), site, 0.5, 1e-6)
     assert begins.name == said
-    assert (begins.touches, begins.last) == (row.touches, row.last)
+    assert (begins.grazes, begins.last) == (row.grazes, row.last)
 
 
 def test_event_nodes_after_edits() -> None:
@@ -289,7 +289,7 @@ def test_event_nodes_after_edits() -> None:
 
 
 @pytest.mark.parametrize("ripple", [0.0, 1e-7, 1e-3])
-def test_touch_of_a_whole_orbit(ripple: float) -> None:
+def test_grazing_of_a_whole_orbit(ripple: float) -> None:
     """Assert that a switch that is constant but for ripples is held twice these from its level; else none."""
     kink: Any = Surfaces([Surface(Kind.KINK, "kink", 0)], [[1.0]], [-0.9])
     orbit = along(lambda tau: 1 + ripple * np.sin(tau)[:, None])
@@ -299,7 +299,7 @@ def test_touch_of_a_whole_orbit(ripple: float) -> None:
     if ripple != 1e-7:
         assert found is None
         return
-    assert found is not None and (found.name, found.part) == ("s0 is touched", 0.25)
+    assert found is not None and (found.name, found.part) == ("s0 is grazed", 0.25)
     assert (found.condition.switch, found.condition.side, found.condition.phase) == (0, 1, 1.0)
     assert found.condition.level == pytest.approx(4e-7, rel=1e-2)
     assert whole_orbit(kink, orbit, Violation(Breach.MODE, 0, at, 1, 0.1), 0.25) is None
@@ -329,6 +329,6 @@ def test_distance_of_sites(one: Any, other: Any, distance: float) -> None:
         place = Extremum(switch, 0, 0.0, at, 0.0) if isinstance(at, float) else at
         return SimpleNamespace(switch=switch, at=place, row=table.IMPACT)
 
-    assert onsets._distance(site(one), site(other), sine()) == pytest.approx(distance)
+    assert grazingonsets._distance(site(one), site(other), sine()) == pytest.approx(distance)
     same = distance < 1e-3
-    assert onsets._same(system(), sine(), site(one), site(other)) is same
+    assert grazingonsets._same(system(), sine(), site(one), site(other)) is same

@@ -1,4 +1,4 @@
-"""Stops that are just touched, by methods whose meshes are not tied to contacts: nothing wrong in silence."""
+"""Stops that are grazed, by methods whose meshes are not tied to contacts: nothing wrong in silence."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import symbolic as sym
 from periodic.shooting.flow import segment_maps
 from periodic.system import index_of
 
-TOUCH = 0.7106873691
+GRAZING = 0.7106873691
 F = sym.functions
 SHORT = per.ArclengthControl(max_points=40)
 
@@ -31,13 +31,13 @@ def check(stiffness: float, point: per.Point, tol: float) -> None:
 
 
 def past(stiffness: float) -> per.Orbit:
-    """An orbit that is 6e-5 past its touch."""
+    """An orbit that is 6e-5 past grazing."""
     return per.trace(stopped(stiffness), "Omega", (0.7, 0.71075), tol=1e-8)[-1].orbit
 
 
 @pytest.mark.parametrize("stiffness", [1e2, 1e4])
 def test_short_contacts_by_shooting(stiffness: float) -> None:
-    """Assert orbits just past a touch, where contacts last .05 to .002 of a period, by single shooting."""
+    """Assert orbits just past grazing, where contacts last .05 to .002 of a period, by single shooting."""
     bounds, few = (0.71075, 0.7108), per.ArclengthControl(max_points=2)
     method = per.Shooting(tolerance=1e-11)
     branch = per.trace(
@@ -60,13 +60,13 @@ def test_an_orbit_through_a_stop_is_none() -> None:
     assert segment_maps(system, through, (), 1, 1e-11).residual > 1e-5
 
 
-def test_harmonics_beside_a_touch() -> None:
+def test_harmonics_beside_grazing() -> None:
     """Assert that a branch of few harmonics ends at a hard stop, and each of its points is what it claims."""
     branch = per.trace(
         stopped(1e4), "Omega", (0.7, 0.72), tol=1e-3, method=per.HarmonicBalance(), control=SHORT
     )
     assert branch.stop.reason is not per.Reason.BOUND
-    assert abs(branch[-1].parameter - TOUCH) < 1e-4
+    assert abs(branch[-1].parameter - GRAZING) < 1e-4
     assert sum(point.error.multiplier < 1e-3 for point in branch) > 4
     for point in branch:
         if point.error.multiplier < 1e-2:  # an estimate of first order

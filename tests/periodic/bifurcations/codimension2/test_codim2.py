@@ -12,7 +12,7 @@ from support.traces import DUFFING_A, duffing_system
 
 import periodic as per
 import symbolic as sym
-from periodic.bifurcations.twoparameter.codim2 import alignment
+from periodic.bifurcations.codimension2.codim2 import alignment
 
 CRITICAL = 0.3
 """F at which the linear part's multipliers pass the unit circle."""

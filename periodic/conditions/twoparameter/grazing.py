@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from periodic.conditions.augmented import of_orbits
+from periodic.conditions.twoparameter.augmented import of_orbits
 from periodic.correction.condition import Condition, Given, SideCondition
 from periodic.events.sideconditions import Clearance
 from periodic.events.switchpolynomials import SwitchPolynomials
@@ -19,7 +19,7 @@ from periodic.system import System
 
 @dataclass(frozen=True)
 class GrazingCondition(Condition):
-    """A switch just touches its level (GR): an extremum of s(x, tau, p) over the period lies on it.
+    """A switch grazes its level (GR): an extremum of s(x, tau, p) over the period lies on it.
 
     The orbit has no event node at the grazing, as the GR point of a branch that it is traced from.
 

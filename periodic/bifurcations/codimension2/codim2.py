@@ -10,6 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from periodic.bifurcations.branchpoint import BRANCHING, branching
+from periodic.bifurcations.codimension2.contours import CONTOUR
+from periodic.bifurcations.codimension2.equilibria import HOPFS, RESTING_FOLDS
+from periodic.bifurcations.codimension2.generalisedflips import GENERALISED
 from periodic.bifurcations.doubling import DOUBLING, doubling, product_test
 from periodic.bifurcations.fold import FOLD
 from periodic.bifurcations.label import Label
@@ -17,10 +20,12 @@ from periodic.bifurcations.stationary import BRANCHING as CROSSING
 from periodic.bifurcations.stationary import HOPF
 from periodic.bifurcations.testfunction import TestFunction
 from periodic.bifurcations.torus import TORUS, complex_pair, nearest_pair, noise, torus_of
-from periodic.bifurcations.twoparameter.contours import CONTOUR
-from periodic.bifurcations.twoparameter.equilibria import HOPFS, RESTING_FOLDS
-from periodic.bifurcations.twoparameter.generalisedflips import GENERALISED
-from periodic.conditions.augmented import DoublingCondition, FoldCondition, HopfCondition, TorusCondition
+from periodic.conditions.twoparameter.augmented import (
+    DoublingCondition,
+    FoldCondition,
+    HopfCondition,
+    TorusCondition,
+)
 from periodic.correction.condition import Condition
 from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution

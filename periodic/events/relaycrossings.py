@@ -1,4 +1,4 @@
-"""Where relays switch along an orbit whose mesh does not say it yet."""
+"""Where relays switch along an orbit whose mesh has no event nodes for them yet."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def switched(system: System, orbit: Orbit, switch: int) -> list[tuple[EventNode,
     for mode in (MINUS, PLUS):
         modes = (*(pair for pair in orbit.mesh.modes if pair[0] != switch), (switch, mode))
         given = replace(orbit, mesh=replace(orbit.mesh, modes=modes))
-        passages = SwitchPolynomials(system, given).crossings(switch)
-        found += [passage for passage in passages if passage[0].direction == -mode]
-    found.sort(key=lambda passage: passage[1])
+        crossings = SwitchPolynomials(system, given).crossings(switch)
+        found += [crossing for crossing in crossings if crossing[0].direction == -mode]
+    found.sort(key=lambda crossing: crossing[1])
     before = [*found[-1:], *found[:-1]]
     return [own for own, last in zip(found, before, strict=True) if own[0].direction != last[0].direction]
 
 
 def mode_at(system: System, orbit: Orbit, relay: SurfaceLike, phase: Array) -> int:
     """Return whether a relay is on or off at a phase (1,): by where it switches, or its modes."""
-    passages = switched(system, orbit, relay.switch)
-    if not passages:
+    crossings = switched(system, orbit, relay.switch)
+    if not crossings:
         assert relay.column is not None
         return int(sides(system, orbit)[orbit.locate(phase)[0][0], relay.column])
-    since = [float((phase[0] - at) % orbit.mesh.period) for _, at in passages]
-    return passages[int(np.argmin(since))][0].direction
+    since = [float((phase[0] - at) % orbit.mesh.period) for _, at in crossings]
+    return crossings[int(np.argmin(since))][0].direction

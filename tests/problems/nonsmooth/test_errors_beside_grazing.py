@@ -1,4 +1,4 @@
-"""Orbits beside a touch: what the parameter's last digits are to multipliers there, and on another mesh."""
+"""Orbits beside grazing: what the parameter's last digits are to multipliers there, and on another mesh."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BRIEF = 2e-3
 
 @cache
 def beside() -> list[tuple[Solver, Solution]]:
-    """The ends of steps beside two touches of jumps 177, where a contact of stiffness 6500 comes and goes."""
+    """The ends of steps beside two grazings of jumps 177: a contact of stiffness 6500 comes and goes."""
     found, completed = [], Continuation._completed
     case = drawn("jumps", 177)
     with pytest.MonkeyPatch.context() as patch:

@@ -1,4 +1,4 @@
-"""Section of the report: a mass that comes to touch a stop, from soft to all but rigid, each way."""
+"""Section of the report: a mass that comes to its stop, from soft to all but rigid, each way."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from reports.studies.extremes.words import error
 
 STIFFNESSES = (1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6)
 RANGE = (0.65, 0.8)
-"""Of Omega; the touch is at .7106873691."""
+"""Of Omega; grazing is at .7106873691."""
 
 STEPPED = 16
 """Values of Omega at which time stepping lets the motion settle, rising."""
@@ -26,7 +26,7 @@ PERIODS, TOLERANCE, SETTLED = 100, 1e-9, 1e-6
 """Of time stepping: periods at each value, tolerance, and what a settled state changes by in the last one."""
 
 SHOT = 1e2
-"""The stiffest stop whose touch shooting is asked to pass."""
+"""The stiffest stop whose grazing shooting is asked to pass."""
 
 
 def system(stiffness: float) -> sym.CompiledSystem:
@@ -47,9 +47,9 @@ def traced(
 
 
 def exact(stiffness: float, compiled: sym.CompiledSystem, branch: per.Branch) -> Checked:
-    """Hold every point against the orbit in closed form; at the touch itself multipliers have two values."""
-    touched = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
-    return joined([_exact(stiffness, point) for point in branch if point.parameter not in touched])
+    """Hold every point against the orbit in closed form; at grazing itself multipliers have two values."""
+    grazings = {point.parameter for point in branch.labelled(per.Label.GRAZING)}
+    return joined([_exact(stiffness, point) for point in branch if point.parameter not in grazings])
 
 
 def _exact(stiffness: float, point: per.Point) -> Checked:
@@ -114,8 +114,8 @@ def cases() -> list[Case]:
 
 
 STUDY = Study(
-    key="touch",
-    title="The touch",
+    key="stop",
+    title="Grazing of a stop",
     quantity="stiffness of the stop",
     unit="of the spring's",
     cases=cases,

@@ -1,0 +1,1 @@
+"""Conditions that hold an orbit at a special point while two parameters vary: the curves of such points."""
