@@ -287,7 +287,7 @@ class Equations:
             least = np.minimum(self.settings.negligible / np.maximum(operator.effect, 1e-300), nominal)
             compared = np.maximum(compared, least)
         parts += list(np.abs(increment.parameters) / compared)
-        regular = float(max(parts))
+        regular = float(np.max(parts))  # NaN wherever it is
         change = moved_unknowns(self.system, orbit.algebraic, increment.algebraic) - orbit.algebraic
         unknowns = (np.abs(change) / (1 + np.abs(orbit.algebraic))).max(axis=(1, 2), initial=0.0)
         left = float(unknowns.max()) ** 2

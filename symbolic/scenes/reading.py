@@ -26,7 +26,7 @@ Override = tuple[str, Value]
 PLACE = re.compile(r"\(at (line \d+, column \d+|end of document)\)$")
 """Where Python's reader of TOML says that a file is wrong."""
 
-QUOTING = re.compile(r"\(['\"]|haracter ['\"]")
+QUOTING = re.compile(r"\(['\"]|(haracter|key) ['\"]")
 """How it quotes keys and signs: a file that is none of ours is not told."""
 
 LARGEST_FILE = 32768

@@ -395,3 +395,32 @@ def test_sentence_of_a_gap() -> None:
         ledger._passed({1}, {0}, Label.DOUBLING)
         == "unstable multipliers go from 1 to 0, which PD does not explain"
     )
+
+
+@pytest.mark.parametrize(
+    ("trivial", "marginal", "known", "equilibrium"),
+    [(0, False, True, False), (1, False, True, False), (2, True, True, False), (0, False, False, True)],
+)
+def test_entry_of_a_solution(
+    trivial: int, marginal: bool, known: bool, equilibrium: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert value, slope over the range, growth, noise where the multipliers are known, and blur."""
+    monkeypatch.setattr(ledger, "codim2", SimpleNamespace(marginal=lambda problem: marginal))
+    monkeypatch.setattr(ledger, "known_spectrum", lambda solution: known)
+    multipliers = np.array([0.5, -0.25], dtype=complex)
+    solution: Any = SimpleNamespace(
+        spectrum=SimpleNamespace(nontrivial=multipliers, multipliers=np.array([3.0, 0.5], dtype=complex)),
+        orbit=SimpleNamespace(equilibrium=equilibrium),
+        problem=SimpleNamespace(scale=4.0, trivial=trivial),
+        tangent=SimpleNamespace(parameter=-2.0),
+        error=SimpleNamespace(multiplier=1e-6, motion=1e-3),
+        value=-5.0,
+    )
+    found = ledger.entry(solution, Label.FOLD)
+    assert (found.label, found.value, found.slope) == (Label.FOLD, -5.0, -0.5)
+    assert found.blur == pytest.approx(5e-3)
+    assert (found.equilibrium, found.conservative) == (equilibrium, trivial == 2)
+    growths = [1.0, -0.5] if equilibrium else np.log([0.5, 0.25])
+    assert found.growth == pytest.approx(growths)
+    exact = ledger.ERRORS_FROM_ONE * 1e-6 * 3.0 + ledger.ROUNDED_ONE
+    assert found.noise == (np.inf if marginal else pytest.approx(exact))

@@ -118,3 +118,24 @@ def test_trial_beside_an_end_is_read_from_the_three_points_there() -> None:
     assert place == pytest.approx(0.2) and expected == pytest.approx(
         _through([0.0, 0.4, 0.7], [0, 0.4**3, 0.7**3])(0.2)
     )
+
+
+@pytest.mark.parametrize("least", [0.001, 0.04, 0.3])
+def test_search_for_a_minimum_does_not_depend_on_the_unit(least: float) -> None:
+    """Assert the same trials for a function and for its multiples, however small or large."""
+
+    def trials(unit: float) -> list[float]:
+        at: list[float] = []
+
+        def value(place: float) -> float:
+            at.append(place)
+            return unit * (least + (place - 0.37) ** 2 + 0.8 * (place - 0.37) ** 4)
+
+        ends = {0.0: value(0.0), 0.1: value(0.1), 1.0: value(1.0)}
+        assert second_change(value, ends, 0.8) is None
+        return at
+
+    once = trials(1.0)
+    assert len(once) > 4
+    for unit in (1e-9, 1e-3, 1e3, 1e9):
+        assert trials(unit) == pytest.approx(once, rel=1e-6)

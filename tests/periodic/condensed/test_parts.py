@@ -15,6 +15,7 @@ from periodic.condensed.circle import Circle
 from periodic.condensed.condensedcollocation import CondensedCollocation
 from periodic.condensed.memory import KEPT, SOLVING, Memory
 from periodic.condensed.modal.moments import SERIES_UP_TO, Moments
+from periodic.condensed.operator import CondensedOperator
 from periodic.condensed.refinement import CondensedRefinement
 from periodic.condensed.timestep import Step
 from periodic.condensed.timestepping import Changed
@@ -393,3 +394,83 @@ def test_time_step_of_a_mode(exponent: complex) -> None:
     assert step.kicked[0, 0] == pytest.approx(mean * (2 + 1j))
     assert step.local[0, 0] == pytest.approx((mean * (2 + 1j) * (3 - 1j)).real + 0.25)
     assert step.width == 0.5
+
+
+@pytest.mark.parametrize("nodes", [0, 1])
+def test_effect_of_parameters_by_hand(nodes: int) -> None:
+    """Assert the largest of what forces, the motion begun and own states do, each of two parameters.
+
+    Of one state, one force and one own state on two intervals of one point; columns before are none of it.
+    """
+    columns = 1 + 2 + nodes
+    forces, own, affine = (
+        np.zeros((2, 1, columns + 2)),
+        np.zeros((2, 1, columns + 2)),
+        np.zeros((2, 1, 1 + nodes + 2)),
+    )
+    forces[:, :, :columns] = own[:, :, :columns] = 9.0
+    affine[:, :, : 1 + nodes] = 9.0
+    forces[1, 0, columns:], own[0, 0, columns:], affine[1, 0, 1 + nodes :] = (-3, 1), (2, -4), (-0.5, 0.25)
+    given = SimpleNamespace(
+        local=SimpleNamespace(forces=forces, own=own),
+        affine=affine,
+        flexibility=SimpleNamespace(applied=lambda weights: 10.0 * weights.reshape(2, 1, 1, 2)),
+    )
+    orbit = SimpleNamespace(phases=np.zeros(nodes), stages=np.zeros((2, 1, 1)))
+    operator: Any = SimpleNamespace(given=given, orbit=orbit)
+    effect = CondensedOperator.effect
+    assert isinstance(effect, property) and effect.fget is not None
+    assert effect.fget(operator).tolist() == [30.0 + 0.5 + 2.0, 10.0 + 0.25 + 4.0]
+
+
+@pytest.mark.parametrize(("taken", "most"), [(0.99, 1000), (1.0, 1000), (1.01, 40)])
+def test_most_intervals_by_memory(taken: float, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert the settings' number where a mesh 2.5 times as fine has room, else what memory allows."""
+    part, asked = SimpleNamespace(size=50), list[Any]()
+    monkeypatch.setattr(refinement, "linear_of", lambda _: part)
+    response = SimpleNamespace(modes=SimpleNamespace(exponents=np.zeros(7)))
+    monkeypatch.setattr(refinement, "answer", lambda *_: (response, []))
+
+    def memory(modes: int, share: float) -> Any:
+        asked.append((modes, share))
+        return SimpleNamespace(
+            peak=lambda count: taken * refinement.LARGEST if count == 25 else np.nan,
+            most=lambda most, largest: 40 if (most, largest) == (1000, refinement.LARGEST) else -1,
+        )
+
+    given: Any = SimpleNamespace(
+        system=None,
+        method=SimpleNamespace(ntst_max=1000, ntst_min=6, tolerance=1e-6),
+        orbit=SimpleNamespace(mesh=SimpleNamespace(ntst=10), parameter=None),
+        _memory=memory,
+        _active=np.array([True, False, False, False]),
+    )
+    own = CondensedRefinement._most.func
+    assert own(given) == most
+    assert asked == ([(50, 1.0)] if most == 1000 else [(50, 1.0), (7, 0.25)])
+    given.method.ntst_max = 12
+    given._memory = lambda modes, share: SimpleNamespace(peak=lambda count: 0.0 if count == 12 else np.inf)
+    assert own(given) == 12
+
+
+@pytest.mark.parametrize(
+    ("wrong", "most", "wanted", "limited"),
+    [
+        (False, 40, 41.0, True),
+        (False, 40, 40.0, False),
+        (True, 40, 41.0, False),
+        (False, 1000, 2000.0, False),
+    ],
+)
+def test_orbits_for_which_there_is_no_memory(wrong: bool, most: int, wanted: float, limited: bool) -> None:
+    """Assert it where more intervals are wanted than memory allows, in the right mode."""
+    given: Any = SimpleNamespace(
+        _in_wrong_mode=wrong,
+        _most=most,
+        method=SimpleNamespace(ntst_max=1000),
+        system=SimpleNamespace(switches=("s",)),
+        _wanted=np.array([wanted / 4, wanted / 2]),
+        orbit=SimpleNamespace(grid=SimpleNamespace(width=np.array([2.0, 1.0]))),
+    )
+    own = CondensedRefinement._limited
+    assert isinstance(own, property) and own.fget is not None and own.fget(given) is limited

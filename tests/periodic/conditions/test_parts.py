@@ -15,6 +15,7 @@ import periodic as per
 from periodic.conditions import extremes
 from periodic.conditions.functionals import Component, apart, output_index
 from periodic.conditions.twoparameter import augmented
+from periodic.conditions.variations import weighted
 from periodic.orbit.gradients import collocation_points
 from periodic.orbit.row import Row
 from periodic.tracing.watch import _rising, slack
@@ -162,3 +163,16 @@ def test_singular_with_a_side_condition(
     assert np.abs(asked["right"]) == pytest.approx([1.0, 0.0])
     assert np.abs(asked["left"]) == pytest.approx([1.0])
     assert asked["source"].outer == pytest.approx([0.0, 0.0]) and asked["free"] == (0,)
+
+
+def test_weighted_sum_of_rows() -> None:
+    """Assert values, gradients and weights of two rows, and none of none."""
+    rows = [Row(2.0, np.full((2, 1), 3.0), np.array([4.0])), Row(-1.0, np.ones((2, 1)), np.array([5.0]))]
+    found = weighted(rows, np.array([0.5, -2.0]))
+    assert found is not None and found.value == 3.0
+    assert found.nodes.tolist() == [[-0.5], [-0.5]] and found.outer.tolist() == [-8.0]
+    one = weighted(rows[:1], np.array([3.0]))
+    assert one is not None and one.value == 6.0
+    assert weighted([], np.zeros(0)) is None
+    with pytest.raises(ValueError, match="shorter|longer"):
+        weighted(rows, np.ones(1))

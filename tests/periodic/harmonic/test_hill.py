@@ -118,3 +118,30 @@ def test_guess_has_the_harmonics_that_are_heard(least: int, expected: int) -> No
     near = replace(near, nodes=near.nodes * [1, 1e-3], stages=near.stages * [1, 1e-3])
     found = HB(harmonics=least).guess(system, system.nominal, near)
     assert isinstance(found, FourierOrbit) and found.harmonics == expected
+
+
+@pytest.mark.parametrize("resolved", [True, False])
+def test_subspace_of_what_has_one_eigenvector(resolved: bool) -> None:
+    """Assert that a threefold exponent's subspace is found, and that it is resolved only if all of it was."""
+    matrix = np.zeros((4, 4))
+    matrix[:3, :3], matrix[3, 3] = MATRICES["defective"], 5.0
+    values, vectors = np.linalg.eig(matrix)
+    found = hill._spanned(matrix, values, vectors, np.abs(values + 0.3) < 0.1, resolved)
+    assert found.resolved is resolved
+    assert found.vectors.shape == (4, 3) and found.rate.shape == (3, 3)
+    assert np.abs(matrix @ found.vectors - found.vectors @ found.rate).max() < 1e-12
+    assert np.abs(found.vectors[3]).max() < 1e-12
+    assert np.abs(found.vectors.conj().T @ found.vectors - np.eye(3)).max() < 1e-12
+
+
+def test_subspace_of_which_more_is_chosen_than_it_has() -> None:
+    """Assert that it is not resolved where sorting moves another number of exponents than were chosen."""
+    matrix = np.array([[1.0, 1.0], [0.0, 1.0]])
+    values, vectors = np.array([1.0, 1.0 + 1e-3]), np.array([[1.0, 1.0], [0.0, 0.0]])
+    found = hill._spanned(
+        matrix, values.astype(complex), vectors.astype(complex), np.array([True, True]), True
+    )
+    assert found.resolved
+    none = np.array([1.0, 9.0]).astype(complex)
+    found = hill._spanned(matrix, none, np.zeros((2, 2), complex), np.array([False, True]), True)
+    assert not found.resolved

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from periodic.linear import bordered, kinematic, pairwise
+from periodic.equilibrium.linearise import Constant
+from periodic.linear import bordered, bordering, kinematic, pairwise
+from periodic.linear.bordering import Chain
 from periodic.linear.invariantpair import subspaces, within
 from periodic.system.precision import difference_step
 
@@ -122,3 +127,74 @@ def test_steps_of_differences() -> None:
     """Assert eps^(1/3) of central first differences, and noise^(1/4) of second ones."""
     assert difference_step(2) == pytest.approx(np.finfo(float).eps ** (1 / 3))
     assert difference_step(2, 2, 1e-8) == pytest.approx(1e-2)
+
+
+def chained(step: np.ndarray, origin: list[int] | None = None, **more: Any) -> Chain:
+    """Equations with these steps, of an orbit without event nodes."""
+    count = len(step)
+    orbit = SimpleNamespace(phases=np.zeros(0), end_rates=np.arange(count + 1.0)[:, None])
+    own = np.arange(count) if origin is None else np.array(origin)
+    given: Any = SimpleNamespace(step=step, origin=own, orbit=orbit, compiled=None, residual=0.5, **more)
+    return Chain(given)
+
+
+def test_effect_of_parameters_over_a_period() -> None:
+    """Assert the largest in an interval times the intervals that follow each other, of two parameters."""
+    step = np.zeros((4, 1, 1 + 1 + 2))
+    step[:, 0, :2] = 9.0
+    step[1, 0, 2:], step[3, 0, 2:] = (-3.0, 0.5), (1.0, -2.0)
+    assert chained(step).effect.tolist() == [12.0, 8.0]
+    assert chained(step, [0, 0, 2, 2]).effect.tolist() == [6.0, 4.0]
+    assert chained(step).residual == 0.5
+
+
+@pytest.mark.parametrize("origin", [None, [0, 0, 2, 2]])
+def test_joints_of_a_chain(origin: list[int] | None) -> None:
+    """Assert the points that others follow from, and the last; the flow there, and none where states jump."""
+    own = chained(np.ones((4, 1, 2)), origin)
+    joints = [0, 1, 2, 3, 4] if origin is None else [0, 2, 4]
+    assert own._joints.tolist() == joints and own.flow is not None
+    assert own.flow[:, 0].tolist() == joints
+    assert chained(np.ones((4, 1, 2)), origin, perturbed=np.ones((4, 1, 2))).flow is None
+
+
+def test_maps_from_the_first_point() -> None:
+    """Assert dx_j of numbers by hand, one after the other and from points that several follow from."""
+    step = np.array([[[1.0, 2.0]], [[0.5, 3.0]], [[-1.0, 4.0]]])
+    assert bordering.chain(chained(step).eliminated)[:, 0].tolist() == [[0, 1], [1, 2], [3.5, 6], [13, 24]]
+    forked = bordering.chain(chained(step, [0, 0, 2]).eliminated)
+    assert forked[:, 0].tolist() == [[0, 1], [1, 2], [0.5, 3], [1, 12]]
+
+
+def test_growth_between_any_two_points() -> None:
+    """Assert the largest product of consecutive steps, which need not begin at the first, and infinity."""
+    numbers = np.array([0.1, 20.0, 0.5, 30.0, 0.01, 2.0])
+    assert bordering.between_any(numbers[:, None, None]) == pytest.approx(300.0)
+    assert bordering.between_any(-numbers[:, None, None]) == pytest.approx(300.0)
+    assert bordering.between_any(np.full((3, 1, 1), 0.5)) == 1.0
+    many = np.full((5 * bordering.PLACES, 1, 1), 0.5)
+    many[40:44] = 10.0
+    assert 1e3 / 16 <= bordering.between_any(many) <= 1e4
+    assert bordering.between_any(np.full((4, 1, 1), 1e200)) == np.inf
+
+
+def test_fundamental_matrices_are_bounded() -> None:
+    """Assert products of steps, as they are while they are finite and far less than the largest number."""
+    step = np.zeros((3, 1, 2))
+    step[:, 0, 1] = 2.0
+    assert chained(step).fundamental.ravel().tolist() == [1.0, 2.0, 4.0, 8.0]
+    step[:, 0, 1] = 1e100
+    found = chained(step).fundamental.ravel()
+    assert np.isfinite(found).all() and found[1] == 1e100 and 1e140 < found[3] <= 1e160
+
+
+def test_effect_of_parameters_on_equilibria() -> None:
+    """Assert the largest derivative in each over the largest in the states; 0 where there is none."""
+    rows: Any = SimpleNamespace(
+        residual=np.array([0.1, -0.7]), d_unknown=np.array([[1.0, -4.0, 2.0, 0.0], [0.5, 3.0, -6.0, 1.0]])
+    )
+    orbit: Any = SimpleNamespace(nodes=np.zeros((1, 2)))
+    own = Constant(orbit, rows)
+    assert own.effect.tolist() == [1.5, 0.25] and own.residual == 0.7
+    rows.d_unknown[:, :2] = 0.0
+    assert own.effect.tolist() == [0.0, 0.0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+from concurrent.futures import Future
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +13,7 @@ from support.numpy_systems import LinearOscillator
 
 import periodic as per
 from periodic.bifurcations.label import Label
-from periodic.maps import chunks, grid
+from periodic.maps import chunks, executors, grid
 from periodic.maps.cell import Outcome
 from periodic.maps.dataset import _column, _owner, _status, check_numbers, dataset
 from periodic.maps.numbers import extremes
@@ -275,3 +277,44 @@ def test_numbers_that_fail_are_a_reason(error: type[Exception]) -> None:
     task.numbers["other"] = lambda task, branch: "text"
     with pytest.raises(TypeError):
         chunks._read(task, None)  # type: ignore[arg-type]
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows has no such signals")
+def test_process_that_tidies_up_does_not_hear_a_closed_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that it is started with the signal blocked, which is let through again afterwards."""
+    from loky.backend import resource_tracker
+
+    blocked: list[bool] = []
+
+    def running() -> None:
+        blocked.append(signal.SIGHUP in signal.pthread_sigmask(signal.SIG_BLOCK, set()))
+        raise RuntimeError("not started")
+
+    monkeypatch.setattr(resource_tracker, "ensure_running", running)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, set())
+    with pytest.raises(RuntimeError, match="not started"):
+        executors._tracked()
+    assert blocked == [True] and signal.pthread_sigmask(signal.SIG_BLOCK, set()) == before
+
+
+def test_users_executor_is_left_as_it_is() -> None:
+    """Assert that work is given on, that what has not begun is cancelled, and nothing else."""
+
+    class Executor:
+        """Keeps work, and does none."""
+
+        def __init__(self) -> None:
+            self.given: list[Any] = []
+
+        def submit(self, function: Any, *arguments: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            self.given.append((function, arguments, future))
+            return future
+
+    user: Any = Executor()
+    own = executors.Given(user)
+    first, second = own.submit(max, 1, 2), own.submit(min, 3)
+    assert [each[:2] for each in user.given] == [(max, (1, 2)), (min, (3,))] and not own.own
+    first.set_result(2)
+    own.close()
+    assert second.cancelled() and first.result() == 2 and not first.cancelled()

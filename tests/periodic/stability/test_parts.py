@@ -333,3 +333,23 @@ def test_shares_of_intervals() -> None:
     assert found is not None
     assert found == pytest.approx([4 * 0.2 / 2, 4 * (0.8 / 4 - 0.2 / 2)])
     assert shares.shares(coarse[:, None, None], fine[:4, None, None]) is None
+
+
+@pytest.mark.parametrize("trivial", [0, 1])
+def test_spectra_of_graded_steps_apart(trivial: int) -> None:
+    """Assert the larger change of the first two sums of powers, in the radius, each over its power."""
+
+    def stepping(*values: float) -> Any:
+        """Steps of a half period each."""
+        steps = np.array([np.diag(np.sqrt(values))] * 2)
+        flow = np.tile([1.0, 0.0], (3, 1)) if trivial else None
+        return SimpleNamespace(growth=1e9, steps=steps, flow=flow)
+
+    own, other = stepping(1.0, 0.25), stepping(1.0, 0.49)
+    found = graded.spectrum_of(np.array([np.eye(2)] * 2 + [np.diag([1.0, 0.25])]), own, trivial)
+    assert isinstance(found, graded.GradedSpectrum)
+    assert np.abs(found.multipliers) == pytest.approx([1.0, 0.25])
+    first, second = 0.49 - 0.25, (0.49**2 - 0.25**2) / 2
+    expected = max(first / found.radius, second / found.radius**2)
+    assert found.apart(np.diag([1.0, 0.49]), other) == pytest.approx(expected)
+    assert found.apart(np.diag([1.0, 0.25]), own) == pytest.approx(0.0, abs=1e-12)

@@ -126,3 +126,45 @@ def test_frequency_that_is_not_positive(count: int, omega: float) -> None:
     said = f"^the frequency of the excitation is {omega} rad/s; its nominal value must be greater than 0$"
     with pytest.raises(ValueError, match=said):
         sym.compile(sym.combine([*parts, sym.HarmonicForce(x[0], 1.0, omega)]))
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("1/3", Fraction(1, 3)),
+        ("0." + "5".ljust(38, "0"), Fraction(1, 2)),
+        ("2e0", Fraction(2)),
+        ("500E-3", Fraction(1, 2)),
+        ("0." + "0" * 33 + "5e34", Fraction(5)),
+        ("100000", Fraction(100_000)),
+    ],
+)
+def test_orders_as_text(text: str, found: Fraction) -> None:
+    """Assert numbers of up to 40 characters, whose exponent may be as large."""
+    assert len(text) <= 40 and order_of(text) == found
+
+
+@pytest.mark.parametrize(
+    "text", ["0." + "5".ljust(39, "0"), "1e41", "1e-41", "1e999999999999", "2e", "", "0", "-1"]
+)
+def test_orders_as_text_that_are_refused(text: str) -> None:
+    """Assert the sentence for longer ones, larger exponents, and what is no positive number."""
+    with pytest.raises(
+        ValueError, match="^order is .*; it must be a positive rational number such as 2, 0.5 or"
+    ):
+        order_of(text)
+    with pytest.raises(ValueError, match="and at most 100000$"):
+        order_of("100001")
+    with pytest.raises(ValueError, match="and at most 100000$"):
+        order_of("1e40")
+
+
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [(1 / 3, Fraction(1, 3)), (0.1 + 0.2, Fraction(3, 10)), (999 / 1000, Fraction(999, 1000))],
+)
+def test_orders_that_are_rounded(value: float, found: Fraction) -> None:
+    """Assert the rational number that a floating-point one stands for."""
+    assert order_of(value) == found
+    with pytest.raises(ValueError, match="the excitation has no common period otherwise$"):
+        order_of(value * (1 + 1e-11))

@@ -5,11 +5,14 @@ from __future__ import annotations
 import pickle
 from typing import Any
 
+import casadi as ca
 import numpy as np
+import pytest
 
 import symbolic as sym
 from symbolic.equations.surfaces import MINUS, PLUS, Kind
 from symbolic.integration.flow import Flow, Trajectory
+from symbolic.relays import expression
 
 F = sym.functions
 NAMES = {"on": 0.6, "off": -0.4, "push": 2.0}
@@ -106,3 +109,21 @@ def test_copies_of_relays() -> None:
     again = pickle.loads(pickle.dumps(sym.compile(sym.Equations(chain, {"a": 0.0, "b": 0.0}, NAMES))))
     assert [s.kind for s in again.surfaces] == [Kind.RELAY, Kind.RELAY, Kind.JUMP]
     assert "relay" in again.latex
+
+
+@pytest.mark.parametrize("value", [2, 2.0, np.float64(2.0), np.array(2.0), np.array(2), ca.SX(2.0)])
+def test_numbers_of_a_relay(value: Any) -> None:
+    """Assert that numbers of any kind are one expression."""
+    found = expression("u", value)
+    assert isinstance(found, ca.SX) and float(found) == 2.0
+
+
+@pytest.mark.parametrize(
+    "value", [True, None, "2", np.array([2.0]), np.array([[2.0]]), [2.0], np.array(True)]
+)
+def test_what_is_no_number_of_a_relay(value: Any) -> None:
+    """Assert the sentence, of arrays that are no scalars too."""
+    with pytest.raises(ValueError, match="^on of a relay is .*; it must be an expression or a number$"):
+        expression("on", value)
+    with pytest.raises(ValueError, match="^off of a relay is .*; it must be one expression or number$"):
+        expression("off", ca.SX.zeros(2))

@@ -17,7 +17,7 @@ import pytest
 from support.models import Array, duffing_parts
 
 import symbolic as sym
-from symbolic.kernels import choice, kernel, native, privacy
+from symbolic.kernels import built, choice, kernel, native, privacy
 from symbolic.kernels.choice import ChosenKernel, Kernels
 from symbolic.scenes.building import build
 from symbolic.scenes.errors import InputError
@@ -399,3 +399,78 @@ def test_compiler_from_the_package_index(monkeypatch: pytest.MonkeyPatch, tmp_pa
     monkeypatch.setenv("CC", str(native.packaged()))
     native.compiler.cache_clear()
     assert right(made(Kernels.C))
+
+
+def stand_in(folder: Path, name: str, does: str) -> Path:
+    """A program of that name."""
+    file = folder / name
+    file.write_text(f"#!/bin/sh\n{does}\n")
+    file.chmod(0o755)
+    return file
+
+
+def test_first_compiler_that_answers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Assert the order of names, what one says of its version, and that one that fails is passed over."""
+    no_compiler(monkeypatch, tmp_path)
+    stand_in(tmp_path, "clang", 'echo "clang, $1"')
+    assert native.compiler() == (("clang",), "clang, --version\n")
+    stand_in(tmp_path, "gcc", 'echo "gcc, $1"')
+    native.compiler.cache_clear()
+    assert native.compiler() == (("gcc",), "gcc, --version\n")
+    stand_in(tmp_path, "cc", "echo broken; exit 1")
+    native.compiler.cache_clear()
+    assert native.compiler() == (("gcc",), "gcc, --version\n")
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ("own -O1 'a b'", (("own", "-O1", "a b"), "own, -O1, a b, --version\n")),
+        ("missing", None),
+        ("missing own", None),
+        ("'own", None),
+        (" ", None),
+    ],
+)
+def test_compiler_that_is_asked_for(
+    asked: str, found: object, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Assert that CC may have arguments, and that no other is taken in its place."""
+    no_compiler(monkeypatch, tmp_path)
+    stand_in(tmp_path, "own", 'echo "own, $1, $2, $3"')
+    stand_in(tmp_path, "cc", "echo cc")
+    monkeypatch.setenv("CC", asked)
+    native.compiler.cache_clear()
+    assert native.compiler() == found
+
+
+@pytest.mark.parametrize("does", ["echo wrong >&2; exit 3", "echo wrong >&2; kill -9 $$"])
+def test_compiler_that_stops(does: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Assert its words, whether it fails or is ended by a signal."""
+    no_compiler(monkeypatch, tmp_path)
+    monkeypatch.setenv(
+        "CC", str(stand_in(tmp_path, "own", f'[ "$1" = --version ] && echo own && exit 0; {does}'))
+    )
+    native.compiler.cache_clear()
+    with pytest.raises(native.CompilerError, match="own failed: wrong$"):
+        native._made("int main;")
+
+
+def test_library_that_came_with_the_package(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Assert that the one of a source is loaded, one of another machine passed over and logged."""
+    source, known = "int seven(void) { return 7; }", native.compiler()
+    assert known is not None
+    monkeypatch.setattr(built, "FOLDER", tmp_path)
+    (tmp_path / "own.c").write_text(source)
+    made = tmp_path / built.file_name(source)
+    subprocess.run([*known[0], *built.FLAGS, "-o", str(made), str(tmp_path / "own.c")], check=True)
+    with caplog.at_level(logging.DEBUG, logger="symbolic.kernels.built"):
+        found = built.built(source)
+        assert found is not None and found.seven() == 7 and not caplog.messages
+        assert built.built("int other;") is None and not caplog.messages
+        (tmp_path / built.file_name("int broken;")).write_bytes(b"no library")
+        assert built.built("int broken;") is None
+    (said,) = caplog.messages
+    assert said.startswith(f"{tmp_path / built.file_name('int broken;')} is not used: ")

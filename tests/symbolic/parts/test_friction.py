@@ -213,3 +213,58 @@ def test_sliders_between_the_same_places_have_names_of_their_own() -> None:
     assert names(first, second, third) == ["z of x - y", "z of x - y (2)", "z of x - y (3)"]
     outer = second.named("outer"), third.named("outer")
     assert names(first, *outer) == ["z of x - y", "z of outer", "z of x - y (2)"]
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.25])
+def test_creeping_slider_by_hand(scale: float) -> None:
+    """Assert its force, its switches in its own units of length, and the row of its creep."""
+    x, k, limit, creep = sym.coordinate("x", scale=scale), 4.0, 0.6, 0.02
+    parts = [sym.Mass(x, 1.0), sym.Jenkins(x, k, limit, creep=creep), sym.HarmonicForce(x, 1.0, 2.0)]
+    system = sym.compile(sym.combine(parts))
+    names = [state.name for state in system.states]
+    (place,) = (j for j, name in enumerate(names) if name.startswith("z"))
+    state = np.zeros((5, len(names)))
+    state[:, names.index("x")] = elongation = np.array([0.0, 0.1, 0.2, 0.9, -0.9])
+    rate, phase = np.zeros_like(state), np.zeros(5)
+    force = k * scale * elongation
+    outputs = system.output(rate, state, np.zeros((5, 0)), phase, system.nominal)
+    named = {output.name: outputs[:, j] for j, output in enumerate(system.outputs)}
+    (shown,) = (values for name, values in named.items() if name.startswith("force of"))
+    assert shown == pytest.approx(force)
+    switches = system.switch(state, phase, system.nominal)
+    names = [switch.name.rpartition(": ")[2] for switch in system.switches]
+    for name, sign in (("f = F", -1.0), ("f = -F", 1.0)):
+        assert switches[:, names.index(name)] == pytest.approx((force + sign * limit) / (k * scale))
+    over = np.sign(force) * np.maximum(np.abs(force) - limit, 0.0)
+    rows = [
+        system.residual(each, state, np.zeros((5, 0)), phase, system.nominal) for each in (rate, rate + 1.0)
+    ]
+    turned = np.abs(rows[1] - rows[0]).max(axis=0)
+    (own,) = np.flatnonzero(np.isclose(turned, creep))
+    leak = creep * 1e-4 * force / k
+    assert rows[0][:, own] == pytest.approx(-(leak + over / k) / scale, abs=1e-12)
+    assert place == 2
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "limits", "found"),
+    [
+        (8.0, (0.3, 0.3, 0.9), [(8.0 * 2 / 3, 0.6), (8.0 / 3, 0.9)]),
+        ((1.0, 2.0, 4.0), (0.3, 0.6, 0.9), [(3.0, 0.9), (4.0, 0.9)]),
+        ((1.0, 2.0), (0.3, 0.3), [(1.0, 0.3), (2.0, 0.3)]),
+    ],
+)
+def test_iwan_joins_sliders(stiffness: Any, limits: tuple[float, ...], found: Any) -> None:
+    """Assert stiffness and limit of each slider that is left, of those that slip at one elongation."""
+    x = sym.coordinate("x")
+    system = exact(sym.Iwan(x, stiffness, limits, creep=None))
+    state = np.zeros((1, len(system.states)))
+    state[0, [s.name for s in system.states].index("x")] = 0.01
+    outputs = system.output(np.zeros_like(state), state, np.zeros((1, 0)), np.zeros(1), system.nominal)
+    forces = [v for v, o in zip(outputs[0], system.outputs, strict=True) if o.name.startswith("force of")]
+    assert forces == pytest.approx([0.01 * k for k, _ in found])
+    values = {p.name: p.value for p in system.parameters}
+    assert sum(v for name, v in values.items() if name.startswith("F_slider")) == pytest.approx(sum(limits))
+    assert sorted(v for name, v in values.items() if name.startswith("F_slider")) == pytest.approx(
+        sorted(limit for _, limit in found)
+    )

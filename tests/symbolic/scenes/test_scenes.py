@@ -355,6 +355,23 @@ def test_malformed_toml(tmp_path: Path, text: str) -> None:
     assert said.startswith(f'scene file "{source}" is not TOML: ') and "\n" not in said
 
 
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("a = 1\nmass = ", "Invalid value (at end of document)"),
+        ("a = 1\nb = = 2", "Invalid value (at line 2, column 5)"),
+        ("a = 1\na = 2", "Cannot overwrite a value (at end of document)"),
+        ("[a]\n[a]", "it is wrong at line 2, column 3"),
+        ("a = {b = 1, b = 2}", "it is wrong at line 1, column 18"),
+        ("a = 1" + "0" * 5000, "it has a number of too many digits"),
+    ],
+)
+def test_where_a_file_is_wrong(tmp_path: Path, text: str, why: str) -> None:
+    """Assert the place that Python's reader tells, without what the file says there."""
+    said = sentence(written(tmp_path, text))
+    assert said.endswith(f"is not TOML: {why}; it must hold lines like preload = 810")
+
+
 def test_deep_tables(tmp_path: Path) -> None:
     """Assert that tables beyond what Python's reader takes are called so."""
     said = sentence(written(tmp_path, "x = " + "[" * 5000))

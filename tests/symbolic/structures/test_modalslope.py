@@ -7,6 +7,7 @@ import pytest
 
 import symbolic as sym
 from symbolic.arrays import Complex
+from symbolic.structures.modalslope import modal_slope
 
 
 def flexibility(parts: tuple[Complex, Complex, Complex], frequency: complex) -> Complex:
@@ -54,3 +55,31 @@ def test_modes_damped_one_by_one_are_left_to_differences() -> None:
     """Assert that no closed form is given where a ratio of each mode's damping changes with the speed."""
     structure = sym.Structure(np.eye(2), None, lambda w: np.diag([4.0, 9.0]) + w, damping=0.01)
     assert structure.modal_slope(1.0) is None
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-5, 1e4])
+def test_slopes_are_proportional_to_the_change(size: float) -> None:
+    """Assert that matrices that change so many times as fast change the modes as many times as fast."""
+    random = np.random.default_rng(5)
+    one, two = random.standard_normal((2, 3, 3))
+    form = sym.Structure(np.eye(3), 0.1 * np.eye(3), 9 * np.eye(3) + one @ one.T).modal(1.0)
+    nothing = np.zeros((3, 3))
+    once, more = (modal_slope(form, nothing, nothing, factor * two) for factor in (1.0, size))
+    for name in ("exponents", "shapes", "inputs"):
+        expected = size * getattr(once, name)
+        assert np.abs(getattr(more, name) - expected).max() < 1e-10 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("coupled", [False, True])
+def test_modes_that_meet(coupled: bool) -> None:
+    """Assert that modes of one frequency are followed where they do not couple, and refused where they do."""
+    form = sym.Structure(np.eye(2), 0.1 * np.eye(2), 4 * np.eye(2)).modal(1.0)
+    change = np.array([[3.0, 2.0], [2.0, -1.0]]) if coupled else np.diag([3.0, -1.0])
+    nothing = np.zeros((2, 2))
+    if coupled:
+        with pytest.raises(ArithmeticError, match="cannot be followed in the speed: two of them meet$"):
+            modal_slope(form, nothing, nothing, change)
+        return
+    found = modal_slope(form, nothing, nothing, change)
+    expected = 1j * np.array([3.0, -1.0]) / (2 * np.sqrt(4 - 0.05**2))
+    assert np.sort_complex(found.exponents) == pytest.approx(np.sort_complex(expected), rel=1e-9)

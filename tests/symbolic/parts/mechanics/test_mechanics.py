@@ -260,6 +260,10 @@ REFUSED: list[tuple[Callable[[], object], str]] = [
         lambda: sym.Gap(X, 1.0, 0.5, 0.2),
         "upper stop of a Gap is 0.2; it must be above the lower stop 0.5, or the two overlap",
     ),
+    (
+        lambda: sym.Gap(X, 1.0, 0.5, 0.5),
+        "upper stop of a Gap is 0.5; it must be above the lower stop 0.5, or the two overlap",
+    ),
     (lambda: sym.Backlash(X, 1.0, -0.2), "half backlash b is -0.2; it must be a number of at least 0"),
     (
         lambda: sym.PiecewiseLinearSpring(X, (1.0, 2.0), (0.3, 0.1)),
