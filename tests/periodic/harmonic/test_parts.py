@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from periodic.condensed.modal.modalreduction import Modes
+from periodic.condensed.modal.quasistatic import Modes
 from periodic.harmonic import harmonicbalance, splitbalance
 from periodic.harmonic.balance import Balance, on_coefficients, projected
 from periodic.harmonic.harmonicbalance import AIM, LEAST_HARMONICS, FourierRefinement, needed
