@@ -29,7 +29,8 @@ LESS_THAN_ONE = re.compile(
 """Words for a number that is compared with 1."""
 
 COUNTED = re.compile(
-    r"\b(how many|most|factor on|roundings|magnitude|modulus|condition of|lengths of|variations|estimate)\b",
+    r"\b(how many|many times|most|factor on|roundings|magnitude|modulus|condition of|lengths of|"
+    r"variations|estimate)\b",
     re.IGNORECASE,
 )
 """Words for a number of something, which may be any."""

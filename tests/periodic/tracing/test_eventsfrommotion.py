@@ -167,7 +167,7 @@ def test_orbit_from_which_the_branch_goes_on(
     monkeypatch.setattr(eventsfrommotion, "same_word", lambda *_: True)
     given = solver(tolerance=SimpleNamespace(orbit=1e-6))
     crossed = _Search(given, solution(), sign, other)._solved(None)  # type: ignore[arg-type]
-    assert crossed == (Crossed(found, 2.0, touches=False) if taken else None)
+    assert crossed == (Crossed(found, 2.0, grazes=False) if taken else None)
     found.ok = False
     assert _Search(given, solution(), sign, other)._solved(None) is None  # type: ignore[arg-type]
 

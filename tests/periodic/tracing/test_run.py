@@ -173,12 +173,13 @@ def test_mesh_is_made_anew_after_some_steps(
 
 def change(**more: Any) -> Any:
     """The end of a step at a change of the pattern."""
-    each = {"touches": False, "last": False, "strict": False, "final": False, "name": "s is touched"} | more
+    flags = dict.fromkeys(("grazes", "last", "strict", "final", "nearer"), False)
+    each = flags | {"name": "s is grazed"} | more
     return SimpleNamespace(end=solution(2.0, "end"), change=SimpleNamespace(**each))
 
 
 @pytest.mark.parametrize(
-    ("touches", "change_touches", "distance", "wanted", "ds"),
+    ("grazes", "change_grazes", "distance", "wanted", "ds"),
     [
         (False, False, 0.05, 0.2, 0.2),
         (False, False, 0.3, 0.2, 0.3),
@@ -187,48 +188,48 @@ def change(**more: Any) -> Any:
     ],
 )
 def test_branch_goes_on_beyond_a_change(
-    touches: bool,
-    change_touches: bool,
+    grazes: bool,
+    change_grazes: bool,
     distance: float,
     wanted: float,
     ds: float,
     run: Continuation,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Assert the orbit beyond with its label, and the next step: a first one after a touch."""
-    found = Crossed(solution(2.1, "beyond"), distance, touches)
+    """Assert the orbit beyond with its label, and the next step: a first one after a grazing."""
+    found = Crossed(solution(2.1, "beyond"), distance, grazes)
     monkeypatch.setattr(continuation, "crossed", lambda *_: found)
     monkeypatch.setattr(continuation, "at_once", lambda *_: [])
-    points = list(run._crossed(change(touches=change_touches), wanted))
-    assert [(p.name, p.label) for p in points] == [("beyond", Label.GRAZING if touches else Label.NONE)]  # type: ignore[attr-defined]
+    points = list(run._crossed(change(grazes=change_grazes), wanted))
+    assert [(p.name, p.label) for p in points] == [("beyond", Label.GRAZING if grazes else Label.NONE)]  # type: ignore[attr-defined]
     state = run.state
     assert state is not None
     assert (state.last.name, state.ds, state.kept, state.steps) == ("beyond", ds, 3, 4)  # type: ignore[attr-defined]
     assert state.least == pytest.approx(min(CONTROL.ds_min, NEARLY * ds))
-    assert run._count == ({Label.GRAZING: 1} if touches else {})
+    assert run._count == ({Label.GRAZING: 1} if grazes else {})
 
 
-@pytest.mark.parametrize("touches", [True, False])
-def test_special_points_at_a_change(
-    touches: bool, run: Continuation, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Assert that they lie beyond a touch, and before the orbit beyond another change that is final."""
-    monkeypatch.setattr(continuation, "crossed", lambda *_: Crossed(solution(2.1, "beyond"), 0.1, touches))
+@pytest.mark.parametrize("grazes", [True, False])
+def test_special_points_at_a_change(grazes: bool, run: Continuation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that they lie beyond a grazing, and before the orbit beyond another change that is final."""
+    monkeypatch.setattr(continuation, "crossed", lambda *_: Crossed(solution(2.1, "beyond"), 0.1, grazes))
     monkeypatch.setattr(continuation, "at_once", lambda *_: [Label.FOLD])
     list(run._crossed(change(final=True), 0.1))
-    beyond = (Label.GRAZING if touches else Label.NONE, 2.1)
-    own = (Label.FOLD, 2.1 if touches else 2.0)
+    beyond = (Label.GRAZING if grazes else Label.NONE, 2.1)
+    own = (Label.FOLD, 2.1 if grazes else 2.0)
     found = [(p.label, p.value) for p in run.collected[2:]]  # type: ignore[attr-defined]
-    assert found == ([beyond, own] if touches else [own, beyond])
+    assert found == ([beyond, own] if grazes else [own, beyond])
 
 
 @pytest.mark.parametrize(
     ("given", "reread", "reason", "said"),
     [
-        ({"last": True}, True, Reason.SMALL_STEP, "s is touched, beyond which the motion is another one"),
+        ({"last": True}, True, Reason.SMALL_STEP, "s is grazed, beyond which the motion is another one"),
         ({"strict": True}, True, None, ""),
         ({"final": True}, True, None, ""),
-        ({"strict": True}, False, Reason.SMALL_STEP, "s is touched, and no orbit was found beyond it"),
+        ({"final": True, "nearer": True}, True, None, ""),
+        ({"strict": True, "nearer": True}, True, None, ""),
+        ({"strict": True}, False, Reason.SMALL_STEP, "s is grazed, and no orbit was found beyond it"),
         ({"final": True}, False, None, ""),
         ({}, False, None, ""),
     ],
@@ -252,7 +253,7 @@ def test_no_orbit_beyond_a_change(
 
     monkeypatch.setattr(Continuation, "_reread", read)
     points = list(run._crossed(change(**given), 0.7))
-    wanted = bool(given) and "last" not in given
+    wanted = bool(given) and "last" not in given and given != {"final": True, "nearer": True}
     assert asked == ([("end", True)] if wanted else [])
     assert len(points) == int(reread and wanted)
     assert (run.stop.reason if run.stop else None) is reason and (run.stop.detail if run.stop else "") == said

@@ -26,8 +26,8 @@ class Sited:
         return self.name, size
 
 
-ROW = table.Row(name="row", touches=False, power=1.0, sizes=(0.1, 0.01), spare=(0.001,))
-LAST = table.Row(name="last", touches=False, power=1.0, sizes=(0.1,), last=True)
+ROW = table.Row(name="row", grazes=False, power=1.0, sizes=(0.1, 0.01), spare=(0.001,))
+LAST = table.Row(name="last", grazes=False, power=1.0, sizes=(0.1,), last=True)
 ORBIT = along(lambda tau: np.sin(tau)[:, None])
 
 
@@ -57,7 +57,7 @@ def found(site: Sited) -> list[tuple[float, Any, bool]]:
     """Size, condition and whether it is spare, of each way."""
     own = Begins(None, site, 0.5, 0.1)  # type: ignore[arg-type]
     ways = list(own.beyond(None, ORBIT))  # type: ignore[arg-type]
-    assert all(isinstance(way.mesh, Mesh) and way.mesh.modes == ((7, 1),) and not way.touches for way in ways)
+    assert all(isinstance(way.mesh, Mesh) and way.mesh.modes == ((7, 1),) and not way.grazes for way in ways)
     return [(float(way.phases[0]), way.condition, way.spare) for way in ways]
 
 

@@ -69,7 +69,7 @@ def change(part: float = 0.5, strict: bool = False, **more: Any) -> Any:
     ],
 )
 def test_change_at_the_begin_of_a_step(found: Any, stands: bool) -> None:
-    """Assert that the base is the end itself where a switch touches there, and only there."""
+    """Assert that the base is the end itself where a switch grazes there, and only there."""
     base: Any = "base"
     assert standing(base, found) == (Reached(base, 0.0, found) if stands else None)
 
@@ -127,7 +127,7 @@ def test_change_within_a_step_is_where_it_ends(solving: dict[str, Any]) -> None:
 def test_change_that_lies_in_the_step(
     along: float, strict: bool, ends: bool, solving: dict[str, Any]
 ) -> None:
-    """Assert that it lies ahead, one that touches however near, and not much farther than the step."""
+    """Assert that it lies ahead, one that grazes however near, and not much farther than the step."""
     solving["along"] = lambda orbit: along
     solver, base = stepping()
     assert (reached(solver, base, None, 2.0, change(strict=strict)) is not None) is ends
@@ -172,7 +172,7 @@ def test_earlier_change_is_taken_first(solving: dict[str, Any]) -> None:
 def test_events_that_cross_are_one_change(
     own: bool, other: bool, first: bool, solving: dict[str, Any]
 ) -> None:
-    """Assert that an earlier change counts where one of both is a touch: else they are the same one."""
+    """Assert that an earlier change counts where one of both is a grazing: else they are the same one."""
     earlier, later = change(0.1, strict=other), change(strict=own)
     solver, base = stepping(earlier)
     found = reached(solver, base, None, 2.0, later)
@@ -198,7 +198,7 @@ def test_changes_without_end_are_given_up(solving: dict[str, Any]) -> None:
     ],
 )
 def test_branch_that_comes_back(strict: bool, stages: Any, at_base: bool, rate: float, back: bool) -> None:
-    """Assert it of a touch whose condition grows along the branch, of extrema at the base alone."""
+    """Assert it of a grazing whose condition grows along the branch, of extrema at the base alone."""
     row = SimpleNamespace(stages=stages)
     condition = SimpleNamespace(linearise=lambda system, orbit, free: row)
     found: Any = SimpleNamespace(
@@ -291,7 +291,7 @@ def test_way_beyond_a_change(
 
 
 @pytest.mark.parametrize(
-    ("apart", "value", "ds", "touches", "taken"),
+    ("apart", "value", "ds", "grazes", "taken"),
     [
         (FARTHEST_BEYOND, 0.5, 0.0, False, True),
         (1.01 * FARTHEST_BEYOND, 0.5, 0.0, False, False),
@@ -304,7 +304,7 @@ def test_way_beyond_a_change(
     ],
 )
 def test_orbit_beyond_a_change_is_near(
-    apart: float, value: float, ds: float, touches: bool, taken: bool, monkeypatch: pytest.MonkeyPatch
+    apart: float, value: float, ds: float, grazes: bool, taken: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Assert how far it may be, farther where events only change places, and that it is within bounds."""
     new = SimpleNamespace(ok=True, error=SimpleNamespace(motion=0.0), orbit="new", value=value)
@@ -317,12 +317,12 @@ def test_orbit_beyond_a_change_is_near(
         transfers=lambda orbit, mesh, phases: ["guess"],
         discretisation=SimpleNamespace(change=lambda system, one, other: None),
     )
-    way: Any = SimpleNamespace(parameter=None, mesh=None, phases=None, condition=None, touches=False)
-    at = Reached(SimpleNamespace(orbit="old"), ds, SimpleNamespace(touches=touches))  # type: ignore[arg-type]
+    way: Any = SimpleNamespace(parameter=None, mesh=None, phases=None, condition=None, grazes=False)
+    at = Reached(SimpleNamespace(orbit="old"), ds, SimpleNamespace(grazes=grazes))  # type: ignore[arg-type]
     found = patternchange._along(solver, at, way)
     assert (found is not None) is taken
     if found is not None:
-        assert found.solution is new and found.distance == pytest.approx(apart) and not found.touches
+        assert found.solution is new and found.distance == pytest.approx(apart) and not found.grazes
     new.error.motion = np.inf
     assert patternchange._along(solver, at, way) is None
     new.error.motion, new.ok = 0.0, False
