@@ -28,6 +28,7 @@ from periodic.events.rewrites.table import (
     SWAP,
 )
 from periodic.events.rewrites.wholeorbit import WholeOrbit, whole_orbit
+from periodic.events.sideconditions import Clearance
 from periodic.events.switchpolynomials import Extremum, SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, LONGEST, VANISHING
 from periodic.events.violations import Breach, Violation, between_nodes, largest, limits
@@ -87,11 +88,20 @@ def _joined(
         slip = slip_that_joins(system, before, end.excursion)
         if slip is None:
             found.append(end)
-        elif slip.added:
-            now, then = (slip.held.linearise(system, orbit, ()).value for orbit in (before, after))
-            if then < -AT_LEVEL * largest(SwitchPolynomials(system, before), slip.switch) < now:
-                begun.append(Begins(system, slip, max(now, 0.0) / (now - then), end.shortest))
+        elif slip.added and (part := _part_to(system, before, after, slip)) is not None:
+            begun.append(Begins(system, slip, part, end.shortest))
     return found, begun
+
+
+def _part_to(system: System, before: Orbit, after: Orbit, slip: Site) -> float | None:
+    """The part of the way to an orbit at which a slip begins; None where it does not on the way."""
+    each = [SwitchPolynomials(system, orbit) for orbit in (before, after)]
+    assert isinstance(slip.held, Clearance)
+    if not all(dense.minima(slip.switch, slip.held.side) for dense in each):
+        return None
+    now, then = (slip.held.linearise(system, orbit, ()).value for orbit in (before, after))
+    past = AT_LEVEL * largest(each[0], slip.switch)
+    return max(now, 0.0) / (now - then) if then < -past < now else None
 
 
 def _onsets(
