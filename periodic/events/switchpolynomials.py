@@ -378,7 +378,7 @@ class SwitchPolynomials:
             raise FloatingPointError(f"{name} comes nearest to its level nowhere but at its impacts")
         first = min(every, key=lambda e: far(e, phase))
         width, same = (
-            self.orbit.grid.width[first.interval],
+            abs(self.orbit.grid.width[first.interval]),  # of a guess it may be negative
             [e for e in every if between_nodes(e) == between_nodes(first)],
         )
         return min((e for e in same if far(e, first.phase) <= width), key=lambda e: side * e.value)
