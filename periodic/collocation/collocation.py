@@ -160,8 +160,11 @@ class Collocation(MeshMethod):
         return replace(error, orbit=max(error.orbit, missing), multiplier=multiplier, rounding=rounding)
 
     def rewritten(self, system: System, orbit: Orbit) -> tuple[Mesh, Array] | None:
-        """Return the mesh with the events of the orbit's own motion; None where one of them grazes."""
-        if impacts.tied(system, orbit):
+        """Return the mesh with the events of the orbit's own motion; None where one of them grazes.
+
+        None as well where the orbit itself says which kinks it passes, as its word changes no modes.
+        """
+        if impacts.tied(system, orbit) or not self.settles(system):
             return None
         try:
             nodes = motions.passed(system, orbit, motions.FOLLOWED)

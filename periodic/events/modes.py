@@ -245,9 +245,14 @@ def modes_at(system: System, orbit: Orbit, node: int, switch: int) -> Array:
 
 def modes_in(system: System, orbit: Orbit, interval: int) -> Array:
     """Return the modes in one interval, (1, columns), or (1, 0) where guards do not depend on them."""
+    return modes_in_all(system, orbit, [interval])
+
+
+def modes_in_all(system: System, orbit: Orbit, intervals: Sequence[int] | Array) -> Array:
+    """Return the modes in some intervals, (K, columns), or (K, 0) where guards do not depend on them."""
     if not getattr(system, "guards_depend", False):
-        return np.zeros((1, 0))
-    return sides(system, orbit)[interval][None]
+        return np.zeros((len(intervals), 0))
+    return sides(system, orbit)[intervals]
 
 
 def linearise(

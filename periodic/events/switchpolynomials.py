@@ -81,6 +81,18 @@ class _Evaluated:
         side = np.repeat(self.modes, tau.shape[1], axis=0)
         return guards(self.system, flat, tau.ravel(), orbit.parameter, side).reshape(*tau.shape, -1)
 
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """How steeply switches change along the motion: at the event nodes (k, switches), and at the most."""
+        orbit, at = self.orbit, self.orbit.mesh.starts
+        flat = (-1, orbit.stages.shape[2])
+        states = np.concatenate([orbit.nodes[at], orbit.stages.reshape(flat)])
+        rates = np.concatenate([orbit.node_rates[at], orbit.knot_rates[:, 1:].reshape(flat)])
+        tau = np.append(orbit.phases, orbit.stage_phases.ravel())
+        by_state, by_phase, _ = self.system.switch_gradient(states, tau, orbit.parameter)
+        slopes = np.abs(by_phase + np.einsum("psn,pn->ps", by_state, rates))
+        return slopes[: len(at)], slopes[len(at) :].max(axis=0)
+
 
 _LATEST: deque[_Evaluated] = deque(maxlen=KEPT)
 """Of the orbits last looked at."""
@@ -113,6 +125,12 @@ class SwitchPolynomials:
     def modes(self) -> Array:
         """The modes of the surfaces in each interval, shape (N, columns)."""
         return self._known.modes
+
+    def turns(self, switch: int, node: int) -> bool:
+        """Whether a switch is stationary at an event node."""
+        at_nodes, steepest = self._known.slopes
+        slope = at_nodes[node, switch]
+        return bool(slope <= AT_EXTREMUM * max(slope, steepest[switch]))
 
     def along(self, switch: int, everywhere: bool = False) -> Along:
         """Return a switch around the orbit, with extremes where it may pass its level, or `everywhere`."""

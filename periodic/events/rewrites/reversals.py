@@ -41,7 +41,7 @@ def reversals(system: System, orbit: Orbit) -> list[Reversal]:
         inside = ahead[:1] if stuck_until(system, orbit, ahead[0]) is None else ahead[:2]
         last = ahead[len(inside)]
         closes = events[last].switch == first.switch and events[last].direction == -first.direction
-        if closes and _is_stationary(system, orbit, inside[0], first.switch):
+        if closes and SwitchPolynomials(system, orbit).turns(first.switch, inside[0]):
             found.append(Reversal(i, tuple(inside), last))
     return found
 
@@ -60,17 +60,6 @@ def _holding(system: System) -> list[int]:
     return [k for k in of_held(system) if surface_of(system, k).kind != Kind.SLIDER]
 
 
-def _is_stationary(system: System, orbit: Orbit, node: int, switch: int) -> bool:
-    """Whether a switch turns at an event node."""
-    flat, at = (-1, orbit.stages.shape[2]), orbit.mesh.starts[node]
-    states = np.concatenate([orbit.nodes[at : at + 1], orbit.stages.reshape(flat)])
-    rates = np.concatenate([orbit.node_rates[at : at + 1], orbit.knot_rates[:, 1:].reshape(flat)])
-    tau = np.append(orbit.phases[node], orbit.stage_phases.ravel())
-    by_state, by_phase, _ = system.switch_gradient(states, tau, orbit.parameter)
-    slope = np.abs(by_phase[:, switch] + np.einsum("pn,pn->p", by_state[:, switch], rates))
-    return bool(slope[0] <= AT_EXTREMUM * slope.max())
-
-
 def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float, float]:
     """Return where sticking that holds a switch about a phase begins and ends; the phase twice if none."""
     for jump in _holding(system):
@@ -80,7 +69,7 @@ def held(system: System, orbit: Orbit, switch: int, phase: float) -> tuple[float
                 continue
             length = float((orbit.phases[release] - orbit.phases[j]) % orbit.mesh.period)
             since = float((phase - orbit.phases[j] + AT_EXTREMUM) % orbit.mesh.period) - AT_EXTREMUM
-            if since <= length + AT_EXTREMUM and _is_stationary(system, orbit, j, switch):
+            if since <= length + AT_EXTREMUM and SwitchPolynomials(system, orbit).turns(switch, j):
                 return phase - since, phase - since + length
     return phase, phase
 

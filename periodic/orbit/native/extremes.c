@@ -113,13 +113,13 @@ static int highest(const struct samples *s, struct peak *found)
 /* The outputs at the collocation points, and their phases. */
 static void sample(const struct call *c, double *rate, double *state, double *tau, double *values)
 {
-    const whole n = c->n, ncol = c->ncol, each = ncol * n;
-    for (whole j = 0; j < c->count; j++) {
-        memcpy(rate + j * each, c->knot_rates + (j * (ncol + 1) + 1) * n, each * sizeof(double));
-        memcpy(state + j * each, c->knots + (j * (ncol + 1) + 1) * n, each * sizeof(double));
-        for (whole l = 0; l < ncol; l++)
-            tau[j * ncol + l] = c->left[j] + c->width[j] * c->places[l + 1];
-    }
+    const whole n = c->n, ncol = c->ncol;
+    memcpy(state, c->stages, c->count * ncol * n * sizeof(double));
+    for (whole j = 0, point = 0; j < c->count; j++)
+        for (whole l = 1; l <= ncol; l++, point++) {
+            rate_in(c, j, c->derivatives + l * (ncol + 1), rate + point * n);
+            tau[point] = c->left[j] + c->width[j] * c->places[l];
+        }
     c->values_at(c->count * ncol, rate, state, c->algebraic, tau, c->parameter, values);
 }
 

@@ -14,9 +14,9 @@ typedef void outputs_at(whole points, const double *rate, const double *state, c
 /* As `periodic.orbit.native.outputs.Call` fills it. */
 struct call {
     whole count, ncol, n, m, outputs, points;
-    const double *left, *width, *knots, *knot_rates, *algebraic, *parameter, *tau; /* of the orbit */
-    const double *places, *weights, *inner_weights; /* of the scheme: knots, barycentric weights */
-    rows_at *rows;                                   /* of the system */
+    const double *left, *width, *nodes, *stages, *algebraic, *parameter, *tau; /* of the orbit */
+    const double *places, *weights, *inner_weights, *derivatives; /* of the scheme: knots, barycentric weights */
+    rows_at *rows;                                                 /* of the system */
     outputs_at *values_at;
     double *values;
     double period;
@@ -69,17 +69,45 @@ static double *lay_out(const struct call *c, whole points, struct room *r)
     return all;
 }
 
+/* The state in an interval, from the values of the Lagrange polynomials there. */
+static void state_in(const struct call *c, whole interval, const double *basis, double *state)
+{
+    const whole n = c->n, ncol = c->ncol;
+    const double *begin = c->nodes + interval * n, *stage = c->stages + interval * ncol * n;
+    for (whole i = 0; i < n; i++) {
+        double sum = basis[0] * begin[i];
+        for (whole l = 0; l < ncol; l++)
+            sum += basis[l + 1] * stage[l * n + i];
+        state[i] = sum;
+    }
+}
+
+/* The rate in an interval, from the derivatives of the Lagrange polynomials there. From differences to the interval's
+   begin, which are exact: rounding grows with 1 / width otherwise. */
+static void rate_in(const struct call *c, whole interval, const double *slopes, double *rate)
+{
+    const whole n = c->n, ncol = c->ncol;
+    const double *begin = c->nodes + interval * n, *stage = c->stages + interval * ncol * n;
+    for (whole i = 0; i < n; i++) {
+        double sum = 0;
+        for (whole l = 0; l < ncol; l++)
+            sum += slopes[l + 1] * (stage[l * n + i] - begin[i]);
+        rate[i] = sum / c->width[interval];
+    }
+}
+
 /* States, rates and a guess for the unknowns. */
 static void interpolate(const struct call *c, const struct room *r, whole points, const double *tau)
 {
     const whole knots = c->ncol + 1;
-    double basis[16];
+    double basis[16], slopes[16];
     for (whole i = 0; i < points; i++) {
         double theta;
         const whole at = locate(c, tau[i], &theta);
         lagrange(knots, c->places, c->weights, theta, basis);
-        combine(knots, c->n, basis, c->knots + at * knots * c->n, r->state + i * c->n);
-        combine(knots, c->n, basis, c->knot_rates + at * knots * c->n, r->rate + i * c->n);
+        combine(knots, knots, basis, c->derivatives, slopes);
+        state_in(c, at, basis, r->state + i * c->n);
+        rate_in(c, at, slopes, r->rate + i * c->n);
         if (c->m) {
             lagrange(c->ncol, c->places + 1, c->inner_weights, theta, basis);
             combine(c->ncol, c->m, basis, c->algebraic + at * c->ncol * c->m, r->algebraic + i * c->m);

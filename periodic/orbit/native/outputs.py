@@ -13,8 +13,8 @@ from periodic.system import System, address_of
 
 _SOURCES = ("periodic.orbit.native:outputs.c", "periodic.orbit.native:extremes.c")
 _SIZES = ("count", "ncol", "n", "m", "outputs", "points")
-_ORBIT = ("left", "width", "knots", "knot_rates", "algebraic", "parameter", "tau")
-_SCHEME = ("places", "weights", "inner_weights")
+_ORBIT = ("left", "width", "nodes", "stages", "algebraic", "parameter", "tau")
+_SCHEME = ("places", "weights", "inner_weights", "derivatives")
 
 
 class Call(ctypes.Structure):
@@ -53,8 +53,8 @@ def _called(what: str, system: System, orbit: Orbit, tau: Array, values: Array) 
     if rows is None or library is None:
         return None
     scheme, grid = orbit.mesh.scheme, orbit.grid
-    own = grid.left, grid.width, orbit.knots, orbit.knot_rates, orbit.algebraic, orbit.parameter, tau
-    fixed = scheme.knots, scheme.barycentric, scheme.inner_barycentric
+    own = grid.left, grid.width, orbit.nodes, orbit.stages, orbit.algebraic, orbit.parameter, tau
+    fixed = scheme.knots, scheme.barycentric, scheme.inner_barycentric, scheme.differentiation
     kept = [plain(array) for array in (*own, *fixed)]
     sizes, found = (count, ncol, n, m, len(system.outputs), len(tau)), address(values)
     call = Call(*sizes, *map(address, kept), rows, values_at, found, orbit.mesh.period)

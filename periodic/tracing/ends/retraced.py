@@ -17,9 +17,10 @@ from periodic.correction.error import AT_WORST
 from periodic.correction.identity import distance
 from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
+from periodic.correction.problem import Problem
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
-from periodic.orbit.orbit import LEAST_SPAN
+from periodic.orbit.orbit import LEAST_SPAN, Orbit
 from periodic.results.point import Point
 from periodic.results.stop import Reason, Stop
 from periodic.system.precision import CONVERGED
@@ -49,6 +50,9 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     if before is None or solver.problem.free != (solver.problem.index,) or solver.problem.autonomous:
         return None
     guess = solver.problem.restrict(before.orbit)
+    ahead = tangent(solver.problem, new, (before.parameter - new.value) / new.tangent.parameter)
+    if not _near(solver.problem, new, ahead, guess):
+        return None
     parameter = guess.parameter.copy()
     parameter[solver.problem.index] = new.value
     back = solver.at_parameter(replace(guess, parameter=parameter), -float(np.sign(new.tangent.parameter)))
@@ -57,11 +61,19 @@ def retraced(solver: Solver, points: Sequence[Point], new: Solution) -> Stop | N
     allowed = AT_WORST * (back.error.orbit + new.error.orbit) * max(new.orbit.span(), LEAST_SPAN)
     if distance(solver.problem, new.orbit, back.orbit) > allowed or not _one(solver, new, back):
         return None
-    if not _leads_to(solver, new, before):
+    if not _leads_to(solver, new, ahead, before):
         return None
     turn = _turn(points)
     assert turn is not None
     return Stop(Reason.RETRACED, f"beyond {points[turn].parameter:.10g} the orbits are those before it")
+
+
+def _near(problem: Problem, new: Solution, ahead: Orbit, orbit: Orbit) -> bool:
+    """Whether an orbit may be the one ahead: the tangent leads nearer to it than it is long.
+
+    Those on another sheet lie farther off, so that they need not be solved for at the same parameter.
+    """
+    return not in_order(ahead) or distance(problem, ahead, orbit) <= distance(problem, ahead, new.orbit)
 
 
 def _one(solver: Solver, new: Solution, back: Solution) -> bool:
@@ -81,21 +93,22 @@ def _one(solver: Solver, new: Solution, back: Solution) -> bool:
     return ok and distance(solver.problem, each[0].orbit, each[1].orbit) <= allowed
 
 
-def _leads_to(solver: Solver, new: Solution, before: Point) -> bool:
+def _leads_to(solver: Solver, new: Solution, ahead: Orbit, before: Point) -> bool:
     """Whether the branch as it goes on has, where a point before the turn lies, the orbit of that point.
 
     With its word there may be none at the new parameter on that side of the turn: then Newton has led from it
     to the other side. Here there is one on either side.
     """
-    ahead = tangent(solver.problem, new, (before.parameter - new.value) / new.tangent.parameter)
     guess = ahead if in_order(ahead) else new.orbit
     parameter = guess.parameter.copy()
     parameter[solver.problem.index] = before.parameter
     sign = float(np.sign(new.tangent.parameter))
     found = solver.at_parameter(replace(guess, parameter=parameter), sign)
+    if not found.ok:
+        return False
     known = solver.problem.restrict(before.orbit)
     allowed = AT_WORST * (before.error.orbit + found.error.orbit) * max(known.span(), LEAST_SPAN)
-    return found.ok and distance(solver.problem, known, found.orbit) <= allowed
+    return distance(solver.problem, known, found.orbit) <= allowed
 
 
 def _turn(points: Sequence[Point]) -> int | None:
