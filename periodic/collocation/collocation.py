@@ -43,7 +43,7 @@ from periodic.stability.multipliers import Spectrum
 from periodic.system import System
 
 NODE_BEFORE_KINK = (1.0, 0.0, 10.0)
-"""How far outside its excursion (rad, in tolerances) an event node is put on a new mesh, tried in turn."""
+"""How far outside its excursion (rad, in tolerances) an event node lies on a new mesh, tried in turn."""
 
 SHALLOWER = (10.0, 100.0)
 """Factors by which the least event level is raised, in turn, where a new mesh fails."""
@@ -117,8 +117,8 @@ class Collocation(MeshMethod):
     def _beside(self, equations: Equations, orbit: Orbit) -> LinearisedEquations:
         """Return the equations at an orbit linearised and solved. Raises FAILURES.
 
-        Event nodes are moved off their levels by as much as rounding may move them. The orbit hardly changes
-        by that, but the multipliers do where a contact is shallow, and the error estimate is to show it.
+        Event nodes are displaced by the rounding error of their switches. This hardly changes the orbit, but
+        where a contact is shallow it changes the multipliers, so that the error estimate contains it.
         """
         system = equations.system
         off = aside(orbit, event_rows(system, orbit, equations.free))
@@ -191,7 +191,7 @@ class Collocation(MeshMethod):
         return spectrum_of(correction.fundamental, stepping, trivial)
 
     def refine(self, system: System, orbit: Orbit, error: ErrorEstimate) -> Refinement:
-        """Say to which events the mesh should be tied, and how many intervals it needs."""
+        """Return what decides which events get nodes of the mesh, and how many intervals it has."""
         return CollocationRefinement(self, system, orbit, error)
 
 
@@ -241,7 +241,7 @@ class CollocationRefinement(Refinement):
 
     @cached_property
     def _in_wrong_mode(self) -> bool:
-        """Whether it slips where it should stick, or rests before it can, which no finer mesh mends."""
+        """Whether it slips where it should stick, or rests too early: no finer mesh changes that."""
         if not np.isinf(self.error.orbit):
             return False
         return np.isinf(neglected(self.system, self.orbit)) or bool(mode_violations(self.system, self.orbit))
@@ -285,7 +285,7 @@ class CollocationRefinement(Refinement):
         return self._spread(self._ntst, events, phases)
 
     def _own(self, events: tuple[EventNode, ...], phases: Array) -> Mesh:
-        """The same for this orbit alone: spread anew about its kinks, fewer intervals may do."""
+        """The same for this orbit alone, which may need fewer intervals if they are redistributed."""
         begun = evenly(self.orbit) if self.system.switches else self.orbit.mesh.ntst
         return self._spread(self._wanted_ntst(begun), events, phases)
 

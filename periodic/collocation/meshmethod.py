@@ -41,7 +41,7 @@ from periodic.refinement.equidistribution import redistribute
 from periodic.system import Kind, System
 
 DEGREES = {1e-2: 3, 1e-4: 4, 1e-6: 5, 1e-9: 6, 1e-11: 7}
-"""Collocation points in each interval down to a tolerance."""
+"""Number of collocation points in each interval, down to a tolerance."""
 
 WRONG = {
     Breach.GRAZED: Outcome.GRAZING,
@@ -174,7 +174,7 @@ class MeshMethod(Discretisation):
     def _creeps(system: System, orbit: Orbit) -> bool:
         """Whether an elastic slider has neither event nodes nor a mode for the whole period.
 
-        It then creeps, which none of its modes describes.
+        It then drifts slowly, which none of its modes describes.
         """
         modes = dict(orbit.mesh.modes)
         own = [s.switch for s in of_kind(system, Kind.SLIDER) if s.switch not in modes]

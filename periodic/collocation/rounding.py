@@ -1,4 +1,4 @@
-"""Rounding beside hard or shallow contacts: the orbit does not show it, its multipliers do.
+"""Rounding at stiff or shallow contacts: it affects the multipliers far more than the orbit.
 
 An event node lies where a switch is at its level within the rounding of the terms that cancel in it; beside a
 grazing that is a large part of a contact's depth. Within a contact of stiffness k the multipliers have the
@@ -24,7 +24,7 @@ UNTOLD = 0.1
 """Error of the begin of a contact, over its length, above which the multipliers are not known."""
 
 LIKELY = 2
-"""Likely error of a switch at its level, in the same roundings."""
+"""Typical error of a switch at its level, in the same roundings."""
 
 
 def aside(orbit: Orbit, rows: list[Row]) -> Array:

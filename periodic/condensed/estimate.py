@@ -50,7 +50,7 @@ def applies(operator: CondensedOperator) -> bool:
 def estimate(
     problem: Problem, operator: CondensedOperator, tangent: Increment, spectrum: Spectrum
 ) -> ErrorEstimate:
-    """Return the errors of a converged orbit, held on the arclength constraint across its tangent."""
+    """Return the errors of a converged orbit, held on the arclength constraint normal to its tangent."""
     orbit = operator.orbit
     arclength = ArclengthConstraint(orbit, tangent, 0.0, problem.units(orbit), problem.index, size_of(orbit))
     try:

@@ -16,7 +16,7 @@ from periodic.system import System, jumps_of, resets_of
 
 @dataclass(frozen=True)
 class ArclengthConstraint:
-    """<u - origin, direction> = distance, a hyperplane across `direction` (Keller 1977).
+    """<u - origin, direction> = distance, the hyperplane normal to `direction` (Keller 1977).
 
     The scalar product is that of `Increment.dot`: the mean over the period of <x, y>/size^2, x and y at fixed
     tau, plus p q / scale^2 of the free parameters (`index` is the first one's), plus the part of the lengths

@@ -100,7 +100,7 @@ class Discretisation(Protocol):
     def error(
         self, problem: Problem, correction: Correction, tangent: Increment, spectrum: Spectrum
     ) -> ErrorEstimate:
-        """Estimate the errors of a converged orbit across its branch.
+        """Estimate the errors of a converged orbit in the plane normal to its branch.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Rates of a motion at a point and their slopes, from the equations; before an event, from the orbit."""
+"""Rates of a motion at a point and their derivatives, from the equations; before an event, from the orbit."""
 
 from __future__ import annotations
 

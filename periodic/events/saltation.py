@@ -1,4 +1,4 @@
-"""Saltation: how perturbations at fixed tau pass an event at which the state or its rates jump.
+"""Saltation: the map of perturbations at fixed tau through an event at which the state or its rates jump.
 
 With x+ = r(x-, tau, p) where s(x, tau, p) = 0, and x' = f- before and f+ after,
 

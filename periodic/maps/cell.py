@@ -12,7 +12,7 @@ Cell = tuple[float, ...]
 """Values (SI) of the parameters that a map varies, in its order."""
 
 Chunk = tuple[Cell, ...]
-"""Neighbours that are computed one after another, each from the one before; a killed run loses as much."""
+"""Neighbouring cells, each computed from the one before. A killed run loses one for each process."""
 
 
 @dataclass(frozen=True)

@@ -48,9 +48,9 @@ def computed(given: Task | bytes, names: Sequence[str], chunk: Chunk) -> list[Ou
 
 
 def _attempted(task: Task, values: Mapping[str, float], near: Orbit | None) -> tuple[Branch | None, str]:
-    """The branch of a cell and why it is not complete: from a neighbour's first orbit, else from scratch.
+    """The branch of a cell, from a neighbour's first orbit or as the task begins, and why it is incomplete.
 
-    Where the neighbour's sheet does not reach the start the engine may find an orbit at a turn nearby: from
+    Where the neighbour's sheet does not reach the start the engine may find an orbit at a fold nearby: from
     there only a part of the branch would be traced.
     """
     if near is not None:

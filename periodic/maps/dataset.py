@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 RECORDED = ("status", "reason", "points", "newton", "seconds")
-"""What a map says of each cell besides its numbers."""
+"""Variables that a map has for each cell besides its numbers."""
 
 NONE = Outcome(())
 """Stands for a cell that is not computed yet."""
@@ -52,7 +52,7 @@ def dataset(task: Task, plan: Plan, found: Mapping[Cell, Outcome]) -> xr.Dataset
 
 
 def check_numbers(task: Task, names: Sequence[str]) -> None:
-    """Raise ValueError for numbers that have the name of something else in the result."""
+    """Raise ValueError for numbers whose names the result uses otherwise."""
     taken = {*RECORDED, *names, "cell"}
     for name in task.numbers:
         if name in taken:
@@ -65,7 +65,7 @@ def _owner(task: Task, column: str) -> str:
 
 
 def _column(name: str, given: Sequence[Any]) -> tuple[tuple[str, ...], np.ndarray]:
-    """A number of all cells: as it is, or where any has several with a further dimension."""
+    """A number over all cells, with a further dimension if any cell has several."""
     several = [value for value in given if isinstance(value, Sequence)]
     if not several:
         return (), np.array([np.nan if value is None else value for value in given], dtype=float)

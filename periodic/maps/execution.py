@@ -27,8 +27,8 @@ class ExecutorGoneError(RuntimeError):
 class Execution:
     """Chunks that are computed by workers, as many at a time as they take.
 
-    A chunk whose worker died is computed again cell by cell; what then dies is that cell. Of processes of our
-    own all die together: there each chunk under way is first computed again by itself.
+    A chunk whose worker died is computed again cell by cell: the cell at which a worker dies again is lost.
+    Processes of our own all die together: there each chunk under way is first computed again by itself.
     """
 
     workers: Workers
@@ -71,7 +71,7 @@ class Execution:
             raise
 
     def _alone(self, chunk: Chunk) -> Iterator[list[Outcome]]:
-        """Yield what becomes of a chunk that a worker may have died of, and of nothing beside it."""
+        """Yield the outcomes of a chunk whose worker may have died of it, submitted by itself."""
         found = self._result(self._submitted(chunk))
         if found is not None:
             yield found

@@ -30,14 +30,14 @@ class Workers(Protocol):
 
     @property
     def ahead(self) -> int:
-        """How many chunks it is given before the first is done."""
+        """Number of chunks that are submitted before the first is done."""
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Give it work."""
 
     @property
     def own(self) -> bool:
-        """Whether they are ours: when one has died `close` makes room for others."""
+        """Whether they are our own processes: after one has died `close` lets new ones start."""
 
     def close(self) -> None:
         """Release its own resources; work under way is given up."""
@@ -58,7 +58,7 @@ class Here:
         return done
 
     def close(self) -> None:
-        """Nothing is left."""
+        """There is nothing to release."""
 
 
 class Processes:
@@ -116,9 +116,9 @@ class Given:
 
 
 def _tracked() -> None:
-    """Start loky's process that tidies up such that a closed terminal, which tells all, does not end it.
+    """Start loky's resource tracker with SIGHUP blocked, so that a closed terminal does not end it.
 
-    What is blocked here stays blocked there; here it is heard a moment later.
+    The tracker inherits the mask; in this process a signal that came meanwhile is delivered afterwards.
     """
     from loky.backend import resource_tracker
 
@@ -134,7 +134,7 @@ def _tracked() -> None:
 def _dependent(parent: int) -> None:
     """Leave Ctrl-C and a closed terminal to the process that has the map, and end when that has ended.
 
-    It tells its number: whoever asks for the parent here may find another, as it may have ended by now.
+    parent: its process id, given by itself, as it may have ended before this process can ask for it.
     """
     for name in ("SIGINT", "SIGHUP"):
         if hasattr(signal, name):

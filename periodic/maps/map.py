@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 CHUNK = 8
-"""Cells in a chunk: few to lose, many to share a way to a process and each other's first orbit."""
+"""Cells in a chunk: few are lost with it, but enough share its overhead and start from their neighbours."""
 
 
 class MapStoppedError(RuntimeError):

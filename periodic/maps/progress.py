@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a map is, told after each chunk; as a text one line.
+    """Progress of a map, reported after each chunk; as text it is one line.
 
     Parameters
     ----------
     done : int
-        Cells that are computed, or were before.
+        Cells computed, those of earlier calls included.
     total : int
         Cells that there are.
     failed : int

@@ -41,10 +41,10 @@ TABLE = """CREATE TABLE IF NOT EXISTS chunks
     (number INTEGER PRIMARY KEY, content TEXT NOT NULL, digest TEXT NOT NULL)"""
 
 RARELY = 20.0
-"""How much longer than writing the file the work before takes, for it to be written between chunks."""
+"""Least time between two writes, over the time that a write takes."""
 
 LEAST_SECONDS = 10.0
-"""Seconds between two times, at least."""
+"""Least time between two writes (s)."""
 
 
 class MapFileError(ValueError):
@@ -89,7 +89,7 @@ class Store:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with suppress(sqlite3.Error):  # what a full disk has not taken was told when it was written
+        with suppress(sqlite3.Error):  # a full disk was reported when it was written to
             self._base.close()
 
     def _opened(self) -> sqlite3.Connection:

@@ -37,7 +37,7 @@ class Number(Protocol):
     """
 
     def __call__(self, task: Task, branch: Branch) -> Read | Mapping[str, Read]:
-        """Return a number, a sequence of them in order along the branch, or such by what they are.
+        """Return a number, a sequence of them in order along the branch, or a mapping of these by name.
 
         Parameters
         ----------
@@ -222,7 +222,7 @@ class Task:
         )
 
     def described(self) -> dict[str, Any]:
-        """Return what makes a difference to its numbers.
+        """Return a description of all that affects the numbers.
 
         Returns
         -------

@@ -25,7 +25,7 @@ MISSED_KINK = 1e-3
 def refined(solver: Solver, solution: Solution, *, fixed: bool = False) -> Solution:
     """Refine the mesh until error estimate and event nodes are right; the solution on the last mesh.
 
-    `fixed` keeps the parameter; else the solution stays on the arclength constraint across its tangent. The
+    `fixed` keeps the parameter; else the solution stays on the constraint normal to its tangent. The
     error estimate may still exceed the tolerance.
     """
     for _ in range(MOST_MESHES):
@@ -61,7 +61,7 @@ def _on_mesh(solver: Solver, solution: Solution, mesh: Mesh, phases: Array, fixe
 
 
 def carried(solver: Solver, solution: Solution, mesh: Mesh, phases: Array) -> Solution:
-    """Solve for an orbit again on another mesh, on the arclength constraint across its tangent."""
+    """Solve for an orbit again on another mesh, on the arclength constraint normal to its tangent."""
     old, along = solution.orbit, solution.tangent
 
     def attempt(guess: Orbit) -> Solution:

@@ -13,10 +13,10 @@ from periodic.results.point import Point
 from periodic.results.record import Record
 
 OUTPUTS = 3
-"""Outputs that the table tells of."""
+"""Largest number of outputs in the table."""
 
 MOST_POINTS = 25
-"""Special points that it has."""
+"""Largest number of special points in it."""
 
 
 def branch_html(record: Record, stable_between: np.ndarray, said: tuple[str, ...]) -> str:

@@ -16,9 +16,9 @@ class Checkpoint:
     Parameters
     ----------
     sign : int
-        The way it set out, 1 or -1 times the parameter.
+        Direction in which it set out, 1 or -1 times the parameter.
     tangent : Increment
-        Of its last orbit, just as the run had it.
+        That of its last orbit, bit for bit.
     fundamental : ndarray, shape (N+1, n, n)
         Fundamental matrices of its last orbit at the mesh points.
     ds : float

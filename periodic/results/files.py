@@ -1,4 +1,4 @@
-"""Files that are complete or not there, and the digest that tells whether content is what was written."""
+"""Files that are complete or not there, and the digest by which their content is verified."""
 
 from __future__ import annotations
 

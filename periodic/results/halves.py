@@ -42,7 +42,7 @@ def joined(parameter: str, layout: Layout, halves: Sequence[Half], made: dict[st
     layout : Layout
         Names, units and scales.
     halves : sequence of Half
-        None, one or two; the first of two is turned round.
+        None, one or two; the first of two is reversed.
     made : dict
         What they were made with, by value.
 

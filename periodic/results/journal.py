@@ -42,7 +42,7 @@ PATIENCE = 5000
 """How long (ms) a step waits for somebody who reads the journal."""
 
 PAGE = 512
-"""Bytes that are written and lost as one: few, so that a damaged file is readable up to the damage."""
+"""Page size in bytes: small, so that a damaged file is readable up to the damage."""
 
 
 MAGIC = b"SQLite format 3\0"
@@ -90,7 +90,7 @@ class Journal:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        with suppress(sqlite3.Error):  # what a full disk has not taken was told when it was written
+        with suppress(sqlite3.Error):  # a full disk was reported when it was written to
             self._base.close()
 
     def add(self, points: Sequence[Point], stop: Stop, checkpoint: Checkpoint | None) -> None:
@@ -147,7 +147,7 @@ class Journal:
         self._base.execute(TABLE)
 
     def _reason(self, error: Exception, content: bytes) -> str:
-        """What the operating system has against so large a file: SQLite only tells that it failed."""
+        """Why the operating system refuses to write the file: SQLite says only that it failed."""
         if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL:
             return os.strerror(errno.ENOSPC)
         try:

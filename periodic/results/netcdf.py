@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr  # takes longer to import than all else
 
 SEAL = b"orbitrace sha256"
-"""Stands before the digest at the end of a file: what does not agree with it is not read any further."""
+"""Precedes the digest at the end of a file; a file that does not match its digest is not read."""
 
 OURS = re.compile(r"orbitrace [a-z]{1,10} \d{1,5}")
 """Formats of this package, of any version."""
@@ -108,7 +108,7 @@ def load(path: Path) -> Record:
 
 
 def _check_format(found: object, path: Path) -> None:
-    """Refuse another format than this version's; of formats that are none of ours no name is told."""
+    """Refuse another format than this version's, and name it only where it is one of this package."""
     if not (isinstance(found, str) and found == FORMAT):
         known = found if isinstance(found, str) and OURS.fullmatch(found) else None
         raise BranchFileError(f"branch file {str(path)!r} has format {known!r}; expected {FORMAT!r}")
@@ -140,7 +140,7 @@ def sealed(content: bytes) -> bytes:
 
 
 def sound(content: bytes) -> bool:
-    """Whether the bytes of a file are those that were sealed, or never were: other tools leave no seal."""
+    """Whether a file matches its seal, or has none, as files of other tools."""
     length = len(SEAL) + len(digest())
     body, seal = content[:-length], content[-length:]
     return not seal.startswith(SEAL) or seal == SEAL + digest(body).encode()

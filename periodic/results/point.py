@@ -21,7 +21,7 @@ from periodic.stability.multipliers import ERRORS_FROM_ONE, LOST_FLOW, ROUNDED_O
 from periodic.system.precision import EPSILON
 
 SHOWN = 8
-"""Multipliers that a notebook shows."""
+"""Largest number of multipliers that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,8 +54,8 @@ class Point:
     slope : float
         d parameter / d arclength.
     trivial : float, optional
-        Distance from 1 of the multiplier that an autonomous orbit has there (two of a conservative one),
-        which tells how accurate the multipliers are; None for a forced orbit.
+        Distance from 1 of the trivial multiplier of an autonomous orbit (two of a conservative one), which
+        measures the accuracy of the multipliers; None for a forced orbit.
     conservative : bool
         Whether two multipliers are 1 whatever the parameters.
     marginal : bool

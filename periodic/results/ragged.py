@@ -1,6 +1,6 @@
-"""Orbits as ragged arrays: those of all points in one array each, and how many numbers are every point's.
+"""Orbits as ragged arrays: all points in one array, with the number of entries of each point.
 
-The dimensions segment, break, node, stage and event run over all points; the variables `*_count` tell the
+The dimensions segment, break, node, stage and event run over all points; the variables `*_count` are the
 share of each. Sums of shares that are not the arrays' lengths raise ValueError.
 """
 

@@ -36,8 +36,8 @@ def handled(handler: Handler) -> Iterator[dict[int, Handler]]:
         return
     # A closed terminal that `nohup` has a program ignore stays ignored.
     nohup = HANGUP is not None and signal.getsignal(HANGUP) == signal.SIG_IGN
-    heard = [each for each in ENDING if not (nohup and each == HANGUP)]
-    before: dict[int, Handler] = {each: signal.signal(each, handler) for each in heard}
+    caught = [each for each in ENDING if not (nohup and each == HANGUP)]
+    before: dict[int, Handler] = {each: signal.signal(each, handler) for each in caught}
     try:
         yield before
     finally:

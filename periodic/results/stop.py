@@ -51,7 +51,7 @@ COUNTED = {
     Reason.INTERRUPTED: "after {} points",
     Reason.MAX_POINTS: "{} points",
 }
-"""What goes with a reason that a count or a size tells of."""
+"""Details of reasons that state a count or a size."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Stop:
 
     @classmethod
     def after(cls, reason: Reason, size: float) -> Stop:
-        """Return that a branch ended at a count or a size that tells of the reason.
+        """Return that a branch ended, with the count or the size that goes with the reason.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Autonomous orbits that shrink to an equilibrium: there are some of all sizes, or none."""
+"""Autonomous orbits that turn out to be an equilibrium: orbits of all sizes exist, or none."""
 
 from __future__ import annotations
 

@@ -22,12 +22,12 @@ LEAST = 1e-2
 """Least range of a state in that, as a part of the largest range of all states."""
 
 STEPS = 15
-"""Most steps, each with differences in every state."""
+"""Largest number of steps, each with differences in every state."""
 
 
 @dataclass
 class ReturnMap:
-    """The map of a state over a period, and how far its motion ranges.
+    """The map of a state over a period, and the ranges of the states.
 
     Parameters
     ----------
@@ -35,8 +35,8 @@ class ReturnMap:
         A state (n,) at the beginning of a period to the states (K, n) in it; the last is that at its end.
         Raises what the integration raises.
     tolerance, enough : float
-        How far apart the ends of an orbit may be, as a part of its largest range: what is aimed at, and what
-        will do where no step leads nearer, as at a kink of the map.
+        Distance of x(2 pi) from x(0), as a part of the largest range of a state: the aim, and what is taken
+        where no step leads nearer, as at a kink of the map.
     """
 
     follow: Callable[[Array], Array]

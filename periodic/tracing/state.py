@@ -12,8 +12,8 @@ from periodic.correction.solution import Solution
 class State:
     """Where a run stands: its last solution, the first, the next step's size, and what it has counted.
 
-    kept: how many of its points belong to steps that were completed. least: the least step, beside a grazing
-    less than elsewhere: a fold may lie that near.
+    kept: how many of its points belong to steps that were completed. least: the least step, which is
+    shorter near grazing, where a fold may lie very close.
     """
 
     begun: Solution

@@ -22,7 +22,7 @@ Complex = NDArray[np.complex128]
 
 
 def lost(system: System, orbit: Orbit) -> float:
-    """Return by how much the multiplier of the least damped of such vibrations comes out too small."""
+    """Return by how much the multiplier of the least damped such vibration is computed too small."""
     width = orbit.grid.width
     jacobian = jacobians(system, orbit) * width[:, None, None]
     with np.errstate(over="ignore", invalid="ignore"):  # what is beyond all numbers is large

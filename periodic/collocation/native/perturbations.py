@@ -1,4 +1,4 @@
-"""Fundamental matrices of an orbit from the steps that C gives: it does not know what passes a jump."""
+"""Fundamental matrices of an orbit from the steps that C computes, to which saltation is added here."""
 
 from __future__ import annotations
 

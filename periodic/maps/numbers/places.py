@@ -60,7 +60,7 @@ class Places:
 
 @dataclass(frozen=True)
 class StableRanges:
-    """The stretches of the branch that are stable: the parameter at both ends of each, in order along it."""
+    """The stable parts of the branch: the parameter at both ends of each, in order along it."""
 
     def __call__(self, task: Task, branch: Branch) -> dict[str, list[float]]:
         """Return where they begin ("from") and end ("to"), SI."""
@@ -75,7 +75,7 @@ class StableRanges:
 
 
 def _alone(branch: Branch) -> NDArray[np.bool_]:
-    """Special points between two stable stretches: there the two meet, and none is stable."""
+    """Special points between two stable parts of the branch, at which the orbit itself is not stable."""
     stable = branch.stable
     both = np.zeros_like(stable)
     both[1:-1] = stable[:-2] & stable[2:] & ~stable[1:-1]

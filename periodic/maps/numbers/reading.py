@@ -44,7 +44,7 @@ def parameter_unit(task: Task) -> str:
 
 
 def settled(branch: Branch) -> NDArray[np.bool_]:
-    """Whether each point is stable or ends a stable stretch, as folds do; shape (points,)."""
+    """Whether each point is stable or ends a stable part, as folds do; shape (points,)."""
     stable = branch.stable
     critical = np.array([point.label.critical for point in branch], dtype=bool)
     beside = np.zeros_like(stable)

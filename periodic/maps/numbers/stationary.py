@@ -28,7 +28,7 @@ PLACE_PRECISION = 1e-7
 """Error of the place along the branch, in steps; that of the functional is about its square."""
 
 STEPS_AGAIN = 12
-"""Most steps in which the branch is followed again to its next points."""
+"""Largest number of steps in which the branch is followed again to its next points."""
 
 
 def stationary(task: Task, branch: Branch, k: int, functional: Functional) -> tuple[float, float] | None:
@@ -67,8 +67,8 @@ def _another(task: Task) -> str | None:
 
 
 def _between(branch: Branch, k: int, place: float) -> bool:
-    """Whether a place lies among point k and its neighbours, with as much again on both sides: the branch
-    may turn there.
+    """Whether a place lies between the neighbours of point k, or as far beyond: the branch may have a fold
+    there.
     """
     near = branch.values[k - 1 : k + 2]
     low, high = near.min(), near.max()

@@ -136,5 +136,5 @@ def _said(point: Point, across: Unit, heights: Heights) -> dict[str, Any]:
 
 
 def _rounded(value: float) -> float | None:
-    """Six digits; None for what is no number."""
+    """A value to six digits; None where it is not finite."""
     return float(f"{value:.6g}") if np.isfinite(value) else None
