@@ -28,8 +28,9 @@ MIDDLE = 0.02
 """Distance of the middle of a step of equilibria from the cubic through its ends, as a part of the step."""
 
 FARTHER = 2.0
-"""Where Newton fails a change is sought so many steps ahead. An excursion whose length is as the square root
-of the way left has lost less than a third of it half way to where it ends; Newton hardly converges beyond."""
+"""Where even the shortest step fails a change is sought so many steps ahead. An excursion whose length is as
+the square root of the way left has lost less than a third of it half way to where it ends; Newton hardly
+converges beyond."""
 
 
 class WordError(RejectedError):
@@ -145,10 +146,6 @@ class Stepper:
         guess = spaced(base.orbit, self.foresight.guess(base, ds))
         new = solver.on(guess, solver.constraint(base.orbit, base.tangent, ds), self._patient)
         if not new.ok:
-            farther = self.foresight.change(base, FARTHER * ds) if foreseen is None else None
-            at = None if farther is None else reached(solver, base, None, FARTHER * ds, farther)
-            if at is not None:
-                return at.end, at
             where = f", where {foreseen.name}" if foreseen is not None and foreseen.strict else ""
             raise RejectedError(f"{new.outcome.value}{where}")
         found = method.change(system, base.orbit, new.orbit)
@@ -158,6 +155,24 @@ class Stepper:
         if at is None:
             raise RejectedError(f"{found.name} within the step")
         return at.end, at
+
+    def just_ahead(self, base: Solution, ds: float) -> Reached | None:
+        """Return the change of pattern that lies a little farther than the shortest step, which failed.
+
+        Parameters
+        ----------
+        base : Solution
+            Where the step begins, with its tangent.
+        ds : float
+            The length of the step.
+
+        Returns
+        -------
+        Reached or None
+            The end of a step at the change; None where there is none.
+        """
+        farther = self.foresight.change(base, FARTHER * ds)
+        return None if farther is None else reached(self.solver, base, None, FARTHER * ds, farther)
 
     @cached_property
     def _patient(self) -> NewtonSettings:

@@ -123,8 +123,12 @@ class Steps:
                 beyond = isinstance(rejected, BeyondError)
                 unread = worded and isinstance(rejected, WordError)
                 least = max(control.ds_min, NEARLY * control.ds) if beyond else control.ds_min
-                longest = ds = ds * rejected.shorter
+                failed, longest = ds, ds * rejected.shorter
+                ds = longest
                 if unread or not ds >= least:
+                    ahead = None if unread or beyond else self._stepper.just_ahead(base, failed)
+                    if ahead is not None:
+                        return Step(ahead.end, control.ds, [], Course(), ahead, control.ds)
                     reason = Reason.INACCURATE if beyond else Reason.SMALL_STEP
                     return Refused(Stop(reason, str(rejected)), unread)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from pathlib import Path
 
@@ -208,9 +209,14 @@ def test_missing_variable_is_noticed(saved: bytes, tmp_path: Path) -> None:
 
 
 def test_saving_through_a_link(tmp_path: Path) -> None:
-    """Assert that a link stays one, and that what is no ordinary file is refused."""
+    """Assert that a link stays one, and that what is no ordinary file is refused.
+
+    It is a pipe of its own: a device would be lost to all who use the machine where the refusal fails.
+    """
     (tmp_path / "link.nc").symlink_to(tmp_path / "branch.nc")
     duffing().save(tmp_path / "link.nc")
     assert (tmp_path / "link.nc").is_symlink() and (tmp_path / "branch.nc").is_file()
-    with pytest.raises(per.BranchFileError, match="^branch file is '/dev/null', which is no ordinary file"):
-        duffing().save("/dev/null")
+    pipe = tmp_path / "pipe.nc"
+    os.mkfifo(pipe)
+    with pytest.raises(per.BranchFileError, match=f"^branch file is '{pipe}', which is no ordinary file"):
+        duffing().save(pipe)
