@@ -149,6 +149,7 @@ def test_phase_plane_is_in_SI(axes: Axes) -> None:
     x, v = np.asarray(line.get_xydata()).T
     step = point.orbit.period / (len(x) - 1)
     assert v[1:-1] == pytest.approx((x[2:] - x[:-2]) / (2 * step), abs=1e-4 * np.abs(v).max())
+    assert len(x) == 1025 and (x[-1], v[-1]) == pytest.approx((x[0], v[0]))
     assert axes.get_ylabel() == "x' (m/s)" and np.asarray(dot.get_xydata()).tolist() == [[x[0], v[0]]]
 
 
