@@ -129,6 +129,7 @@ def test_orbit(axes: Axes) -> None:
     point = gears()[len(gears()) // 2]
     assert per.plots.orbit(point, axes=axes) is axes
     x, y = np.asarray(axes.get_lines()[0].get_xydata()).T
+    assert len(x) == 1025
     assert x[-1] == pytest.approx(point.orbit.period) and y[0] == pytest.approx(y[-1], rel=1e-9)
     assert np.ptp(y) == pytest.approx(point.peak_to_peak("x"), rel=1e-4)
     places = [float(np.ravel(line.get_xdata())[0]) for line in axes.get_lines()[1:]]
