@@ -362,3 +362,38 @@ def test_parabola_over_steps_of_two_lengths() -> None:
         ends: list[Any] = [SimpleNamespace(once=lambda _, c=c: 0.5 + c)] * 2
         course = testfunction.Course(2.0, {"NS ": 12.5 + c})
         assert course.returns(test, ends[0], ends[1], 1.0) is returns
+
+
+@pytest.mark.parametrize(
+    ("signs", "crossed", "found"),
+    [
+        ((1.0, -1.0), True, True),
+        ((1.0, -1.0), False, False),
+        ((0.5, 0.5), True, False),
+        ((-0.5, 0.0), True, False),
+    ],
+)
+def test_crossing_of_branches_at_a_fold(
+    signs: tuple[float, float], crossed: bool, found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that the determinant changes its sign, and that derivatives have a kernel of two dimensions."""
+    monkeypatch.setattr(stationary, "branching", lambda solution: solution)
+    monkeypatch.setattr(stationary, "is_crossed", lambda solution: crossed)
+    assert stationary.crosses(0.0, *signs) is found  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 5.0])
+def test_matrix_of_equilibria_and_their_conditions(size: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert R_u above a condition's gradient of length 1, whatever its size, and the tangent in ranges."""
+    own = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    monkeypatch.setattr(stationary, "rows_at", lambda *_: SimpleNamespace(balanced=lambda scale: own / scale))
+    monkeypatch.setattr(stationary, "flat", lambda orbit, row: size * np.array([3.0, 0.0, 2.0]))
+    condition = SimpleNamespace(linearise=lambda system, orbit, free: None)
+    problem = SimpleNamespace(system=None, free=(0,), scale=2.0, side_conditions=lambda orbit: [condition])
+    tangent = SimpleNamespace(
+        nodes=np.array([[3.0, 0.0]]), algebraic=np.zeros((1, 1, 0)), parameters=np.array([8.0])
+    )
+    solution: Any = SimpleNamespace(problem=problem, orbit=None, tangent=tangent)
+    matrix, along = stationary._matrix(solution)
+    assert matrix == pytest.approx(np.array([[0.5, 1.0, 1.5], [2.0, 2.5, 3.0], [0.6, 0.0, 0.8]]))
+    assert along == pytest.approx([0.6, 0.0, 0.8])

@@ -145,6 +145,9 @@ def test_increment_on_another_mesh() -> None:
     moved = change(tied, 0.0, (0.5,), (3.0,))
     assert moved.restricted(tied, tied).phases.tolist() == [0.5]
     assert moved.restricted(tied, tied, 1.0).phases.tolist() == [0.0]
+    for other in ([(DOWN, 0.5)], [(UP, 0.5), (DOWN, 2.0)], []):
+        blank = moved.restricted(tied, wave(nodes=other)).phases
+        assert blank.tolist() == [0.0] * len(other)
 
 
 def test_arclength_of_a_step() -> None:

@@ -129,6 +129,8 @@ def test_what_is_no_mode_sequence_is_said(events: list[EventNode], said: str) ->
     surfaces = [joint(), Surface(Kind.IMPACT, "wall", 7), Surface(Kind.KINK, "kink", 8)]
     system = Surfaces(surfaces, [[1.0]] * 9)
     assert modes.inconsistency(system, events) == said
+    system = Surfaces([*surfaces[1:], surfaces[0]], [[1.0]] * 9)
+    assert modes.inconsistency(system, events) == said
 
 
 def test_sticking_of_a_file_without_modes() -> None:

@@ -114,3 +114,32 @@ def test_nearest_event_node_of_a_switch() -> None:
     nodes = [(EventNode(0, -1), 0.2), (EventNode(1, 1), 3.0), (EventNode(0, -1), 4.0)]
     orbit = along(lambda tau: np.sin(tau)[:, None], nodes, intervals=12)
     assert [resting._nearest(orbit, 0, phase) for phase in (0.0, 2.0, 3.1, 6.2)] == [0, 0, 2, 0]
+
+
+@pytest.mark.parametrize(
+    ("ratio", "pressure", "ends"),
+    [(0.5, 2.0, True), (0.25, 8.0, True), (0.5, 0.0, False), (0.5, -1.0, False), (1.0, 2.0, False)],
+)
+def test_bounces_left_out_before_rest(
+    ratio: float, pressure: float, ends: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert lengths that fall by e from 2 e v/p, and their sum; infinite where nothing presses, or e = 1."""
+    system = bouncing()
+    system.offset = np.array([0.0, -pressure])
+    thrown = np.array([0.0, 3.0])
+    rest = np.array([[0.0, 4.0]])
+    monkeypatch.setattr(resting, "before", lambda orbit, index: (0, np.array([[0.0, -1.0]]), np.array([1.0])))
+    monkeypatch.setattr(resting, "mapped", lambda *_: (rest,))
+    monkeypatch.setattr(resting, "bounce", lambda *_: (rest[0] + thrown, ratio))
+    monkeypatch.setattr(resting, "slope_before", lambda *_: -1.5)
+    orbit = along(lambda tau: np.zeros((len(tau), 2)), [(SETTLED, 1.0), (EventNode(1, 1), 5.0)], intervals=8)
+    found = resting.tail(system, orbit, 0)
+    assert found.ratio == ratio and found.thrown.tolist() == thrown.tolist()
+    if not ends:
+        assert (found.length, found.square, found.first) == (np.inf, np.inf, np.inf)
+        return
+    first = 2 * ratio * 1.5 / pressure
+    each = first * ratio ** np.arange(60)
+    assert found.first == pytest.approx(first) and found.length == pytest.approx(each.sum())
+    speeds = 9.0 * ratio ** (2 * np.arange(60))
+    assert found.square == pytest.approx((speeds * each).sum() / (3 * 2 * np.pi))

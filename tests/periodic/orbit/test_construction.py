@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from support.surfaces import along
 
 from periodic.orbit import extrema, sampling
 from periodic.orbit.construction import bisect, constant, transfer
 from periodic.orbit.mesh import EventNode, Mesh, uniform
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.row import Row
-from periodic.orbit.scheme import Array, Scheme
+from periodic.orbit.scheme import Array, Family, Scheme
 
 
 def polynomial(tau: Array) -> Array:
@@ -155,3 +157,16 @@ def test_samples_that_are_no_period(phase: list[float]) -> None:
     ):
         sampling._periods(np.array(phase))
     assert sampling._periods(np.array([0.0, 1.0, 2.0, 4 * np.pi + 5e-6])) == 2
+
+
+def test_rates_from_both_sides_of_a_mesh_point() -> None:
+    """Assert those of the interval on the right and on the left, with a kink at each mesh point."""
+    orbit = along(lambda tau: np.sin(tau)[:, None], intervals=6)
+    rates = np.arange(6.0)[:, None, None] + np.linspace(0.1, 0.5, orbit.mesh.scheme.ncol + 1)[:, None]
+    vars(orbit)["knot_rates"] = rates
+    assert orbit.node_rates[:, 0] == pytest.approx([0.1, 1.1, 2.1, 3.1, 4.1, 5.1, 0.1])
+    assert orbit.mesh.scheme.points[-1] == 1.0
+    assert orbit.end_rates[:, 0] == pytest.approx([5.5, 0.5, 1.5, 2.5, 3.5, 4.5, 5.5])
+    gauss = replace(orbit, mesh=Mesh(Scheme(Family.GAUSS, 4), orbit.mesh.breaks))
+    vars(gauss)["knot_rates"] = rates
+    assert gauss.end_rates[:, 0] == pytest.approx([0.1, 1.1, 2.1, 3.1, 4.1, 5.1, 0.1])

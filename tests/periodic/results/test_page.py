@@ -217,3 +217,9 @@ def test_map_in_a_browser(browser: Any, tmp_path: Path) -> None:
         assert page.inner_text("#said") == "F 2 · c 0.1 · peak 4 m"
         page.keyboard.press("ArrowUp")
         assert page.inner_text("#said") == "F 2 · c 0.2 · peak: none"
+
+
+def test_page_in_a_folder_that_is_made(branch: per.Branch, tmp_path: Path) -> None:
+    """Assert that folders of folders are made too."""
+    file = tmp_path / "a" / "b" / "c.html"
+    assert per.page(branch, file) == file and file.stat().st_size > 1000

@@ -129,6 +129,7 @@ def test_orbit(axes: Axes) -> None:
     point = gears()[len(gears()) // 2]
     assert per.plots.orbit(point, axes=axes) is axes
     x, y = np.asarray(axes.get_lines()[0].get_xydata()).T
+    assert len(x) == 1025
     assert x[-1] == pytest.approx(point.orbit.period) and y[0] == pytest.approx(y[-1], rel=1e-9)
     assert np.ptp(y) == pytest.approx(point.peak_to_peak("x"), rel=1e-4)
     places = [float(np.ravel(line.get_xdata())[0]) for line in axes.get_lines()[1:]]
@@ -149,6 +150,7 @@ def test_phase_plane_is_in_SI(axes: Axes) -> None:
     x, v = np.asarray(line.get_xydata()).T
     step = point.orbit.period / (len(x) - 1)
     assert v[1:-1] == pytest.approx((x[2:] - x[:-2]) / (2 * step), abs=1e-4 * np.abs(v).max())
+    assert len(x) == 1025 and (x[-1], v[-1]) == pytest.approx((x[0], v[0]))
     assert axes.get_ylabel() == "x' (m/s)" and np.asarray(dot.get_xydata()).tolist() == [[x[0], v[0]]]
 
 

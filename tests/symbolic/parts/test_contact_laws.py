@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 
 import symbolic as sym
+from symbolic.equations.assembly import Assembly
+from symbolic.parts.contact.pair import junction_of
 from symbolic.scenes import laws
 from symbolic.scenes.reading import load
 from symbolic.scenes.schema import HertzDiscScene
@@ -134,3 +137,31 @@ def test_damping_is_that_of_the_stiffness_under_the_preload() -> None:
         sym.ContactDamping(pair, 0.05),
     ]
     assert sym.modes(sym.compile(sym.combine(parts))).damping_ratios[0] == pytest.approx(0.05, rel=1e-9)
+
+
+@pytest.mark.parametrize("reduced", [False, True])
+def test_waves_that_a_film_fills(reduced: bool) -> None:
+    """Assert the compression: the waves, less what the film takes of them, less the displacement."""
+    x = sym.coordinate("x")
+    pair = sym.ContactPair(x)
+    parts = [
+        sym.Mass(x, 2.0),
+        sym.Preload(pair, 500.0),
+        sym.Hertz(pair, 1e9, 1.5),
+        sym.Waviness(pair, 1e-6, 12, 5.0),
+    ]
+    assembly = Assembly()
+    assembly.lay(parts)
+    junction = junction_of(assembly, pair)
+    if reduced:
+        object.__setattr__(junction, "ripple", lambda preload: preload / 2000.0)
+    loaded = junction._loaded(assembly)
+    symbols = ca.symvar(loaded.compression)
+    values = {"x": 3e-7}
+    numbers = {str(s): p.value for p, each in assembly.numbers.named().values() for s in each}
+    waves = [str(s) for s in ca.symvar(junction.profile) if str(s) not in numbers]
+    given = ca.vertcat(*[numbers.get(str(s), values["x"] if str(s) == "x" else 0.5) for s in symbols])
+    found = float(ca.Function("f", [ca.vertcat(*symbols)], [loaded.compression])(given))
+    assert len(waves) == 1
+    part = 1 - 500.0 / 2000.0 if reduced else 1.0
+    assert found == pytest.approx(1e-6 * 0.5 * part - 3e-7, rel=1e-9)

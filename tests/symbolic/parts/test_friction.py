@@ -268,3 +268,28 @@ def test_iwan_joins_sliders(stiffness: Any, limits: tuple[float, ...], found: An
     assert sorted(v for name, v in values.items() if name.startswith("F_slider")) == pytest.approx(
         sorted(limit for _, limit in found)
     )
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.25])
+def test_exact_slider_in_units_of_its_coordinate(scale: float) -> None:
+    """Assert rows and switches held, carried up and down, whatever the coordinate is measured in."""
+    q = sym.coordinate("x", scale=scale)
+    parts = [sym.Mass(q, 1.0), sym.Spring(q, 1.0), sym.HarmonicForce(q, 1.0, 1.3)]
+    system = sym.compile(sym.combine([*parts, sym.Jenkins(q, 2.0, 0.3, creep=None)]))
+    (slider,) = system.surfaces
+    state, phase = np.array([[0.4, 0.7, 0.1]]) / scale, np.array([0.2])
+    guards = system.switch(state, phase, system.nominal)[0]
+    assert slider.releases is not None
+    up, down = slider.releases
+    assert guards[[slider.switch, up, down]] * scale == pytest.approx([0.7, 0.3 - 0.15, 0.3 + 0.15])
+    for mode, carried in ((1, 1.0), (-1, 1.0), (2, 0.0)):
+        for moving in (0.7, 0.2):
+            rate = np.array([[0.7, 0.0, moving * carried]]) / scale
+            given = rate, state, np.zeros((1, 0)), phase, system.nominal
+            rows = system.linearise_beside(*given, np.array([[float(mode)]])).residual[0]
+            wrong = 0.0 if mode == 2 else moving - 0.7
+            assert np.abs(rows * scale - wrong).min() == pytest.approx(0.0, abs=1e-12)
+        slow = np.array([[0.7, 0.0, 0.05]]) / scale
+        found = system.linearise_beside(slow, *given[1:], np.array([[float(mode)]])).residual[0]
+        wrong = 0.05 if mode == 2 else 0.05 - 0.7
+        assert np.isclose(found * scale, wrong).any()

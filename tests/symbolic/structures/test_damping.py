@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy.linalg import eigh
 import symbolic as sym
 from symbolic.guarded import DamagedError
 from symbolic.structures.damping import ModalDamping
-from symbolic.structures.nastran import FILLED, _check_records, _small
+from symbolic.structures.nastran import FILLED, _check_records, _small, op4
 
 
 def test_rates_of_modes() -> None:
@@ -110,3 +111,17 @@ def test_size_of_dense_matrices() -> None:
     for size in ((801, 0), (0, 801), (-1, 2)):
         with pytest.raises(DamagedError, match="^it declares a matrix that is larger than what it holds$"):
             _small([size], held)
+
+
+def test_large_matrices_of_nastran_stay_sparse(tmp_path: Path) -> None:
+    """Assert it of a binary file of a matrix of zeros but for its diagonal, and a small one dense."""
+    op4_of = pytest.importorskip("pyyeti.nastran.op4")
+    from scipy import sparse
+
+    for size, thin, how in ((4, False, "dense"), (400, True, "bigmat")):
+        file = tmp_path / f"{size}.op4"
+        op4_of.write(str(file), {"maa": sparse.csr_array(np.eye(size))}, binary=True, sparse=how)
+        (found,) = op4(file, file.read_bytes()).values()
+        assert sparse.issparse(found) is thin
+        dense = found.toarray() if thin else found
+        assert dense.tolist() == np.eye(size).tolist()

@@ -13,7 +13,7 @@ from symbolic.arrays import Array
 from symbolic.guarded import DamagedError
 from symbolic.structures.beam import bending_element
 from symbolic.structures.formats import _sound
-from symbolic.structures.market import _sparse
+from symbolic.structures.market import _sparse, matrix_market
 from symbolic.structures.matlab import _of_version_4
 from symbolic.structures.matrices import _is_definite
 from symbolic.structures.shaft import slope_element
@@ -84,6 +84,18 @@ def test_entries_of_a_matrix() -> None:
     assert listed("1 1\n3 2 \n 2 2\n", [3, 2, 3]).tolist() == [[1, 0], [0, 1], [0, 1]]
     assert listed(both, [3, 3, 2], 1).tolist() == [[2.5, 0, 0], [0, 0, -1.5], [0, -1.5, 0]]
     assert listed("3 2 -1.5\n2 1 4\n", [3, 3, 2], -1).tolist() == [[0, -4, 0], [4, 0, 1.5], [0, -1.5, 0]]
+
+
+@pytest.mark.parametrize(
+    ("kind", "beside"),
+    [("general", [0.0, -1.5]), ("symmetric", [-1.5, -1.5]), ("skew-symmetric", [1.5, -1.5])],
+)
+def test_kinds_of_matrices(kind: str, beside: list[float]) -> None:
+    """Assert what a Matrix Market file says of the entries above the diagonal."""
+    diagonal = "" if kind == "skew-symmetric" else "1 1 2.5\n"
+    head = f"%%MatrixMarket matrix coordinate real {kind}\n% a comment\n2 2 {1 + bool(diagonal)}\n"
+    found = matrix_market(f"{head}{diagonal}2 1 -1.5\n".encode()).toarray()
+    assert [found[0, 1], found[1, 0]] == beside
 
 
 @pytest.mark.parametrize(

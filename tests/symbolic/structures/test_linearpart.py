@@ -143,3 +143,33 @@ def test_modes_of_many_speeds_are_not_all_kept() -> None:
     for speed in speeds:
         part.modes(speed)
     assert len(part._known) <= 9 and part.modes(speeds[0]) is not first
+
+
+@pytest.mark.parametrize("rate", [1.0, -2.5])
+def test_change_by_differences(rate: float) -> None:
+    """Assert how the answer changes, as by the closed form, times the rate at which omega changes."""
+    part = linear_of(compiled(turning=True))
+    own: Any = part
+    found, exact = own._difference(OMEGA, rate), own._product(OMEGA, rate, changes(own))
+    step = 1e-6
+    ends = [answer(own._at(OMEGA + way * step), 0.7j) for way in (1, -1)]
+    for each in (found, exact):
+        moved = [
+            SimpleNamespace(
+                **{
+                    name: getattr(own._at(OMEGA), name) + way * step * getattr(each, name)
+                    for name in ("exponents", "inputs", "outputs", "direct", "direct_rate")
+                }
+            )
+            for way in (1, -1)
+        ]
+        one, other = (answer(modes, 0.7j) for modes in moved)
+        expected = rate * (ends[0] - ends[1])
+        assert one - other == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+
+
+def changes(part: Any) -> list[Any]:
+    """How the modes of each structure change with the speed."""
+    found = [structure.modal_slope(OMEGA) for structure in part.structures]
+    assert None not in found
+    return found

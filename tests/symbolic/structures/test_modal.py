@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import symbolic as sym
+from symbolic.structures import modal
 from symbolic.structures.linearpart import Modes, like
 
 
@@ -56,3 +57,18 @@ def test_modes_that_meet_are_not_followed() -> None:
 
     with pytest.raises(ArithmeticError, match="modes of the structure cannot be followed in the speed"):
         like(two(1j, 1.2j), two(1.1j, 9j))
+
+
+@pytest.mark.parametrize(("size", "refused"), [(2, False), (3, False), (4, True)])
+def test_coupled_modes_of_large_structures(size: int, refused: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that gyroscopic terms are taken up to the size of dense matrices, and refused beyond it."""
+    monkeypatch.setattr(modal, "DENSE", 3)
+    gyroscopic = np.tri(size, k=-1) - np.tri(size, k=-1).T
+    structure = sym.Structure(np.eye(size), None, np.diag(np.arange(1.0, size + 1)), G=gyroscopic)
+    if not refused:
+        assert len(structure.modal(1.0).exponents) >= size
+        return
+    with pytest.raises(
+        ValueError, match="^structure 'structure' has 4 degrees of freedom and damping or gyros"
+    ):
+        structure.modal(1.0)

@@ -263,3 +263,35 @@ def test_bounds_of_a_step(apart: float, monkeypatch: pytest.MonkeyPatch) -> None
     assert [each.ahead for each in found] == pytest.approx([0.1 / largest, exact, 0.5, 0.2 / largest])
     new.discretisation.stability = Stability.EIGENVALUES
     assert len(list(stepbounds.bound_ratios(base, new, ds, control, 1e-6))) == 3
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "motion", "curable", "taken"),
+    [
+        ("ab", "ab", 0.0, 1e-6, True),
+        ("ab", "ba", 0.0, 1e-6, True),
+        ("ab", "aab", 0.0, 1e-6, False),
+        ("ab", "a", 0.0, 1e-6, False),
+        ("ab", "ab", 0.0, 1.1e-6, False),
+        ("ab", "aab", np.inf, 1e-6, True),
+    ],
+)
+def test_orbit_over_changes_to_the_tolerance(
+    before: str, after: str, motion: float, curable: float, taken: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that a mesh made for it keeps its events, in whatever order, and that it meets the tolerance."""
+
+    def orbit(events: str) -> Any:
+        error = SimpleNamespace(motion=motion, curable=curable)
+        return SimpleNamespace(
+            ok=True, error=error, orbit=SimpleNamespace(mesh=SimpleNamespace(events=events))
+        )
+
+    better = orbit(after)
+    monkeypatch.setattr(overchanges, "refined", lambda solver, new, fixed: better if fixed else None)
+    own: Any = SimpleNamespace(solver=SimpleNamespace(tolerance=SimpleNamespace(orbit=1e-6)))
+    given = orbit(before)
+    expected = (better if np.isfinite(motion) else given) if taken else None
+    assert overchanges._Way._accurate(own, given) is expected
+    better.ok = False
+    assert (overchanges._Way._accurate(own, given) is None) is bool(np.isfinite(motion))
