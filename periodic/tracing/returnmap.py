@@ -22,7 +22,7 @@ LEAST = 1e-2
 """Least range of a state in that, as a part of the largest range of all states."""
 
 STEPS = 15
-"""Largest number of steps, each with differences in every state."""
+"""How many steps at the most, each with differences in every state."""
 
 
 @dataclass
