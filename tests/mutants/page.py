@@ -41,7 +41,7 @@ def page(outcomes: Sequence[Outcome], seed: int, commit: str, limit: float) -> t
     fates = Counter(map(fate, outcomes))
     changing = fates[NOTICED] + fates[SURVIVED]
     own = reasons("written")
-    found = fates[NOTICED] - sum((o.path, o.before, o.after) in own for o in outcomes)
+    found = sum(fate(o) == NOTICED and (o.path, o.before, o.after) not in own for o in outcomes)
     lines = [
         "# Mutants: tests that would notice",
         "",
