@@ -1,8 +1,9 @@
 """Sliders of one strain that come to be let go at once, because a slip before them ends or begins.
 
-They are let go in an order that the turns of the strain decide, and never change places (Masing). One that
-slipped last the same way is let go where the strain is back at the turn at which it stopped, one that slipped
-the other way at twice its limit from that turn. So two releases meet
+They are let go in an order that the turns of the strain decide (Masing); only where their limits cross as a
+parameter changes do two that stopped at one turn change places. One that slipped last the same way is let go
+where the strain is back at the turn at which it stopped, one that slipped the other way at twice its limit
+from that turn. So two releases meet
 
 - where a slip ends: both stopped at one turn, one of them has slipped since, and is let go the earlier the
   longer that slip was (as its square),

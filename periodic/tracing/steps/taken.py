@@ -126,11 +126,23 @@ class Steps:
                 failed, longest = ds, ds * rejected.shorter
                 ds = longest
                 if unread or not ds >= least:
-                    ahead = None if unread or beyond else self._stepper.just_ahead(base, failed)
+                    ahead = None if unread or beyond else self._just_ahead(base, failed, sought)
                     if ahead is not None:
-                        return Step(ahead.end, control.ds, [], Course(), ahead, control.ds)
+                        return ahead
                     reason = Reason.INACCURATE if beyond else Reason.SMALL_STEP
                     return Refused(Stop(reason, str(rejected)), unread)
+
+    def _just_ahead(self, base: Solution, failed: float, sought: Sought) -> Step | None:
+        """A step to a change a little farther than the shortest one, which failed, judged as any other."""
+        at = self._stepper.just_ahead(base, failed)
+        if at is None:
+            return None
+        try:
+            found = special_points(self.solver, base, at.end, at.ds, replace(sought, final=at.change.final))
+            self._check_balance(base, at.end, found, at.ds)
+        except RejectedError:
+            return None  # the shortest step says why it failed
+        return Step(at.end, self.control.ds, found, self._course(base, at.ds), at, self.control.ds)
 
     def _over_changes(self, base: Solution, ds: float, sought: Sought) -> Step | None:
         """A step in which the word changes and nothing is to be located, if it is one."""
