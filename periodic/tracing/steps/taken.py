@@ -133,28 +133,33 @@ class Steps:
                     return Refused(Stop(reason, str(rejected)), unread)
 
     def _just_ahead(self, base: Solution, failed: float, sought: Sought) -> Step | None:
-        """A step to a change a little farther than the shortest one, which failed, judged as any other."""
+        """A step to a change a little farther than the shortest one, which failed, if nothing is on the way.
+
+        Newton, which fails so near to the change, could not locate it.
+        """
         at = self._stepper.just_ahead(base, failed)
-        if at is None:
+        if at is None or not self._plain(base, at.end, sought):
             return None
-        try:
-            found = special_points(self.solver, base, at.end, at.ds, replace(sought, final=at.change.final))
-            self._check_balance(base, at.end, found, at.ds)
-        except RejectedError:
-            return None  # the shortest step says why it failed
-        return Step(at.end, self.control.ds, found, self._course(base, at.ds), at, self.control.ds)
+        return Step(at.end, self.control.ds, [], self._course(base, at.ds), at, self.control.ds)
 
     def _over_changes(self, base: Solution, ds: float, sought: Sought) -> Step | None:
         """A step in which the word changes and nothing is to be located, if it is one."""
         if sought.tests:
             return None
         over = over_changes(self._foresight, self.control, base, ds, sought.course)
-        if over is None or any((v - sought.since) * (v - over.new.value) <= 0 for v in sought.values):
-            return None
-        if self.unaccounted([entry(base, Label.NONE), entry(over.new, Label.NONE)]):
+        if over is None or not self._plain(base, over.new, sought):
             return None
         further = self.control.next_size(over.ds, over.new.correction.iterations, over.bound_ratio)
         return Step(over.new, further, [], self._course(base, over.ds))
+
+    def _plain(self, base: Solution, new: Solution, sought: Sought) -> bool:
+        """Whether nothing is to be located between two orbits: no event, value, bound, or ledger gap."""
+        problem = self.solver.problem
+        if not problem.low <= new.value <= problem.high:
+            return False
+        if sought.tests or any((v - sought.since) * (v - new.value) <= 0 for v in sought.values):
+            return False
+        return not self.unaccounted([entry(base, Label.NONE), entry(new, Label.NONE)])
 
     def _course(self, base: Solution, length: float) -> Course:
         """The course of the test functions over a step."""

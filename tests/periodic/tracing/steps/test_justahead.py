@@ -11,32 +11,49 @@ from periodic.tracing.steps import stepper, taken
 from periodic.tracing.steps.stepsize import ArclengthControl
 
 
-def test_change_just_ahead_of_the_shortest_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Assert that it is sought twice as far, special points on the way located, and none left unaccounted."""
-    asked: list[float] = []
-    foresight: Any = SimpleNamespace(change=lambda base, ds: asked.append(ds) or "change")
-    at = SimpleNamespace(end="end", ds=1.5e-7, change=SimpleNamespace(final=True))
+class Ledger(taken.Steps):
+    """Steps whose ledger leaves open what is given."""
+
+    left: tuple[str, ...] = ()
+
+    def unaccounted(self, ledger: object) -> Any:
+        """What is left open."""
+        return self.left
+
+    def _course(self, base: object, length: float) -> Any:
+        return base, length
+
+
+@pytest.mark.parametrize(
+    ("failed", "left", "low", "value", "taken_so"),
+    [
+        (1e-7, (), 0.0, 0.5, True),
+        (3e-7, (), 0.0, 0.5, False),  # there is no change so far ahead
+        (1e-7, ("fold",), 0.0, 0.5, False),
+        (1e-7, (), 0.9, 0.5, False),  # beyond the bound
+        (1e-7, (), 0.0, 0.75, False),  # at a value of the user's
+    ],
+)
+def test_change_just_ahead_of_the_shortest_step(
+    failed: float,
+    left: tuple[str, ...],
+    low: float,
+    value: float,
+    taken_so: bool,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Assert that it is sought twice as far, and reached where nothing is to be located on the way."""
+    end: Any = SimpleNamespace(value=value)
+    at = SimpleNamespace(end=end, ds=1.5e-7)
     monkeypatch.setattr(stepper, "reached", lambda solver, base, near, ds, change: at if ds == 2e-7 else None)
-    steps = stepper.Stepper(None, ArclengthControl(), foresight)  # type: ignore[arg-type]
+    monkeypatch.setattr(taken, "entry", lambda *_: None)
+    solver: Any = SimpleNamespace(problem=SimpleNamespace(low=low, high=1.0))
+    steps = Ledger(solver, ArclengthControl(), (), ())
+    foresight: Any = SimpleNamespace(change=lambda base, ds: "change")
+    object.__setattr__(steps, "left", left)
+    object.__setattr__(steps, "_stepper", stepper.Stepper(solver, ArclengthControl(), foresight))
     base: Any = "base"
-    assert steps.just_ahead(base, 1e-7) is at and asked == [2e-7]
-    sought: Any = taken.Sought([], 0.0, (), taken.Course())
-    own: Any = SimpleNamespace(
-        _stepper=steps, solver=None, control=ArclengthControl(), _course=lambda *_: "course"
-    )
-    own._check_balance = lambda *_: None
-    monkeypatch.setattr(taken, "special_points", lambda *given: ["fold"] if given[4].final else [])
-    step = taken.Steps._just_ahead(own, base, 1e-7, sought)
-    assert step is not None and (step.end, step.special, step.change, step.course) == (
-        "end",
-        ["fold"],
-        at,
-        "course",
-    )
-
-    def unbalanced(*_: object) -> None:
-        raise taken.RejectedError("multipliers leave the circle")
-
-    own._check_balance = unbalanced
-    assert taken.Steps._just_ahead(own, base, 1e-7, sought) is None
-    assert taken.Steps._just_ahead(own, base, 3e-7, sought) is None
+    step = steps._just_ahead(base, failed, taken.Sought([0.75], 0.6, (), taken.Course()))
+    assert (step is not None) == taken_so
+    if step is not None:
+        assert (step.end, step.special, step.change, step.course) == (end, [], at, ("base", 1.5e-7))
