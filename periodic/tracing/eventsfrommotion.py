@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 
+from periodic.bifurcations.turningpoint import at_once
 from periodic.correction.identity import distance
 from periodic.correction.newton import in_order
 from periodic.correction.predictor import tangent
@@ -91,7 +92,7 @@ class _Search:
         """Return an orbit ahead, with the word that is read from a motion near it, if there is one."""
         for ds in (part * first for part in parts):
             for found in self._each(ds, read):
-                if found.distance <= FARTHEST * ds or self._nearer(found, ds, read):
+                if self._ahead_on_branch(found, ds, read):
                     return found
         return None
 
@@ -100,10 +101,19 @@ class _Search:
         each = (self._solved(guess) for guess in read(self._ahead(ds)))
         return (found for found in each if found is not None)
 
+    def _ahead_on_branch(self, found: Crossed, ds: float, read: Reading) -> bool:
+        """Whether an orbit found ahead is one of the branch: as far off as the step, or going on another way.
+
+        One with other unstable multipliers may be that of another branch, to which the motion went from an
+        unstable orbit. Then a shorter step does not lead nearer.
+        """
+        close, leaps = found.distance <= FARTHEST * ds, bool(at_once(self.base, found.solution))
+        if close and not leaps:
+            return True
+        return (leaps or read == self.settled) and self._nearer(found, ds, read)
+
     def _nearer(self, found: Crossed, ds: float, read: Reading) -> bool:
-        """Whether a shorter step leads to an orbit as much nearer: the branch goes on another way."""
-        if read != self.settled:
-            return False
+        """Whether a shorter step leads to an orbit as much nearer."""
         nearer = next(self._each(NEARER * ds, read), None)
         return nearer is not None and nearer.distance <= FARTHEST * NEARER * found.distance
 

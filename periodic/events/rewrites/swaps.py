@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from periodic.events.impacts import tied
-from periodic.events.modes import mode_after, of_kind, surface_of
+from periodic.events.modes import mode_after, of_held, of_kind, surface_of
 from periodic.events.rewrites.corners import reversed_by_impact
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
@@ -27,15 +31,15 @@ def swaps(system: System, orbit: Orbit, segment: int) -> bool:
 
 
 def _bound(system: System, orbit: Orbit, segment: int) -> bool:
-    """Whether one event node changes friction on which the change at the other one depends.
+    """Whether friction on which the change at one event node depends begins or ceases to hold at the other.
 
-    Then joints stop simultaneously, or are not strained, only while that friction holds.
+    Joints stop simultaneously, or are not strained, only while that friction holds.
     """
     events, count = orbit.mesh.events, len(orbit.phases)
     ends = segment, (segment + 1) % count
     always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
     for node, other, beyond in ((*ends, (ends[1] + 1) % count), (*ends[::-1], (ends[0] - 1) % count)):
-        friction = [s.switch for s in _changed(system, events[node]) if s.kind == Kind.SLIDING]
+        friction = [s.switch for s in _changed(system, events[node]) if _held_beside(s, events, node)]
         if not friction:
             continue
         held = held_at(system, events, other, always)
@@ -50,6 +54,15 @@ def _bound(system: System, orbit: Orbit, segment: int) -> bool:
             if alike & near:
                 return True
     return False
+
+
+def _held_beside(surface: SurfaceLike, events: Sequence[EventNode], node: int) -> bool:
+    """Whether friction holds before an event node that changes it, or after it."""
+    if surface.kind != Kind.SLIDING:
+        return False
+    modes = (mode_after(surface, events[(node - m) % len(events)]) for m in range(1, len(events) + 1))
+    before = next((mode for mode in modes if mode is not None), None)
+    return STUCK in (before, mode_after(surface, events[node]))
 
 
 def _stopped(event: EventNode) -> list[int]:
@@ -71,7 +84,38 @@ def swapped(system: System, orbit: Orbit, segment: int) -> Site:
     i, j = segment, (segment + 1) % len(orbit.phases)
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]
     length, impacts = float(orbit.mesh.segment_lengths(orbit.phases)[i]), tied(system, orbit)
-    begin = float(orbit.phases[i])
+    held, begin = Length(i, length), float(orbit.phases[i])
+    third = _third(system, orbit, segment)
+    if third is not None:
+        added = _reversed(orbit, third, segment)
+        return Site(SWAP, second.switch, i, held, 0.0, added, third)
     early = begin - length if i in impacts else begin + length if j in impacts else begin
-    added = Added(second, early, 0.0), Added(first, early, 1.0)
-    return Site(SWAP, second.switch, i, Length(i, length), 0.0, added, (i, j))
+    return Site(
+        SWAP, second.switch, i, held, 0.0, (Added(second, early, 0.0), Added(first, early, 1.0)), (i, j)
+    )
+
+
+def _third(system: System, orbit: Orbit, segment: int) -> tuple[int, int, int] | None:
+    """The ends of a segment with a neighbour whose guard is a combination of theirs: all three meet at once.
+
+    So do the zeros of two speeds, and of their difference.
+    """
+    count = len(orbit.phases)
+    i, j = segment, (segment + 1) % count
+    for each in ((i, j, (j + 1) % count), ((i - 1) % count, i, j)) if count > 3 else ():
+        own = [orbit.mesh.events[k].switch for k in each]
+        other = next(switch for k, switch in zip(each, own, strict=True) if k not in (i, j))
+        pair = [switch for switch in own if switch != other]
+        if set(own) <= set(of_held(system)) and len(pair) == 2 and holding(system, other, pair):
+            return each
+    return None
+
+
+def _reversed(orbit: Orbit, nodes: tuple[int, int, int], segment: int) -> tuple[Added, ...]:
+    """Three event nodes in reverse order, the first two as far apart as the ends of a segment, at size 1."""
+    lengths = orbit.mesh.segment_lengths(orbit.phases)
+    each = [float(lengths[k] / lengths[segment]) for k in nodes[1::-1]]
+    parts = np.cumsum([0.0, *each]) / each[0]
+    events = [orbit.mesh.events[k] for k in reversed(nodes)]
+    begin = float(orbit.phases[nodes[0]])
+    return tuple(Added(event, begin, float(part)) for event, part in zip(events, parts, strict=True))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from support.surfaces import along
 
+from periodic.bifurcations.label import Label
 from periodic.tracing import eventsfrommotion
 from periodic.tracing.eventsfrommotion import BEFORE, FARTHEST, MOST_READINGS, NEARER, _Search, reread, worded
 from periodic.tracing.steps.patternchange import Crossed
@@ -88,8 +89,15 @@ def test_orbit_moved_within_its_limits_is_taken_at_once(monkeypatch: pytest.Monk
     assert found == Crossed(moved, 0.75, False)
 
 
-def searching(monkeypatch: pytest.MonkeyPatch, distances: dict[float, list[float]]) -> tuple[_Search, Any]:
-    """A search that finds orbits at distances, known for each distance ahead; and how it reads motions."""
+def searching(
+    monkeypatch: pytest.MonkeyPatch, distances: dict[float, list[float]], leaps: bool = False
+) -> tuple[_Search, Any]:
+    """A search that finds orbits at distances, known for each distance ahead; and how it reads motions.
+
+    leaps: whether they have other unstable multipliers than the base.
+    """
+    labels = [Label.BRANCH] if leaps else []
+    monkeypatch.setattr(eventsfrommotion, "at_once", lambda base, found: labels)
     monkeypatch.setattr(_Search, "_ahead", lambda self, ds: ds)
     monkeypatch.setattr(_Search, "_solved", lambda self, guess: guess)
     own = _Search(solver(), solution(), 1.0, False)
@@ -120,6 +128,15 @@ def test_orbit_farther_off_to_which_the_branch_goes(
     assert own.found(1.0, read, (1.0,)) is None
     monkeypatch.setattr(_Search, "settled", lambda self, near: read(near))
     assert (own.found(1.0, own.settled, (1.0,)) is not None) is goes_on
+
+
+@pytest.mark.parametrize(("nearer", "taken"), [(0.5, True), (0.9, False), (None, False)])
+def test_orbit_with_other_multipliers_comes_nearer_with_the_step(
+    nearer: float | None, taken: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that one as near as the step is not taken where a quarter of it leads no nearer."""
+    own, read = searching(monkeypatch, {1.0: [1.0], NEARER: [] if nearer is None else [nearer]}, leaps=True)
+    assert (own.found(1.0, read, (1.0,)) is not None) is taken
 
 
 @pytest.mark.parametrize(

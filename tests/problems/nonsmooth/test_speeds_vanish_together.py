@@ -1,0 +1,56 @@
+"""Two speeds and their difference: where two of them vanish at once, so does the third.
+
+Two masses with sliders and friction from either to the ground and between both: a model of the survey.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from reference.joints.judging import judged
+from support.drawn.jointcases import JointCase
+from survey.rows import TOL, drawn
+
+import periodic as per
+from periodic.tracing import continuation
+
+RANGE = (0.77, 0.8)
+FOLDS = 0.7979576241, 0.7798095701
+
+
+@pytest.fixture(scope="module")
+def case() -> JointCase:
+    """The model."""
+    return drawn("joints", 160)
+
+
+def folds(branch: per.Branch) -> list[float]:
+    """Where a branch turns."""
+    return [point.parameter for point in branch if point.label is per.Label.FOLD]
+
+
+def test_three_events_change_places_at_once(monkeypatch: pytest.MonkeyPatch, case: JointCase) -> None:
+    """Assert that a branch gets past such a meeting by the table alone, and back round two folds.
+
+    Beside the first fold it is unstable. A motion from there settled on the sheet that had led to the fold,
+    and the branch went back over itself.
+    """
+
+    def read(*args: object, **options: object) -> None:
+        raise AssertionError("the word was read from a motion")
+
+    monkeypatch.setattr(continuation, "reread", read)
+    there = per.trace(case.system, "Omega", RANGE, start=RANGE[0], tol=TOL)
+    assert there.stop.reason is per.Reason.BOUND
+    assert there[-1].parameter == RANGE[1]
+    assert folds(there) == pytest.approx(FOLDS, abs=2e-9)
+    unstable = [k for k, point in enumerate(there) if np.abs(point.multipliers).max() > 1.05]
+    for k in (0, *unstable[:: len(unstable) // 4], len(there) - 1):
+        assert judged(case.exact, there[k], case.states).wrong(there[k], TOL) == ""
+
+
+def test_the_branch_is_the_same_from_the_other_end(case: JointCase) -> None:
+    """Assert the same folds from above."""
+    back = per.trace(case.system, "Omega", RANGE, start=RANGE[1], tol=TOL)
+    assert back[-1].parameter == RANGE[0]
+    assert folds(back) == pytest.approx(FOLDS[::-1], abs=2e-9)
