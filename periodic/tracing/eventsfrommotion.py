@@ -16,7 +16,7 @@ import numpy as np
 from periodic.bifurcations.turningpoint import at_once
 from periodic.correction.identity import distance
 from periodic.correction.newton import in_order
-from periodic.correction.predictor import tangent
+from periodic.correction.predictor import at_fixed_phases, tangent
 from periodic.correction.solution import Solution
 from periodic.correction.solver import Solver
 from periodic.events.impacts import tied
@@ -118,12 +118,13 @@ class _Search:
         return nearer is not None and nearer.distance <= FARTHEST * NEARER * found.distance
 
     def _ahead(self, ds: float) -> Orbit:
-        """The base, a step along its tangent, or with that parameter where its event nodes would cross."""
+        """The base, a step along its tangent; its phases stay where event nodes would cross."""
         problem, base = self.solver.problem, self.base
         ahead = tangent(problem, base, ds)
+        ahead = ahead if in_order(ahead) else at_fixed_phases(problem, base, ds)
         parameter = ahead.parameter.copy()
         parameter[problem.index] = float(np.clip(problem.value(ahead), *problem.bounds))
-        return replace(ahead if in_order(ahead) else base.orbit, parameter=parameter)
+        return replace(ahead, parameter=parameter)
 
     def reworded(self, near: Orbit, before: int) -> Iterator[Orbit]:
         """Yield the motion from a state of an orbit after some periods."""

@@ -29,6 +29,9 @@ DIFFERENCE = 1e-3
 MOST_MOVES = 3
 """How often the places are moved."""
 
+MOST_PARTS = 4
+"""How often a move at which no orbit is found is halved, and made in as many parts."""
+
 MOST_HALVINGS = 8
 """How often a move is halved beyond which other events of the orbit change."""
 
@@ -170,13 +173,18 @@ def _moved(
     step: Array,
     sign: float,
     solve: Solve = _fixed,
+    parts: int = MOST_PARTS,
 ) -> Solution:
-    """The orbit with the places moved."""
+    """The orbit with the places moved, at once or in parts; not ok where none is found."""
     parameter = found.orbit.parameter.copy()
     for surface, way in zip(held, step, strict=True):
         assert surface.place is not None
         parameter[surface.place[0]] += way
-    return solve(solver, replace(found.orbit, parameter=parameter), sign)
+    moved = solve(solver, replace(found.orbit, parameter=parameter), sign)
+    if moved.ok or not parts:
+        return moved
+    half = _moved(solver, found, held, step / 2, sign, solve, parts - 1)
+    return _moved(solver, half, held, step / 2, sign, solve, parts - 1) if half.ok else half
 
 
 def _better(moved: Solution, system: System, held: list[SurfaceLike], off: Array) -> bool:

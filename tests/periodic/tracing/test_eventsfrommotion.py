@@ -145,7 +145,7 @@ def test_orbit_with_other_multipliers_comes_nearer_with_the_step(
 def test_guess_ahead_within_the_bounds(
     ds: float, ordered: bool, value: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Assert the orbit along the tangent, or the base's with its parameter where event nodes would cross."""
+    """Assert the orbit along the tangent; its phases stay where they are where event nodes would cross."""
     from dataclasses import replace
 
     base = SimpleNamespace(orbit=replace(ORBIT, parameter=np.array([0.5])))
@@ -153,11 +153,15 @@ def test_guess_ahead_within_the_bounds(
     def ahead(problem: Any, base: Any, ds: float) -> Any:
         return replace(base.orbit, nodes=base.orbit.nodes + ds, parameter=base.orbit.parameter + ds)
 
+    def still(problem: Any, base: Any, ds: float) -> Any:
+        return replace(ahead(problem, base, ds), nodes=base.orbit.nodes - ds)
+
     monkeypatch.setattr(eventsfrommotion, "tangent", ahead)
+    monkeypatch.setattr(eventsfrommotion, "at_fixed_phases", still)
     monkeypatch.setattr(eventsfrommotion, "in_order", lambda orbit: ordered)
     found = _Search(solver(), base, 1.0, False)._ahead(ds)  # type: ignore[arg-type]
     assert found.parameter.tolist() == [value]
-    assert found.nodes == pytest.approx(base.orbit.nodes + (ds if ordered else 0.0))
+    assert found.nodes == pytest.approx(base.orbit.nodes + (ds if ordered else -ds))
     assert base.orbit.parameter.tolist() == [0.5]
 
 

@@ -259,11 +259,38 @@ def test_places_that_are_moved() -> None:
 
     def solve(solver: Any, guess: Any, sign: float) -> Any:
         asked.append((guess.parameter.tolist(), sign))
-        return "solved"
+        return SimpleNamespace(ok=True)
 
     step = np.array([0.5, 0.25])
-    assert heldplaces._moved(None, solution, [own, other], step, -1.0, solve) == "solved"  # type: ignore[arg-type]
+    assert heldplaces._moved(None, solution, [own, other], step, -1.0, solve).ok  # type: ignore[arg-type]
     assert asked == [([1.25, 2.5, 3.0], -1.0)]
+
+
+@pytest.mark.parametrize(
+    ("farthest", "most", "reached"),
+    [
+        (8.0, 4, [8.0]),
+        (4.0, 4, [8.0, 4.0, 8.0]),
+        (2.0, 1, [8.0, 4.0]),
+        (2.0, 2, [8.0, 4.0, 2.0, 4.0, 8.0, 6.0, 8.0]),
+    ],
+)
+def test_moves_are_made_in_parts(farthest: float, most: int, reached: list[float]) -> None:
+    """Assert where orbits are sought on a way of 8 if none is found from farther off, and how it ends."""
+    asked: list[float] = []
+    own, base = joint(place=(0, ())), along(lambda tau: np.sin(tau)[:, None])
+
+    def solve(solver: Any, guess: Any, sign: float) -> Any:
+        (place,) = guess.parameter
+        asked.append(float(place))
+        ok = bool(abs(guess.nodes[0, 0] - place) <= farthest)  # the nodes say from where
+        return SimpleNamespace(ok=ok, orbit=replace(guess, nodes=guess.nodes * 0 + place))
+
+    orbit = replace(base, nodes=base.nodes * 0, parameter=np.array([0.0]))
+    begun: Any = SimpleNamespace(orbit=orbit, ok=True)
+    found = heldplaces._moved(None, begun, [own], np.array([8.0]), 1.0, solve, most)  # type: ignore[arg-type]
+    assert asked == reached
+    assert found.ok is (reached[-1] == 8.0)
 
 
 @pytest.mark.parametrize(
