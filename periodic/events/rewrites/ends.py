@@ -127,10 +127,9 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
     if excursion.row is RELAY:
         i = excursion.index
         return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
-    if excursion.row is SWAP:
-        return [swapped(system, orbit, excursion.index)]
-    if excursion.row is SWITCHING_ABOUT:
-        return [stopped_again(system, orbit, excursion.index)]
+    if excursion.row in (SWAP, SWITCHING_ABOUT):  # another orbit may have shown which of them it is
+        turned = slipping_on(system, orbit, excursion.index) is not None
+        return [(stopped_again if turned else swapped)(system, orbit, excursion.index)]
     if excursion.row is MERGING:
         return list(merged(system, orbit, excursion.index))
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):

@@ -121,3 +121,11 @@ def test_a_joint_that_slows_down_before_the_event_may_stop_before_it() -> None:
     orbit = slipping(lambda tau: TORN + 0.01 - tau)
     assert slipping_on(SYSTEM, orbit, 1) is None
     assert after_the_event(orbit).row is SWAP
+
+
+def test_an_orbit_may_show_that_the_joint_slows_down_after_all() -> None:
+    """Assert the site of a swap where the excursion was found on an orbit on which the joint speeds up."""
+    orbit = slipping(lambda tau: TORN + 0.01 - tau)
+    (site,) = ends(SYSTEM, orbit, Excursion(SWITCHING_ABOUT, 1))
+    assert site.row is SWAP
+    assert [added.event for added in site.added] == [orbit.mesh.events[2], orbit.mesh.events[1]]
