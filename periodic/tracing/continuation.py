@@ -52,6 +52,8 @@ class Continuation:
         Values of the parameter that get a point (UZ).
     search : bool
         Whether a first orbit that Newton does not find may be approached from elsewhere.
+    nested : bool
+        Whether it is followed from within another one: it follows none itself, in the places of joints.
     stop : Stop, optional
         Why it ended; None while it is under way.
     collected : list of Point
@@ -69,6 +71,7 @@ class Continuation:
     watch: Watch = field(default_factory=Watch, repr=False)
     user: Sequence[float] = field(default=(), repr=False)
     search: bool = field(default=True, repr=False)
+    nested: bool = field(default=False, repr=False)
     stop: Stop | None = None
     collected: list[Point] = field(default_factory=list, repr=False)
     state: State | None = field(default=None, repr=False)
@@ -206,7 +209,7 @@ class Continuation:
         """Follow a branch in so many steps at most; return its last orbit and why it ends."""
         control = self.control if most is None else replace(self.control, max_points=most)
         solver = replace(solver, problem=replace(solver.problem, wider=None))
-        run = Continuation(solver, start, sign, control, search=False)
+        run = Continuation(solver, start, sign, control, search=False, nested=True)
         points = list(run)
         assert run.stop is not None
         return (points[-1].orbit if points else None), run.stop
@@ -327,7 +330,8 @@ class Continuation:
         other: whether it must be another word.
         """
         assert self.state is not None
-        found = reread(self.solver, base, self.control.ds, other)
+        follow = None if self.nested else self._follow
+        found = reread(self.solver, base, self.control.ds, follow, other)
         if found is None:
             return False
         self.stop = None

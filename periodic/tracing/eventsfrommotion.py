@@ -24,6 +24,7 @@ from periodic.linear.unknowns import size_of
 from periodic.orbit.orbit import Orbit
 from periodic.refinement.adaptation import refined
 from periodic.system import System
+from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import off_limits
 from periodic.tracing.settling import settled
 from periodic.tracing.steps.patternchange import Crossed
@@ -58,16 +59,19 @@ def worded(solver: Solver, guess: Orbit, sign: float) -> Solution:
     return found
 
 
-def reread(solver: Solver, base: Solution, first: float, other: bool = False) -> Crossed | None:
+def reread(
+    solver: Solver, base: Solution, first: float, follow: Follow | None, other: bool = False
+) -> Crossed | None:
     """Return an orbit a little ahead on a branch, with the word of the motion there; None if there is none.
 
-    first: length of a first step. other: whether its word must differ from that of the base, as steps of
-    the same word may come closer and closer to a change.
+    first: length of a first step. follow: follows branches in the places of joints, if these may be. other:
+    whether its word must differ from that of the base, as steps of the same word may come closer and closer
+    to a change.
     """
     sign = float(np.sign(base.tangent.parameter))
     if solver.problem.free != (solver.problem.index,) or sign == 0:
         return None
-    if (moved := off_limits(solver, base, sign, worded)) is not base:
+    if (moved := off_limits(solver, base, sign, worded, follow)) is not base:
         return Crossed(moved, distance(solver.problem, base.orbit, moved.orbit) / size_of(base.orbit), False)
     search, near = _Search(solver, base, sign, other), _distances(solver.problem.system, base)
     each = (search.found(first, partial(search.reworded, before=before), near) for before in BEFORE)

@@ -21,7 +21,9 @@ from periodic.orbit.mesh import Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
+from periodic.results.stop import Reason
 from periodic.system import SurfaceLike, System, surfaces_of
+from periodic.tracing.follow import Follow
 
 DIFFERENCE = 1e-3
 """Step of a place, as a part of the largest range of a state: the force is about linear in the place."""
@@ -31,6 +33,9 @@ MOST_MOVES = 3
 
 MOST_PARTS = 4
 """How often a move at which no orbit is found is halved, and made in as many parts."""
+
+FOLLOWED = 5
+"""Steps along the branch in a place after which it is seen how near the middle is."""
 
 MOST_HALVINGS = 8
 """How often a move is halved beyond which other events of the orbit change."""
@@ -75,16 +80,21 @@ def amid(solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float)
     return found
 
 
-def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve) -> Solution:
+def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve, follow: Follow | None) -> Solution:
     """Return an orbit with the joints that just reach a limit moved away from it: midway, or less far.
 
     It is the orbit given where no joint is at a limit, or no such orbit is found. solve: finds orbits that
-    may have other events.
+    may have other events. follow: follows the branch in a place, on which events may change, if it may be.
     """
-    system, loose = solver.problem.system, at_limit(solver.problem.system, found.orbit)
+    problem, system = solver.problem, solver.problem.system
+    each = at_limit(system, found.orbit)
+    loose = [surface for surface in each if surface.place is not None and surface.place[0] != problem.index]
     moved = amid(solver, found, loose, sign)
     if moved is not found or not loose:
         return moved
+    followed = _followed(solver, found, loose, sign, follow) if follow is not None else None
+    if followed is not None:
+        return followed
     room, most = _room(system, found.orbit, loose), _room(system, found.orbit, loose, max)
     slopes = _slopes(solver, found, loose, _room, sign)
     if slopes is None:
@@ -95,6 +105,49 @@ def off_limits(solver: Solver, found: Solution, sign: float, solve: Solve) -> So
         if _valid(moved) and not at_limit(system, moved.orbit):
             return moved
     return found
+
+
+def _followed(
+    solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float, follow: Follow
+) -> Solution | None:
+    """The orbit to which branches in the places of joints at a limit lead, one joint after the other."""
+    moved = found
+    for surface in loose:
+        each = (_along_place(solver, moved.orbit, surface, way, follow) for way in (1, -1))
+        orbit = next((orbit for orbit in each if orbit is not None), None)
+        if orbit is None:
+            return None
+        moved = _fixed(solver, orbit, sign)
+        if not _valid(moved):
+            return None
+    return None if at_limit(solver.problem.system, moved.orbit) else moved
+
+
+def _along_place(
+    solver: Solver, orbit: Orbit, surface: SurfaceLike, way: int, follow: Follow
+) -> Orbit | None:
+    """The orbit at which a joint is half as far off the middle, or at least nearer; None if there is none.
+
+    way: 1 where the place grows.
+    """
+    assert surface.place is not None
+    system, index = solver.problem.system, surface.place[0]
+    begin, span = float(orbit.parameter[index]), float(np.max(orbit.span()))
+    name, bounds = system.parameters[index].name, (begin - span, begin + span)
+    own = replace(solver, problem=replace(solver.problem, parameter=name, bounds=bounds))
+    first = off = abs(float(_off_centre(system, orbit, [surface])[0]))
+    last = None
+    while off > first / 2:
+        ahead, stop = follow(own, orbit if last is None else last, way, FOLLOWED)
+        if ahead is None or not held_all_along(ahead.mesh, surface):
+            return last
+        left = abs(float(_off_centre(system, ahead, [surface])[0]))
+        if left >= off:
+            return last
+        last, off = ahead, left
+        if stop.reason is not Reason.MAX_POINTS:
+            break
+    return last
 
 
 def _held(system: System, orbit: Orbit) -> list[SurfaceLike]:

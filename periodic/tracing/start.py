@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,10 +16,11 @@ from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.adaptation import refined
-from periodic.results.stop import Reason, Stop
+from periodic.results.stop import Reason
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
 from periodic.tracing.eventsfrommotion import worded
+from periodic.tracing.follow import Follow
 from periodic.tracing.heldplaces import amid, unplaced
 from periodic.tracing.settling import held, settled
 
@@ -36,9 +37,6 @@ SPENT = (
     "more iterations, another start or guess=per.sampled(...), a motion from a simulation, may lead to one"
 )
 """What the user can do where no orbit was found in the iterations allowed."""
-
-Follow = Callable[[Solver, Orbit, int, int | None], tuple[Orbit | None, Stop]]
-"""Follows a branch from an orbit one way, in at most so many steps: its last orbit, and why it ends."""
 
 
 @dataclass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +12,7 @@ from support.surfaces import Surfaces, along, joint
 
 import periodic as per
 from periodic.orbit.mesh import EventNode
+from periodic.results.stop import Reason, Stop
 from periodic.stability.multipliers import Stability
 from periodic.system import HELD
 from periodic.tracing import eventsfrommotion, heldplaces, settling
@@ -248,6 +249,22 @@ def test_pulls_along_an_orbit() -> None:
     assert heldplaces.at_limit(near, orbit) == [own]
 
 
+@dataclass(frozen=True)
+class Placed:
+    """A problem."""
+
+    system: Any
+    parameter: str = "Omega"
+    bounds: tuple[float, float] = (0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Solving:
+    """A solver of it."""
+
+    problem: Placed
+
+
 def test_places_that_are_moved() -> None:
     """Assert the least step by which a measure changes as wanted: half each where two places do the same."""
     found = heldplaces._solved(np.array([[2.0, 2.0], [2.0, 2.0]]), np.array([4.0, 4.0]))
@@ -291,6 +308,42 @@ def test_moves_are_made_in_parts(farthest: float, most: int, reached: list[float
     found = heldplaces._moved(None, begun, [own], np.array([8.0]), 1.0, solve, most)  # type: ignore[arg-type]
     assert asked == reached
     assert found.ok is (reached[-1] == 8.0)
+
+
+@pytest.mark.parametrize(
+    ("ends", "reached"),
+    [
+        ([(0.9, Reason.MAX_POINTS), (0.6, Reason.MAX_POINTS), (0.4, Reason.MAX_POINTS)], 0.4),
+        ([(0.9, Reason.MAX_POINTS), (0.95, Reason.MAX_POINTS)], 0.9),
+        ([(0.9, Reason.SMALL_STEP)], 0.9),
+        ([(0.9, Reason.MAX_POINTS), (None, Reason.NO_START)], 0.9),
+        ([(1.1, Reason.MAX_POINTS)], None),
+        ([(-0.3, Reason.MAX_POINTS)], -0.3),
+    ],
+    ids=["half as far off", "farther off again", "ended", "no orbit", "the other way", "past the middle"],
+)
+def test_branches_in_a_place(
+    ends: list[tuple[float | None, Reason]], reached: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert how far a branch is followed that begins 1 off the middle."""
+    own = joint(place=(1, ()))
+    base = replace(along(lambda tau: np.sin(tau)[:, None], modes=[(0, HELD)]), parameter=np.array([0.0, 1.0]))
+    left, asked = list(ends), list[tuple[float, int]]()
+
+    def follow(solver: Any, orbit: Any, way: int, most: int | None) -> Any:
+        assert (solver.problem.parameter, most) == ("place", heldplaces.FOLLOWED)
+        assert solver.problem.bounds == pytest.approx((-1.0, 3.0), abs=1e-2)
+        asked.append((float(orbit.parameter[1]), way))
+        off, reason = left.pop(0)
+        found = None if off is None else replace(base, parameter=np.array([0.0, off]))
+        return found, Stop(reason, "said")
+
+    monkeypatch.setattr(heldplaces, "_off_centre", lambda system, orbit, held: orbit.parameter[1:])
+    system = SimpleNamespace(parameters=[SimpleNamespace(name="Omega"), SimpleNamespace(name="place")])
+    found = heldplaces._along_place(Solving(Placed(system)), base, own, -1, follow)  # type: ignore[arg-type]
+    assert (None if found is None else float(found.parameter[1])) == reached
+    before = [1.0, *(off for off, _ in ends if off is not None)]
+    assert asked == [(place, -1) for place in before[: len(ends) - len(left)]]
 
 
 @pytest.mark.parametrize(
