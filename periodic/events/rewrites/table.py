@@ -18,6 +18,7 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     reversal               w                   (+ -) w (- +)     limit            length
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
+    swap of three          a b c               c b a             length           length
     merging of stops       a b F               F (a and b)       length           length
     grazing of a relay     nothing             ends              clearance        speed
     corner before impact   I from a            (a b) I from b    limit            length
@@ -28,6 +29,9 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
 Switching-sliding about w is that of a joint whose force, at its limit, stays as it is until w: of a mass that
 rests on one that rests. The length of the slip jumps there, its amplitude and its length beyond w begin at 0.
 Where the branch turns back at it, as at any row, it is a non-smooth fold (labelled LP).
+
+Three change places at once where the guard of one is a combination of those of the others, as of two speeds
+and their difference.
 
 The grazing of a limit is adding-sliding of a slider. A slider that slips, however briefly, forgets where it
 was held before, so that the multipliers jump; where friction slips they do not.
