@@ -239,7 +239,7 @@ class Equations:
                 trial = self.step(orbit)
             except FAILURES as error:
                 failure = outcome_of(error)
-            worse = last is not None and (trial is None or _worse(last, trial))
+            worse = last is not None and (trial is None or trial.length > 2 * last.length)
             if worse and last is not None and factor > 0.5**settings.max_halvings:
                 factor /= 4
                 orbit = self._moved(last, factor)
@@ -298,15 +298,6 @@ class Equations:
 
     def _moved(self, way: Way, factor: float) -> Orbit:
         return moved(self.system, self.free, way.orbit, way.increment, factor)
-
-
-def _worse(last: Way, trial: Way) -> bool:
-    """Whether neither the increment nor the residual says that a step led nearer to the orbit.
-
-    Stages beside event nodes that move have large residuals with small increments: a step that puts them
-    right leads nearer, though the next increment, of the whole orbit, may be the larger one.
-    """
-    return trial.length > 2 * last.length and trial.residual > last.residual
 
 
 def stretched(orbit: Orbit, increment: Increment) -> float:

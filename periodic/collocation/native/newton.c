@@ -473,11 +473,10 @@ static void move(struct call *c, struct room *r, double part)
 /* Newton steps, those that make things worse cut to a quarter again and again. */
 static int iterate(struct call *c, struct room *r)
 {
-    double before = INFINITY, residual = INFINITY, factor = 1;
+    double before = INFINITY, factor = 1;
     int found = 0;
     for (c->iterations = 0; !found && c->iterations < c->most; c->iterations++) {
-        const int code = linearised(c, r);
-        const int worse = code != DONE || (c->length > 2 * before && c->residual > residual);
+        const int code = linearised(c, r), worse = code != DONE || c->length > 2 * before;
         if (worse && before < INFINITY && factor > c->shortest) {
             factor /= 4;
             move(c, r, factor);
@@ -485,7 +484,7 @@ static int iterate(struct call *c, struct room *r)
         }
         if (code != DONE)
             return code;
-        before = c->length, residual = c->residual;
+        before = c->length;
         factor = c->max_change / fmax(c->length, c->max_change);
         keep(c, r);
         move(c, r, factor);
