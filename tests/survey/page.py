@@ -20,9 +20,9 @@ to 10 masses, each before a stop, and contacts whose force jumps, damped or prel
 joints, dry friction, exact sliders, stops, some with cubic springs, each from both ends of its range
 (`tests/support/drawn/joints.py`). Each is traced through a resonance at tol {tol:g}, at most {points}
 points, {newton} Newton iterations and {seconds:g} s of CPU; those with several joints at most
-{many_points}, {many_newton} and {many_seconds:g} s, limits of work and none of accuracy. {judged}
-points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in closed
-form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py` with
+{many_points}, {many_newton} and {many_seconds:g} s, limits of work and none of accuracy. Up to
+{judged} points of each, drawn at random, are judged: orbit and multipliers by an event-exact solution in
+closed form or by Taylor's series, that shares nothing with the packages (`tests/reference/contact.py` with
 `closer.py` in extended precision, `tests/reference/joints`). A point is wrong where an error is more
 than ten times what the point claims and more than 1e-5, or where its stability is not so. `make survey`
 runs them, in the time of the last column.
@@ -78,16 +78,18 @@ def _summary(rows: Sequence[Row]) -> str:
 def _both(rows: Sequence[Row]) -> str:
     """How many models with several joints are traced to their ends from both."""
     fates = {(row.kind, row.seed): row.fate == FATES[0] for row in rows if row.kind in (UP, DOWN)}
-    seeds = {seed for kind, seed in fates}
-    both = sum(fates.get((UP, seed), False) and fates.get((DOWN, seed), False) for seed in seeds)
-    return f" **Of {len(seeds)} models with several joints {both} are so from both ends.**" if seeds else ""
+    seeds = [seed for kind, seed in fates if kind == UP and (DOWN, seed) in fates]
+    both = sum(fates[UP, seed] and fates[DOWN, seed] for seed in seeds)
+    traced = f"Of {len(seeds)} models with several joints traced from both ends"
+    return f" **{traced} {both} are so from both.**" if seeds else ""
 
 
 def _table(rows: Sequence[Row]) -> str:
     heads = ["family", "models", *FATES, "points", "judged", "wrong", "ledger open", "worst error / claim"]
     heads.append("CPU s")
     lines = [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
-    for name, own in [*((k, [r for r in rows if r.kind == k]) for k in SEEDS), ("**all**", list(rows))]:
+    kinds = [(kind, [row for row in rows if row.kind == kind]) for kind in SEEDS]
+    for name, own in [*((kind, own) for kind, own in kinds if own), ("**all**", list(rows))]:
         cells: list[object] = [name, len(own), *(sum(r.fate == fate for r in own) for fate in FATES)]
         cells += [sum(r.points for r in own), sum(r.judged for r in own), sum(len(r.wrong) for r in own)]
         cells += [sum(len(r.gaps) for r in own), f"{max((r.ratio for r in own), default=0.0):.2g}"]

@@ -58,7 +58,9 @@ def test_models_with_joints_count_from_both_ends() -> None:
         Row(kind, seed, "BOUND", "bound reached") for kind in ("joints", "joints down") for seed in (1, 2)
     ]
     rows[3] = Row("joints down", 2, "NO_START", "no orbit found at the start")
-    assert "**Of 2 models with several joints 1 are so from both ends.**" in page(rows)
+    assert "**Of 2 models with several joints traced from both ends 1 are so from both.**" in page(rows)
+    assert "**Of 1 models with several joints traced from both ends 1 are so from both.**" in page(rows[:3])
+    assert "| chains |" not in page(rows)
 
 
 def test_page_names_engines() -> None:
