@@ -84,38 +84,36 @@ def swapped(system: System, orbit: Orbit, segment: int) -> Site:
     i, j = segment, (segment + 1) % len(orbit.phases)
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]
     length, impacts = float(orbit.mesh.segment_lengths(orbit.phases)[i]), tied(system, orbit)
-    held, begin = Length(i, length), float(orbit.phases[i])
-    third = _third(system, orbit, segment)
-    if third is not None:
-        added = _reversed(orbit, third, segment)
-        return Site(SWAP, second.switch, i, held, 0.0, added, third)
-    early = begin - length if i in impacts else begin + length if j in impacts else begin
-    return Site(
-        SWAP, second.switch, i, held, 0.0, (Added(second, early, 0.0), Added(first, early, 1.0)), (i, j)
-    )
+    begin, nodes = float(orbit.phases[i]), _with_third(system, orbit, segment)
+    if len(nodes) > 2:
+        added = _reversed(orbit, nodes)
+    else:
+        early = begin - length if i in impacts else begin + length if j in impacts else begin
+        added = Added(second, early, 0.0), Added(first, early, 1.0)
+    return Site(SWAP, second.switch, i, Length(i, length), 0.0, added, nodes)
 
 
-def _third(system: System, orbit: Orbit, segment: int) -> tuple[int, int, int] | None:
-    """The ends of a segment with a neighbour whose guard is a combination of theirs: all three meet at once.
+def _with_third(system: System, orbit: Orbit, segment: int) -> tuple[int, ...]:
+    """The event nodes at the ends of a segment, and a neighbour that meets them at once, if there is one.
 
-    So do the zeros of two speeds, and of their difference.
+    Its guard is a combination of theirs, as the difference of two speeds is of these; the nearer of two.
     """
-    count = len(orbit.phases)
+    events, count = orbit.mesh.events, len(orbit.phases)
     i, j = segment, (segment + 1) % count
-    for each in ((i, j, (j + 1) % count), ((i - 1) % count, i, j)) if count > 3 else ():
-        own = [orbit.mesh.events[k].switch for k in each]
-        other = next(switch for k, switch in zip(each, own, strict=True) if k not in (i, j))
-        pair = [switch for switch in own if switch != other]
-        if set(own) <= set(of_held(system)) and len(pair) == 2 and holding(system, other, pair):
-            return each
-    return None
+    pair, guards, lengths = (i, j), set(of_held(system)), orbit.mesh.segment_lengths(orbit.phases)
+    before, after = (i - 1) % count, (j + 1) % count
+    near = sorted([(lengths[j], after, (*pair, after)), (lengths[before], before, (before, *pair))])
+    for _, third, nodes in near if count > 3 else ():
+        own, switch = [events[k].switch for k in pair], events[third].switch
+        if switch not in own and {*own, switch} <= guards and holding(system, switch, own):
+            return nodes
+    return pair
 
 
-def _reversed(orbit: Orbit, nodes: tuple[int, int, int], segment: int) -> tuple[Added, ...]:
-    """Three event nodes in reverse order, the first two as far apart as the ends of a segment, at size 1."""
-    lengths = orbit.mesh.segment_lengths(orbit.phases)
-    each = [float(lengths[k] / lengths[segment]) for k in nodes[1::-1]]
-    parts = np.cumsum([0.0, *each]) / each[0]
-    events = [orbit.mesh.events[k] for k in reversed(nodes)]
+def _reversed(orbit: Orbit, nodes: Sequence[int]) -> tuple[Added, ...]:
+    """Three event nodes in reverse order, as far apart as they were but that the first gap is the size."""
+    lengths = orbit.mesh.segment_lengths(orbit.phases)[[nodes[1], nodes[0]]]
+    parts = np.array([0.0, 1.0, 1.0 + lengths[1] / lengths[0]])
     begin = float(orbit.phases[nodes[0]])
-    return tuple(Added(event, begin, float(part)) for event, part in zip(events, parts, strict=True))
+    each = zip(reversed(nodes), parts, strict=True)
+    return tuple(Added(orbit.mesh.events[k], begin, float(part)) for k, part in each)
