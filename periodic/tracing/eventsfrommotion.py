@@ -111,10 +111,9 @@ class _Search:
         One with other unstable multipliers may be that of another branch, to which the motion went from an
         unstable orbit. Then a shorter step does not lead nearer.
         """
-        close, leaps = found.distance <= FARTHEST * ds, bool(at_once(self.base, found.solution))
-        if close and not leaps:
-            return True
-        return (leaps or read == self.settled) and self._nearer(found, ds, read)
+        if found.distance <= FARTHEST * ds:
+            return not at_once(self.base, found.solution) or self._nearer(found, ds, read)
+        return read == self.settled and self._nearer(found, ds, read)
 
     def _nearer(self, found: Crossed, ds: float, read: Reading) -> bool:
         """Whether a shorter step leads to an orbit as much nearer."""

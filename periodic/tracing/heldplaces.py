@@ -31,11 +31,14 @@ DIFFERENCE = 1e-3
 MOST_MOVES = 3
 """How often the places are moved."""
 
-MOST_PARTS = 4
-"""How often a move at which no orbit is found is halved, and made in as many parts."""
+MOST_SPLITS = 4
+"""How often a move at which no orbit is found is split into halves, and these again."""
 
 FOLLOWED = 5
-"""Steps along the branch in a place after which it is seen how near the middle is."""
+"""Steps along the branch in a place after which it is seen how near the middle is, ..."""
+
+MOST_FOLLOWED = 20
+"""... and how often at the most."""
 
 MOST_HALVINGS = 8
 """How often a move is halved beyond which other events of the orbit change."""
@@ -111,16 +114,17 @@ def _followed(
     solver: Solver, found: Solution, loose: list[SurfaceLike], sign: float, follow: Follow
 ) -> Solution | None:
     """The orbit to which branches in the places of joints at a limit lead, one joint after the other."""
-    moved = found
+    moved, system = found, solver.problem.system
     for surface in loose:
         each = (_along_place(solver, moved.orbit, surface, way, follow) for way in (1, -1))
-        orbit = next((orbit for orbit in each if orbit is not None), None)
+        away = (orbit for orbit in each if orbit is not None and surface not in at_limit(system, orbit))
+        orbit = next(away, None)
         if orbit is None:
             return None
         moved = _fixed(solver, orbit, sign)
         if not _valid(moved):
             return None
-    return None if at_limit(solver.problem.system, moved.orbit) else moved
+    return None if at_limit(system, moved.orbit) else moved
 
 
 def _along_place(
@@ -137,15 +141,15 @@ def _along_place(
     own = replace(solver, problem=replace(solver.problem, parameter=name, bounds=bounds))
     first = off = abs(float(_off_centre(system, orbit, [surface])[0]))
     last = None
-    while off > first / 2:
+    for _ in range(MOST_FOLLOWED):
         ahead, stop = follow(own, orbit if last is None else last, way, FOLLOWED)
         if ahead is None or not held_all_along(ahead.mesh, surface):
-            return last
+            break
         left = abs(float(_off_centre(system, ahead, [surface])[0]))
         if left >= off:
-            return last
+            break
         last, off = ahead, left
-        if stop.reason is not Reason.MAX_POINTS:
+        if off <= first / 2 or stop.reason is not Reason.MAX_POINTS:
             break
     return last
 
@@ -226,18 +230,18 @@ def _moved(
     step: Array,
     sign: float,
     solve: Solve = _fixed,
-    parts: int = MOST_PARTS,
+    splits: int = MOST_SPLITS,
 ) -> Solution:
-    """The orbit with the places moved, at once or in parts; not ok where none is found."""
+    """The orbit with the places moved, at once or by halves; not ok where none is found."""
     parameter = found.orbit.parameter.copy()
     for surface, way in zip(held, step, strict=True):
         assert surface.place is not None
         parameter[surface.place[0]] += way
     moved = solve(solver, replace(found.orbit, parameter=parameter), sign)
-    if moved.ok or not parts:
+    if moved.ok or not splits:
         return moved
-    half = _moved(solver, found, held, step / 2, sign, solve, parts - 1)
-    return _moved(solver, half, held, step / 2, sign, solve, parts - 1) if half.ok else half
+    half = _moved(solver, found, held, step / 2, sign, solve, splits - 1)
+    return _moved(solver, half, held, step / 2, sign, solve, splits - 1) if half.ok else half
 
 
 def _better(moved: Solution, system: System, held: list[SurfaceLike], off: Array) -> bool:

@@ -139,6 +139,12 @@ def test_orbit_with_other_multipliers_comes_nearer_with_the_step(
     assert (own.found(1.0, read, (1.0,)) is not None) is taken
 
 
+def test_orbit_farther_off_with_other_multipliers_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert it of a motion that has not settled, though a quarter of the step leads nearer."""
+    own, read = searching(monkeypatch, {1.0: [5.0], NEARER: [1.0]}, leaps=True)
+    assert own.found(1.0, read, (1.0,)) is None
+
+
 @pytest.mark.parametrize(
     ("ds", "ordered", "value"), [(0.25, True, 0.75), (9.0, True, 2.0), (0.25, False, 0.75)]
 )

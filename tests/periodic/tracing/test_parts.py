@@ -274,12 +274,14 @@ def test_places_that_are_moved() -> None:
     orbit = along(lambda tau: np.sin(tau)[:, None])
     solution: Any = SimpleNamespace(orbit=replace(orbit, parameter=np.array([1.0, 2.0, 3.0])))
 
+    solved = SimpleNamespace(ok=True)
+
     def solve(solver: Any, guess: Any, sign: float) -> Any:
         asked.append((guess.parameter.tolist(), sign))
-        return SimpleNamespace(ok=True)
+        return solved
 
     step = np.array([0.5, 0.25])
-    assert heldplaces._moved(None, solution, [own, other], step, -1.0, solve).ok  # type: ignore[arg-type]
+    assert heldplaces._moved(None, solution, [own, other], step, -1.0, solve) is solved  # type: ignore[arg-type, comparison-overlap]
     assert asked == [([1.25, 2.5, 3.0], -1.0)]
 
 
@@ -344,6 +346,36 @@ def test_branches_in_a_place(
     assert (None if found is None else float(found.parameter[1])) == reached
     before = [1.0, *(off for off, _ in ends if off is not None)]
     assert asked == [(place, -1) for place in before[: len(ends) - len(left)]]
+
+
+def test_branches_in_a_place_that_creep_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that one is followed a limited number of times, however near to the next orbit each is."""
+    own, asked = joint(place=(1, ())), list[float]()
+    base = replace(along(lambda tau: np.sin(tau)[:, None], modes=[(0, HELD)]), parameter=np.array([0.0, 1.0]))
+
+    def follow(solver: Any, orbit: Any, way: int, most: int | None) -> Any:
+        asked.append(float(orbit.parameter[1]))
+        return replace(base, parameter=np.array([0.0, asked[-1] - 1e-6])), Stop(Reason.MAX_POINTS, "said")
+
+    monkeypatch.setattr(heldplaces, "_off_centre", lambda system, orbit, held: orbit.parameter[1:])
+    system = SimpleNamespace(parameters=[SimpleNamespace(name="Omega"), SimpleNamespace(name="place")])
+    found = heldplaces._along_place(Solving(Placed(system)), base, own, 1, follow)  # type: ignore[arg-type]
+    assert found is not None and len(asked) == heldplaces.MOST_FOLLOWED
+
+
+def test_a_branch_in_a_place_leads_away_from_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that one that stays at the limit, nearer by rounding, is left for the one the other way."""
+    own, solution = joint(place=(0, ())), SimpleNamespace(orbit="limit")
+    ways = {1: "limit", -1: "away"}
+    monkeypatch.setattr(heldplaces, "_along_place", lambda solver, orbit, surface, way, follow: ways[way])
+    monkeypatch.setattr(heldplaces, "at_limit", lambda system, orbit: [own] if orbit == "limit" else [])
+    monkeypatch.setattr(heldplaces, "_fixed", lambda solver, orbit, sign: SimpleNamespace(orbit=orbit))
+    monkeypatch.setattr(heldplaces, "_valid", lambda moved: True)
+    given: Any = Solving(Placed(None)), solution, [own], 1.0, None
+    found = heldplaces._followed(*given)
+    assert found is not None and found.orbit == "away"  # type: ignore[comparison-overlap]
+    ways[-1] = "limit"
+    assert heldplaces._followed(*given) is None
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ def test_a_branch_in_the_place_leads_away_from_the_limit(monkeypatch: pytest.Mon
     """Assert that friction is moved again and again as the branch goes on, and that no point is wrong.
 
     Newton's iteration does not find the orbit with the friction midway, where other events come and go.
-    Before, the branch ended with the first limit that was reached.
+    Before, the branch ended at Omega = .3571.
     """
     led: list[bool] = []
     followed = heldplaces._followed
@@ -33,7 +33,7 @@ def test_a_branch_in_the_place_leads_away_from_the_limit(monkeypatch: pytest.Mon
     case = drawn("joints", 152)
     branch = per.trace(case.system, "Omega", RANGE, start=RANGE[0], tol=TOL)
     assert branch[-1].parameter == RANGE[1]
-    assert any(led)
+    assert sum(led) > 1
     index = [p.name for p in case.system.parameters].index("place of q2")
     places = [float(point.orbit.parameter[index]) for point in branch]
     assert np.ptp(places) > 0.01
