@@ -151,8 +151,6 @@ def _share(system: System, before: Orbit, violation: Violation) -> float:
     """The part of the way to an orbit past a change at which the change lies, about."""
     dense, at = SwitchPolynomials(system, before), violation.at
     if isinstance(at, Extremum):
-        if not dense.minima(at.switch, violation.side):
-            return 0.0
         most = largest(dense, at.switch) if sliding(system, at.switch) is not None else 1.0
         clear = abs(_clear(dense, at, violation.side)) / most
     else:
@@ -168,9 +166,11 @@ def _clear(dense: SwitchPolynomials, at: Extremum, side: int) -> float:
 
     Rounding may make an extremum beside an event node of a surface that holds motions.
     """
-    orbit, near = dense.orbit, dense.nearest(at.switch, side, at.phase)
-    if not beside_node(dense, near):
-        return near.value
+    orbit = dense.orbit
+    if dense.minima(at.switch, side):
+        near = dense.nearest(at.switch, side, at.phase)
+        if not beside_node(dense, near):
+            return near.value
     phase = orbit.grid.left[at.interval] + at.theta * orbit.grid.width[at.interval]
     return dense.value(replace(at, phase=float(phase)))
 

@@ -129,6 +129,22 @@ def test_a_slider_has_left_its_limit_as_long_as_friction_says_so(start: float) -
     assert (found.wrong, found.unjudged, found.judged) == ([], [], 6)
 
 
+@pytest.mark.parametrize(("seed", "below"), [(124, 0.61), (184, 0.67)])
+def test_a_guess_far_off_grazes_no_level_that_its_base_does_not(seed: int, below: float) -> None:
+    """Assert that a speed without an extremum after its slip is not taken to graze there at once.
+
+    The tangent of the first step has an extremum on the other side of the level. Before, the first orbit was
+    said to graze, no orbit was found beyond, and the branch ended where it began.
+    """
+    case = drawn("joints down", seed)
+    few = per.ArclengthControl(max_points=10)
+    branch = per.trace(case.system, "Omega", case.bounds, start=case.start, tol=TOL, control=few)
+    assert branch[-1].parameter < below, str(branch.stop)
+    assert not branch.labelled(per.Label.GRAZING)
+    found = verdicts(case, branch, seed, 3)
+    assert (found.wrong, found.unjudged, found.judged) == ([], [], 3)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("start", [4.2236, 4.2243])
 def test_a_slip_begins_shortly_after_a_stop_at_both_places_of_a_symmetric_orbit(start: float) -> None:
