@@ -87,7 +87,7 @@ def _releases(surface: SurfaceLike, nodes: Sequence[Node]) -> Iterator[Release]:
     modes = [(j, mode_after(surface, event)) for j, (event, _) in enumerate(nodes)]
     own = [(j, mode) for j, mode in modes if mode is not None]
     for k, (j, mode) in enumerate(own):
-        (stop, stuck), (_, carried) = own[k - 1], own[k - 2]
+        (stop, stuck), (_, carried) = own[k - 1], own[(k - 2) % len(own)]
         if mode != STUCK:
             returns = len(own) > 2 and stuck == STUCK and carried == mode
             yield Release(j, mode, stop if returns else None)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.surfaces import Surfaces, along, joint
 
-from periodic.events.rewrites import first, meetings, merging, table, twins
+from periodic.events.rewrites import first, meetings, merging, table, together, twins
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.sideconditions import Length, Limit
 from periodic.events.switchpolynomials import Extremum
@@ -356,3 +356,18 @@ def test_last_slip_of_a_joint(longest: float, last: bool, monkeypatch: pytest.Mo
     found = first._ending(friction_and_wall(), *given, 1e-9, excursion)
     assert found is not None and found.name == f"last: {last}" and found.final is last
     assert found.size == (first.LONGEST if last else row.size_below(first.VANISHING * 0.1))
+
+
+def test_releases_of_a_slider_by_the_events_before_them() -> None:
+    """Assert the stop before a release the same way; a motion may have a release alone in its period."""
+    stop, up, down = EventNode(0, 1, modes=((0, STUCK),)), EventNode(1, 1), EventNode(2, -1)
+    slider = joint(kind=Kind.SLIDER)
+    for events, found in (
+        ([up], [(0, PLUS, None)]),
+        ([stop, up], [(1, PLUS, None)]),
+        ([up, stop, up], [(0, PLUS, None), (2, PLUS, 1)]),
+        ([up, stop, down], [(0, PLUS, None), (2, MINUS, None)]),
+    ):
+        nodes = [(event, float(k)) for k, event in enumerate(events)]
+        each = [(r.node, r.direction, r.stop) for r in together._releases(slider, nodes)]
+        assert each == found
