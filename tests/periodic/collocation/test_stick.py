@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any, cast
-
 import numpy as np
 import pytest
 
 import symbolic as sym
 from periodic.events.rewrites import first
-from periodic.events.switchpolynomials import Extremum
 from periodic.events.violations import Breach, Violation
 from periodic.orbit.construction import at_rest
 from periodic.orbit.mesh import uniform
@@ -78,24 +74,3 @@ def test_part_of_the_way_to_a_limit(monkeypatch: pytest.MonkeyPatch, node: int, 
     orbit = at_rest(system, uniform(Scheme(), 8), system.nominal)
     past = Violation(Breach.MODE, 0, node, 1, 0.1)
     assert first._share(system, orbit, past) == pytest.approx(share)
-
-
-@pytest.mark.parametrize(("lowest", "share"), [(0.3, 0.75), (None, 0.6)])
-def test_part_of_the_way_to_an_extremum(
-    monkeypatch: pytest.MonkeyPatch, lowest: float | None, share: float
-) -> None:
-    """Assert it by the base's nearest extremum, or by its value at the same place where it has none."""
-    at = Extremum(0, 2, 0.5, 1.0, -0.1)
-    near = None if lowest is None else Extremum(0, 3, 0.5, 1.1, lowest)
-    gear = sym.scene("gear-pair")
-    dense = SimpleNamespace(
-        orbit=at_rest(gear, uniform(Scheme(), 8), gear.nominal),
-        minima=lambda switch, side: [near] * (near is not None),
-        nearest=lambda switch, side, phase: near,
-        value=lambda place: 0.15 if place.interval == at.interval else np.nan,
-    )
-    monkeypatch.setattr(first, "SwitchPolynomials", lambda system, orbit: dense)
-    monkeypatch.setattr(first, "beside_node", lambda dense, extremum: False)
-    monkeypatch.setattr(first, "sliding", lambda system, switch: None)
-    past, system = Violation(Breach.EXCURSION, 0, at, 1, 0.1), cast(Any, None)
-    assert first._share(system, dense.orbit, past) == pytest.approx(share)

@@ -14,6 +14,7 @@ from periodic.events.rewrites.sites import Added, Site
 from periodic.events.sideconditions import Length, Limit
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
+from periodic.events.violations import Breach, Violation
 from periodic.orbit.mesh import EventNode
 from periodic.system import MINUS, PLUS, STUCK, Kind
 from periodic.system.events import Surface
@@ -356,6 +357,26 @@ def test_last_slip_of_a_joint(longest: float, last: bool, monkeypatch: pytest.Mo
     found = first._ending(friction_and_wall(), *given, 1e-9, excursion)
     assert found is not None and found.name == f"last: {last}" and found.final is last
     assert found.size == (first.LONGEST if last else row.size_below(first.VANISHING * 0.1))
+
+
+@pytest.mark.parametrize(("lowest", "share"), [(0.3, 0.75), (None, 0.6)])
+def test_part_of_the_way_to_an_extremum(
+    lowest: float | None, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert it by the base's nearest extremum, or by its value at the same place where it has none."""
+    at = Extremum(0, 2, 0.5, 1.0, -0.1)
+    near = None if lowest is None else Extremum(0, 3, 0.5, 1.1, lowest)
+    dense: Any = SimpleNamespace(
+        orbit=word(UP, TURN),
+        minima=lambda switch, side: [near] * (near is not None),
+        nearest=lambda switch, side, phase: near,
+        value=lambda place: 0.15 if place.interval == at.interval else np.nan,
+    )
+    monkeypatch.setattr(first, "SwitchPolynomials", lambda system, orbit: dense)
+    monkeypatch.setattr(first, "beside_node", lambda dense, extremum: False)
+    monkeypatch.setattr(first, "sliding", lambda system, switch: None)
+    past = Violation(Breach.EXCURSION, 0, at, 1, 0.1)
+    assert first._share(friction_and_wall(), dense.orbit, past) == pytest.approx(share)
 
 
 def test_releases_of_a_slider_by_the_events_before_them() -> None:
