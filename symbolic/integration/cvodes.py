@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
-from symbolic.integration.interrupts import heard
+from symbolic.interrupts import interruptible
 
 STEPS = 20_000
 """Most steps from one phase of output to the next."""
@@ -57,7 +57,7 @@ class Cvodes:
             return np.repeat(start[None], len(phase), axis=0)
         given = np.concatenate([parameter, [begin, width / LENGTH]])
         try:
-            with heard():
+            with interruptible():
                 later = self._integrator(tuple(parts), tolerance)(x0=start, p=given)["xf"]
         except RuntimeError:  # what CasADi raises for every failure of CVODES
             return None

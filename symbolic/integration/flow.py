@@ -10,6 +10,7 @@ from symbolic.arrays import Array
 from symbolic.checks import finite
 from symbolic.integration.follower import Follower
 from symbolic.integration.modes import Event, Modes, Switched, Switching, modes_along
+from symbolic.interrupts import interruptible
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Flow:
         if not 1e-13 <= finite("tolerance", self.tolerance) <= 1e-2:
             raise ValueError(f"tolerance is {self.tolerance}; it must lie between 1e-13 and 0.01")
 
+    @interruptible()
     def run(
         self,
         state: Array,

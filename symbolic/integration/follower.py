@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from symbolic.arrays import Array
 from symbolic.integration.cvodes import IntegrationError
 from symbolic.integration.enclosures import Passed, Root, crossing, lowest, root
-from symbolic.integration.interrupts import heard
 from symbolic.integration.modes import Event, Guard, Modes, Switching
+from symbolic.interrupts import interruptible
 
 LONGEST = math.pi / 32
 """Longest interval (rad) between two phases at which guards are evaluated."""
@@ -138,7 +138,7 @@ class Follower:
             y = self._with(y, state, float(phase[0]))
         self._most = MOST_EVENTS * math.ceil((phase[-1] - phase[0]) / PERIOD)
         self._enter(modes)
-        with heard() as self._raised:
+        with interruptible() as self._raised:
             values = self._all(y, phase)
         return Followed(values, self._passages, tuple(self._events), self._modes)
 

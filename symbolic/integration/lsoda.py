@@ -12,7 +12,7 @@ import scipy
 
 from symbolic.arrays import Array
 from symbolic.integration.cvodes import IntegrationError
-from symbolic.integration.interrupts import heard
+from symbolic.interrupts import interruptible
 
 EVALUATIONS = 100_000
 """Most evaluations of the rates in each period of the excitation, 2 pi in tau."""
@@ -55,7 +55,7 @@ def followed(
     """Return the solution at the later phases, a row each, by LSODA or Radau. Raises IntegrationError."""
     if not np.isfinite(rates(phase[0], start)).all():
         raise failure(phase[0])
-    with heard() as raised:
+    with interruptible() as raised:
         found = scipy.integrate.solve_ivp(
             Counted(rates, EVALUATIONS * math.ceil((phase[-1] - phase[0]) / (2 * math.pi)), raised),
             (phase[0], phase[-1]),

@@ -27,6 +27,7 @@ from symbolic.integration.field import VectorField
 from symbolic.integration.follower import Followed, Follower
 from symbolic.integration.modes import Modes, Switched, Switching
 from symbolic.integration.rates import constraint_rows
+from symbolic.interrupts import interruptible
 
 EPSILON = 1e-10
 """Added to the derivative, which is positive, of each constraint in its unknown."""
@@ -80,6 +81,7 @@ class SensitiveFlow:
         """The equations."""
         return self.system.expressions
 
+    @interruptible()
     def run(
         self,
         state: Array,

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 import scipy
 
+from symbolic.interrupts import interruptible
 from symbolic.kernels.choice import ChosenKernel, Kernels, Layout
 from symbolic.kernels.csource import ARITHMETIC, FUNCTIONS, csource
 
@@ -63,6 +64,7 @@ def points(symbol: ca.SX, name: str) -> Argument:
     return Argument(symbol, name, name, name + "[i]", Layout(()))
 
 
+@interruptible()
 def build(
     arguments: Sequence[Argument],
     results: Sequence[ca.SX],

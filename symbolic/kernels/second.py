@@ -17,6 +17,7 @@ import casadi as ca
 import numpy as np
 
 from symbolic.arrays import Array
+from symbolic.interrupts import interruptible
 from symbolic.kernels.choice import Kernels
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 
@@ -43,6 +44,7 @@ class Symbols:
     parameter: ca.SX
 
 
+@interruptible()
 def contraction(symbols: Symbols, rows: ca.SX, kernels: Kernels = Kernels.NUMPY) -> Callable[..., Gradient]:
     """Return (x', x, z, tau, p, w, v_x', v_x, v_z, v_p) -> Gradient for batches of points.
 

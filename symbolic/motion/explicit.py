@@ -8,6 +8,7 @@ import numpy as np
 
 from symbolic.arrays import Array
 from symbolic.integration.rates import explicit_rates
+from symbolic.interrupts import interruptible
 from symbolic.kernels.kernel import batch, build, points, vector
 from symbolic.system.compiled import CompiledSystem
 
@@ -19,6 +20,7 @@ the result is not finite.
 """
 
 
+@interruptible()
 def rates(system: CompiledSystem) -> Rates:
     """Return the right-hand side of a system whose residual is linear in x'.
 

@@ -20,6 +20,7 @@ import scipy
 
 from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, sequence
+from symbolic.interrupts import interruptible
 from symbolic.motion.linear import Modes, RestFinder, varying
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
@@ -149,6 +150,7 @@ class Excited:
         """Those of the excitation, the lowest first; the first one where there is no excitation."""
         return self.system.expressions.harmonics or (1,)
 
+    @interruptible()
     def amplitudes(self, modes: Modes) -> tuple[Complex, Array]:
         """Return amplitudes (outputs, harmonics) and rest values (outputs,) of the outputs, SI."""
         # The phase may stand in rows on its own, beside the excitation; at rest it is taken as 0.

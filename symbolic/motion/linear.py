@@ -21,6 +21,7 @@ import scipy
 
 from symbolic.arrays import Array, Complex
 from symbolic.checks import one_of, refusal, sequence
+from symbolic.interrupts import interruptible
 from symbolic.system.compile import all_states
 from symbolic.system.compiled import CompiledSystem, with_values
 
@@ -99,6 +100,7 @@ class RestFinder:
         results = [e.unexcited, ca.jacobian(e.unexcited, unknown), ca.jacobian(e.unexcited, e.rate)]
         return ca.Function("rest", [e.rate, e.state, e.algebraic, e.parameter], [*results, e.frequency])
 
+    @interruptible()
     def modes(self, parameter: Array) -> Modes:
         """Return rest and small motion at a parameter vector (SI). Raises NoRestError."""
         n = len(self.system.states)

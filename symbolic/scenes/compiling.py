@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from symbolic.interrupts import interruptible
 from symbolic.scenes.errors import InputError, refused
 from symbolic.scenes.names import scene_names
 from symbolic.system.compiled import CompiledSystem
 
 
+@interruptible()
 def scene(source: str | Path, changes: Mapping[str, str | float | None] | None = None) -> CompiledSystem:
     """Return the compiled system of a scene; loading it executes nothing from its file.
 

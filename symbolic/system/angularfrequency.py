@@ -13,6 +13,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import Variable
+from symbolic.interrupts import interruptible
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,23 +36,30 @@ class AngularFrequency:
         return ca.Function("frequency", [self.expressions.parameter], [self.expressions.frequency])
 
     @cached_property
+    @interruptible()
     def _slope(self) -> ca.Function:
         e = self.expressions
         return ca.Function("slope", [e.parameter], [ca.jacobian(e.frequency, e.parameter)])
 
     @cached_property
+    @interruptible()
     def _plain(self) -> tuple[float, Array] | None:
         """omega = a + b . p with its a and b, where it is so."""
         e, count = self.expressions, len(self.parameters)
         if any(ca.which_depends(e.frequency, e.parameter, 2, True)):
             return None
         none = np.zeros(count)
-        return float(self._function(none)), np.array(ca.DM(self._slope(none)).full()).ravel()
+        return float(self._called(self._function, none)[0]), self._called(self._slope, none)
+
+    @staticmethod
+    @interruptible()
+    def _called(function: ca.Function, parameter: Array) -> Array:
+        return np.array(function(parameter)).ravel()
 
     def omega(self, parameter: Array) -> float:
         """Return omega at parameters (p,)."""
         if self._plain is None:
-            return float(self._function(parameter))
+            return float(self._called(self._function, parameter)[0])
         begun, slope = self._plain
         used = np.flatnonzero(slope)
         return begun + float(slope[used] @ parameter[used])
@@ -60,9 +68,10 @@ class AngularFrequency:
         """Return d omega / dp, shape (p,)."""
         if self._plain is not None:
             return self._plain[1].copy()
-        return np.array(ca.DM(self._slope(parameter)).full()).ravel()
+        return self._called(self._slope, parameter)
 
     @cached_property
+    @interruptible()
     def product(self) -> tuple[tuple[str, ...], float, dict[str, float]]:
         """Parameters that omega is proportional to, the factor, and the nominal values of all others."""
         used = ca.jacobian(self.expressions.frequency, self.expressions.parameter).sparsity().get_col()

@@ -11,6 +11,7 @@ from symbolic.equations.assembly import Assembly
 from symbolic.equations.expressions import Expressions, expressed
 from symbolic.equations.model import Model, Part
 from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.interrupts import interruptible
 from symbolic.kernels.choice import Kernels, chosen
 from symbolic.structures.linearpart import Held
 from symbolic.structures.matrices import DENSE
@@ -18,6 +19,7 @@ from symbolic.system.compiled import CompiledSystem
 from symbolic.system.splitting import condensed
 
 
+@interruptible()
 def compile(  # noqa: A001
     model: Model | Part, kernels: Kernels | str | None = None, *, condense: bool = True
 ) -> CompiledSystem:

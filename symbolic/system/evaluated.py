@@ -13,6 +13,7 @@ import numpy as np
 from symbolic.arrays import Array
 from symbolic.equations.expressions import Expressions
 from symbolic.equations.variables import SwitchInfo, Variable
+from symbolic.interrupts import interruptible
 from symbolic.kernels.choice import Kernels
 from symbolic.kernels.second import Gradient, Symbols, contraction
 from symbolic.system.generated import Generated
@@ -157,6 +158,7 @@ class Evaluated:
         return result
 
     @cached_property
+    @interruptible()
     def guards_depend(self) -> bool:
         """Whether switches depend on the sides of jumps, as where a joint slips does on its neighbours."""
         e = self.expressions
@@ -212,6 +214,7 @@ class Evaluated:
             kernel(state, phase, parameter, *_columns(d_state, d_phase, d_parameter))
         return d_state, d_phase, d_parameter
 
+    @interruptible()
     def rest(self, parameter: Array) -> tuple[Array, Array]:
         """Return scaled states (n,) and unknowns (m,) near which the unexcited system rests."""
         e = self.expressions

@@ -10,6 +10,7 @@ from functools import cached_property
 import casadi as ca
 
 from symbolic.equations.expressions import Expressions
+from symbolic.interrupts import interruptible
 from symbolic.kernels.choice import ChosenKernel, Kernels, shared
 from symbolic.kernels.kernel import Argument, batch, build, points, vector
 
@@ -59,6 +60,7 @@ class Generated:
         _, state, _, phase, parameter = self._arguments
         return state, phase, parameter
 
+    @interruptible()
     def _along_states(self, rows: ca.SX) -> list[ca.SX]:
         e = self.expressions
         return [ca.jacobian(rows, v) for v in (e.state, e.phase, e.parameter)]
@@ -130,14 +132,18 @@ class Generated:
             Of (rate, state, algebraic, phase, parameter), and the sides.
         """
         if (name, free) not in self._derivatives:
-            rows, more = self._rows(name)
-            e = self.expressions
-            chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
-            variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
-            results = [rows, *(ca.jacobian(rows, v) for v in variables)]
-            iterated = name in ITERATED.values() and e.state.numel() <= ITERATED_UP_TO
-            self._derivatives[name, free] = build([*self._arguments, *more], results, self.choice, iterated)
+            self._derivatives[name, free] = self._derived(name, free)
         return self._derivatives[name, free]
+
+    @interruptible()
+    def _derived(self, name: str, free: tuple[int, ...]) -> Kernel:
+        rows, more = self._rows(name)
+        e = self.expressions
+        chosen = ca.vertcat(ca.SX(0, 1), *[e.parameter[i] for i in free])
+        variables = (e.rate, e.state, e.algebraic, e.phase, chosen)
+        results = [rows, *(ca.jacobian(rows, v) for v in variables)]
+        iterated = name in ITERATED.values() and e.state.numel() <= ITERATED_UP_TO
+        return build([*self._arguments, *more], results, self.choice, iterated)
 
     def _rows(self, name: str) -> tuple[ca.SX, tuple[Argument, ...]]:
         """Rows to be differentiated, and the arguments that they take beside the usual ones."""

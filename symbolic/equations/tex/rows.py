@@ -12,6 +12,7 @@ from symbolic.equations.terms import State
 from symbolic.equations.tex.expression import sums
 from symbolic.equations.tex.names import dotted, tex
 from symbolic.equations.tex.products import Product, Sum, atom, one, scaled, written
+from symbolic.interrupts import interruptible
 
 LONGEST_ROW = 4000
 """Longest equation (letters) that is written out."""
@@ -19,6 +20,7 @@ LONGEST_ROW = 4000
 OMEGA = r"\omega"
 
 
+@interruptible()
 def equations(parts: Iterable[Contributor]) -> str:
     """Return the equations of motion of parts, in SI units and time, as LaTeX for a mathematical display.
 

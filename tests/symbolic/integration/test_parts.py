@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symbolic as sym
-from symbolic.integration.interrupts import heard
+from symbolic.interrupts import interruptible
 
 
 def test_handlers_are_put_back() -> None:
@@ -25,13 +25,13 @@ def test_handlers_are_put_back() -> None:
 
     signal.signal(signal.SIGINT, own)
     try:
-        with pytest.raises(KeyboardInterrupt), heard() as raised:
+        with pytest.raises(KeyboardInterrupt), interruptible() as raised:
             assert signal.getsignal(signal.SIGINT) is not own
             with pytest.raises(KeyboardInterrupt):
                 signal.raise_signal(signal.SIGINT)
             assert len(raised) == 1
         assert told == [signal.SIGINT] and signal.getsignal(signal.SIGINT) is own
-        with heard():
+        with interruptible():
             signal.signal(signal.SIGINT, signal.SIG_IGN)
         assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
     finally:

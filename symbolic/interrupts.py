@@ -1,7 +1,8 @@
-"""Ctrl-C, or a timer, inside CasADi, which takes the exception of a signal's handler for a failed step.
+"""Ctrl-C, or a timer, inside CasADi, which drops the exception of a signal's handler.
 
-The handlers stay in force. The exceptions that they raise are kept, end the call early, and are raised again
-after it.
+CVODES takes it for a failed step. CasADi's wrapper, which tries to convert its arguments one way after the
+other, takes it for a conversion that failed. The handlers stay in force. The exceptions that they raise are
+kept, end the call early, and are raised again after it.
 """
 
 from __future__ import annotations
@@ -23,11 +24,12 @@ Handler = Callable[[int, FrameType | None], object]
 
 
 @contextmanager
-def heard() -> Iterator[list[BaseException]]:
+def interruptible() -> Iterator[list[BaseException]]:
     """Raise at the end of the block what a handler of an interrupting signal raised inside.
 
     The block is given the list of these exceptions, to end early where CasADi drops one. Only the main thread
-    is interrupted; in other threads nothing is done.
+    is interrupted; in other threads nothing is done. As a decorator, `@interruptible()`, it is for functions
+    that make expressions or call what is made of them.
     """
     raised: list[BaseException] = []
     if threading.current_thread() is not threading.main_thread():
