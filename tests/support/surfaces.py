@@ -82,3 +82,16 @@ def along(
     found = states(stages.ravel())
     inner = found.reshape(*stages.shape, found.shape[1])
     return Orbit(mesh, states(mesh.nodes(phases)), inner, np.zeros((*stages.shape, 0)), phases, np.ones(1))
+
+
+def three_joints(third: Kind = Kind.SLIDER) -> Surfaces:
+    """Joints 0 (1, 2) of x, 3 (4, 5) of y and 6 (7, 8) of x - y, the last of a kind; and a kink 9 of x."""
+    kinds = Kind.SLIDING, Kind.SLIDING, third
+    surfaces = [joint(k, 3 * k, kind) for k, kind in enumerate(kinds)]
+    weights = [*[[1.0, 0.0]] * 3, *[[0.0, 1.0]] * 3, *[[1.0, -1.0]] * 3, [1.0, 0.0]]
+    return Surfaces([*surfaces, Surface(Kind.KINK, "kink", 9, column=3)], weights)
+
+
+def at(*nodes: tuple[EventNode, float]) -> Orbit:
+    """An orbit (sin tau, cos tau) with event nodes at given phases."""
+    return along(lambda tau: np.column_stack([np.sin(tau), np.cos(tau)]), nodes, intervals=4 * len(nodes))

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from reports.studies.pages.engine import current
+from survey import rows as surveyed
 from survey.page import page
-from survey.rows import BACK, Row, models, read, row, write
+from survey.rows import BACK, Limits, Row, models, read, row, write
 
 
 def test_all_models_are_drawn_once() -> None:
@@ -81,13 +82,17 @@ def test_joints_are_judged() -> None:
     assert 0 < found.ratio < 1
 
 
-@pytest.mark.parametrize(("kind", "seed", "count"), [("friction", 134, 4), ("impacts", 193, 40)])
-def test_motions_that_stay_where_they_are(kind: str, seed: int, count: int) -> None:
+@pytest.mark.parametrize(("kind", "seed", "count"), [("friction", 134, 4), ("impacts", 193, 15)])
+def test_motions_that_stay_where_they_are(
+    kind: str, seed: int, count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Assert that points are right where friction holds two masses together, or chatter ends in rest.
 
-    Of impacts 193 the last points lie 1e-10 before the place where its bounces are no longer complete.
+    Of impacts 193 the last of these points lies 1e-8 before the place where its bounces are no longer
+    complete; the branch is cut there by its points, as how far it comes in a time is the machine's affair.
     """
+    monkeypatch.setattr(surveyed, "FEW", Limits(max(count, 15), 4000, 600.0))
     found = row(kind, seed, count)
     assert (found.wrong, found.unjudged) == ((), ())
-    assert found.judged >= min(count, 15)
+    assert found.judged == count
     assert found.ratio < 1

@@ -11,6 +11,7 @@ from periodic.correction.condition import SideCondition
 from periodic.events.impacts import tied
 from periodic.events.modes import group, mode_after, relays, release, returns, surface_of
 from periodic.events.rewrites.corners import corner
+from periodic.events.rewrites.intersections import at_intersection, intersections
 from periodic.events.rewrites.meetings import meeting, met
 from periodic.events.rewrites.merging import merged, merging
 from periodic.events.rewrites.reversals import reversals, short_of
@@ -113,7 +114,7 @@ def excursions(system: System, orbit: Orbit) -> Iterator[Excursion]:
             yield Excursion(meets, i)
         elif merges is not None:
             yield Excursion(MERGING, i, segments=merges.segments)
-        elif swaps(system, orbit, i):
+        elif swaps(system, orbit, i) or at_intersection(system, orbit, i):
             turned = slipping_on(system, orbit, i) is not None
             yield Excursion(SWITCHING_ABOUT if turned else SWAP, i)
 
@@ -129,9 +130,12 @@ def ends(system: System, orbit: Orbit, excursion: Excursion) -> list[Site]:
         return [Site(RELAY, orbit.mesh.events[i].switch, i, Speed(i, 0.0), 0.0)]
     if excursion.row in (SWAP, SWITCHING_ABOUT):  # another orbit may have shown which of them it is
         turned = slipping_on(system, orbit, excursion.index) is not None
-        return [(stopped_again if turned else swapped)(system, orbit, excursion.index)]
+        if turned:
+            return [stopped_again(system, orbit, excursion.index)]
+        return intersections(system, orbit, excursion.index) or [swapped(system, orbit, excursion.index)]
     if excursion.row is MERGING:
-        return list(merged(system, orbit, excursion.index))
+        merges = list(merged(system, orbit, excursion.index))
+        return [*merges, *intersections(system, orbit, excursion.index)]
     if excursion.row in (BEFORE_IMPACT, AFTER_IMPACT, RELEASE_AT_IMPACT, CAUGHT):
         return [met(system, orbit, excursion.row, excursion.index)]
     return [_end(system, orbit, excursion.row, excursion.index)]

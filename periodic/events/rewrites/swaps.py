@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from periodic.events.impacts import tied
-from periodic.events.modes import mode_after, of_held, of_kind, surface_of
+from periodic.events.modes import mode_after, of_kind, surface_of
 from periodic.events.rewrites.corners import reversed_by_impact
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
@@ -84,36 +82,7 @@ def swapped(system: System, orbit: Orbit, segment: int) -> Site:
     i, j = segment, (segment + 1) % len(orbit.phases)
     first, second = orbit.mesh.events[i], orbit.mesh.events[j]
     length, impacts = float(orbit.mesh.segment_lengths(orbit.phases)[i]), tied(system, orbit)
-    begin, nodes = float(orbit.phases[i]), _with_third(system, orbit, segment)
-    if len(nodes) > 2:
-        added = _reversed(orbit, nodes)
-    else:
-        early = begin - length if i in impacts else begin + length if j in impacts else begin
-        added = Added(second, early, 0.0), Added(first, early, 1.0)
-    return Site(SWAP, second.switch, i, Length(i, length), 0.0, added, nodes)
-
-
-def _with_third(system: System, orbit: Orbit, segment: int) -> tuple[int, ...]:
-    """The event nodes at the ends of a segment, and a neighbour that meets them at once, if there is one.
-
-    Its guard is a combination of theirs, as the difference of two speeds is of these; the nearer of two.
-    """
-    events, count = orbit.mesh.events, len(orbit.phases)
-    i, j = segment, (segment + 1) % count
-    pair, guards, lengths = (i, j), set(of_held(system)), orbit.mesh.segment_lengths(orbit.phases)
-    before, after = (i - 1) % count, (j + 1) % count
-    near = sorted([(lengths[j], after, (*pair, after)), (lengths[before], before, (before, *pair))])
-    for _, third, nodes in near if count > 3 else ():
-        own, switch = [events[k].switch for k in pair], events[third].switch
-        if switch not in own and {*own, switch} <= guards and holding(system, switch, own):
-            return nodes
-    return pair
-
-
-def _reversed(orbit: Orbit, nodes: Sequence[int]) -> tuple[Added, ...]:
-    """Three event nodes in reverse order, as far apart as they were but that the first gap is the size."""
-    lengths = orbit.mesh.segment_lengths(orbit.phases)[[nodes[1], nodes[0]]]
-    parts = np.array([0.0, 1.0, 1.0 + lengths[1] / lengths[0]])
-    begin = float(orbit.phases[nodes[0]])
-    each = zip(reversed(nodes), parts, strict=True)
-    return tuple(Added(orbit.mesh.events[k], begin, float(part)) for k, part in each)
+    begin = float(orbit.phases[i])
+    early = begin - length if i in impacts else begin + length if j in impacts else begin
+    added = Added(second, early, 0.0), Added(first, early, 1.0)
+    return Site(SWAP, second.switch, i, Length(i, length), 0.0, added, (i, j))

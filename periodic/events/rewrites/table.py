@@ -19,6 +19,10 @@ With + and - the sides of a surface, 0 where the motion is held at it, (a b) a t
     impact in a corner     w                   (+ -) w (- +)     clearance        length
     swap                   a b                 b a               length           length
     swap of three          a b c               c b a             length           length
+    round an intersection  a b                 c b a c           length           length
+    and held then          a b c0              c b c0            length           length
+    and along it           a b0                c b0 (a c)        length           length
+    held up to it          a b                 c0 (a b -c0)      length           length
     merging of stops       a b F               F (a and b)       length           length
     grazing of a relay     nothing             ends              clearance        speed
     corner before impact   I from a            (a b) I from b    limit            length
@@ -31,7 +35,8 @@ rests on one that rests. The length of the slip jumps there, its amplitude and i
 Where the branch turns back at it, as at any row, it is a non-smooth fold (labelled LP).
 
 Three change places at once where the guard of one is a combination of those of the others, as of two speeds
-and their difference.
+and their difference; so c is passed twice on one side where it is not passed on the other. c0: held from
+there on, -c0: let go. See `rewrites/intersections.py`.
 
 The grazing of a limit is adding-sliding of a slider. A slider that slips, however briefly, forgets where it
 was held before, so that the multipliers jump; where friction slips they do not.

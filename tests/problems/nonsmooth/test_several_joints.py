@@ -30,15 +30,19 @@ def test_a_stop_breaks_while_two_masses_rest() -> None:
     """Assert the fold with which a slip begins there, the same from both sides, and that no point is wrong.
 
     The mass q3 rests on q2, which rests as well, so that the force between them stays as it is until q2 is
-    torn off. Beyond the force's limit q3 passes on, and stops again after that.
+    torn off. Beyond the force's limit q3 passes on, and stops again after that. Where the slider between q0
+    and q2 rests is not determined, as it never slips, and the fold depends on that: two machines whose
+    settled motions differ found it at .43437562 and .43438057. Either way along one branch it is the same.
     """
     case = drawn("joints", 148)
     problem, few = per.Problem(case.system, "Omega", (0.4335, 0.4355)), per.ArclengthControl(max_points=16)
     there = per.trace(case.system, "Omega", problem.bounds, start=0.4335, tol=TOL, control=few)
     back = list(per.continuation(problem, there[-1].orbit, sign=1, tol=TOL, control=few))
-    for points, begin, end in ((there, 46, 47), (back, 47, 46)):
-        (fold,) = (point for point in points if point.label is per.Label.FOLD)
-        assert fold.parameter == pytest.approx(0.434380566, abs=5e-9)
+    folds = [[point for point in points if point.label is per.Label.FOLD] for points in (there, back)]
+    assert [len(each) for each in folds] == [1, 1]
+    assert folds[0][0].parameter == pytest.approx(folds[1][0].parameter, abs=5e-9)
+    for points, (fold,), begin, end in ((there, folds[0], 46, 47), (back, folds[1], 47, 46)):
+        assert fold.parameter == pytest.approx(0.434378, abs=5e-6)
         assert [len(points[k].orbit.mesh.events) for k in (0, -1)] == [begin, end]
         assert max(point.parameter for point in points) - fold.parameter < 5e-9
         for k in (0, len(points) - 1):

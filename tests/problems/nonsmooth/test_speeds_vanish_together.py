@@ -29,16 +29,17 @@ def folds(branch: per.Branch) -> list[float]:
     return [point.parameter for point in branch if point.label is per.Label.FOLD]
 
 
+def read(*args: object, **options: object) -> None:
+    """In place of what reads the word from a motion."""
+    raise AssertionError("the word was read from a motion")
+
+
 def test_three_events_change_places_at_once(monkeypatch: pytest.MonkeyPatch, case: JointCase) -> None:
     """Assert that a branch gets past such a meeting by the table alone, and back round two folds.
 
     Beside the first fold it is unstable. A motion from there settled on the sheet that had led to the fold,
     and the branch went back over itself.
     """
-
-    def read(*args: object, **options: object) -> None:
-        raise AssertionError("the word was read from a motion")
-
     monkeypatch.setattr(continuation, "reread", read)
     there = per.trace(case.system, "Omega", RANGE, start=RANGE[0], tol=TOL)
     assert there.stop.reason is per.Reason.BOUND
@@ -54,3 +55,38 @@ def test_the_branch_is_the_same_from_the_other_end(case: JointCase) -> None:
     back = per.trace(case.system, "Omega", RANGE, start=RANGE[1], tol=TOL)
     assert back[-1].parameter == RANGE[0]
     assert folds(back) == pytest.approx(FOLDS[::-1], abs=2e-9)
+
+
+@pytest.mark.parametrize(
+    ("seed", "bounds", "events"),
+    [
+        # both speeds pass 0, on one side the difference does so before and after, in both halves of a period
+        (197, (0.685, 0.686), (24, 20)),
+        # the difference ends held, reached from either side
+        (104, (0.895, 0.9), (40, 38)),
+        # one speed ends held, so that the difference and the other speed pass 0 as one
+        (169, (0.498, 0.499), (21, 20)),
+        # a difference ends held only up to there, of a slider and friction
+        (169, (0.5141, 0.5146), (29, 29)),
+    ],
+)
+def test_round_an_intersection_on_either_side(
+    seed: int, bounds: tuple[float, float], events: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Assert that branches from both ends get past it, by the table alone, to the same orbits, judged."""
+    monkeypatch.setattr(continuation, "reread", read)
+    other = drawn("joints", seed)
+    there, back = (
+        per.trace(
+            other.system, "Omega", bounds, start=start, tol=TOL, control=per.ArclengthControl(max_points=40)
+        )
+        for start in bounds
+    )
+    for branch, ways in ((there, bounds), (back, bounds[::-1])):
+        assert [branch[0].parameter, branch[-1].parameter] == list(ways)
+        for point in (branch[0], branch[-1]):
+            assert judged(other.exact, point, other.states).wrong(point, TOL) == ""
+    for one, same in ((there[0], back[-1]), (there[-1], back[0])):
+        for name in one.maximum:
+            assert one.maximum[name] == pytest.approx(same.maximum[name], rel=1e-6, abs=1e-6)
+    assert [len(there[k].orbit.phases) for k in (0, -1)] == list(events)

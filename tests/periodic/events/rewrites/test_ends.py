@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.surfaces import Surfaces, along, joint
+from support.surfaces import Surfaces, along, at, joint, three_joints
 
 from periodic.events.rewrites import table
 from periodic.events.rewrites.corners import corner, reversed_by_impact
@@ -155,60 +155,6 @@ def test_two_events_that_change_places() -> None:
     back = Added(kink, 1.5, 0.0), Added(turn, 1.5, 1.0)
     rest = 2 * np.pi - 1.0
     assert swapped(system(), orbit, 1) == Site(table.SWAP, 6, 1, Length(1, rest), 0.0, back, (1, 0))
-
-
-def three_joints() -> Any:
-    """Joints 0 (1, 2) of x, 3 (4, 5) of y and 6 (7, 8) of x - y, the last a slider; and a kink 9 of x."""
-    kinds = Kind.SLIDING, Kind.SLIDING, Kind.SLIDER
-    surfaces = [joint(k, 3 * k, kind) for k, kind in enumerate(kinds)]
-    weights = [*[[1.0, 0.0]] * 3, *[[0.0, 1.0]] * 3, *[[1.0, -1.0]] * 3, [1.0, 0.0]]
-    return Surfaces([*surfaces, Surface(Kind.KINK, "kink", 9, column=3)], weights)
-
-
-def at(*nodes: tuple[EventNode, float]) -> Orbit:
-    """An orbit with event nodes at given phases."""
-    return along(lambda tau: np.column_stack([np.sin(tau), np.cos(tau)]), nodes, intervals=4 * len(nodes))
-
-
-@pytest.mark.parametrize("segment", [0, 1])
-@pytest.mark.parametrize("order", [(0, 3, 6), (6, 0, 3), (0, 6, 3)])
-def test_three_events_change_places_where_one_guard_depends_on_the_others(
-    order: tuple[int, int, int], segment: int
-) -> None:
-    """Assert the reverse order and the gaps in their ratio; the first of them is the size."""
-    one, two, three = (EventNode(k, 1) for k in order)
-    orbit = at((one, 1.0), (two, 1.1), (three, 1.4), (EventNode(9, 1), 4.0))
-    site = swapped(three_joints(), orbit, segment)
-    assert (site.row, site.removed, site.held.segment) == (table.SWAP, (0, 1, 2), segment)  # type: ignore[attr-defined]
-    assert [each.event for each in site.added] == [three, two, one]
-    assert [each.at(0.03)[1] for each in site.added] == pytest.approx([1.0, 1.03, 1.04])
-
-
-@pytest.mark.parametrize(
-    "nodes",
-    [
-        [
-            *(
-                (EventNode(k, 1), tau)
-                for k, tau in zip((0, 3, 9, 6, 9), (1.0, 1.1, 1.4, 4.0, 5.0), strict=True)
-            )
-        ],
-        [(EventNode(0, 1), 1.0), (EventNode(3, 1), 1.1), (EventNode(7, 1), 1.4), (EventNode(9, 1), 4.0)],
-        [(EventNode(0, 1), 1.0), (EventNode(9, 1), 1.1), (EventNode(6, 1), 1.4), (EventNode(3, 1), 4.0)],
-        [(EventNode(0, 1), 1.0), (EventNode(3, 1), 1.1), (EventNode(6, 1), 1.4)],
-    ],
-    ids=["it is no neighbour", "a release", "of a kink", "no other event"],
-)
-def test_two_events_change_places_where_no_third_one_meets_them(nodes: list[tuple[EventNode, float]]) -> None:
-    """Assert a swap of two."""
-    assert swapped(three_joints(), at(*nodes), 0).removed == (0, 1)
-
-
-def test_the_nearer_of_two_neighbours_meets_them() -> None:
-    """Assert it of x - y on both sides of the events of x and y."""
-    nodes = zip((6, 0, 3, 6, 9), (0.6, 1.0, 1.1, 1.4, 4.0), strict=True)
-    orbit = at(*((EventNode(k, 1), tau) for k, tau in nodes))
-    assert swapped(three_joints(), orbit, 1).removed == (1, 2, 3)
 
 
 @pytest.mark.parametrize(("before", "after", "bound"), [(-1, 1, False), (STUCK, 1, True), (-1, STUCK, True)])
