@@ -25,15 +25,15 @@ def settled(method: Discretisation, system: System, start: Orbit) -> Iterator[Or
     be integrated.
     """
     own = method.settled(system, start)
-    yield from _integrated(system, start) if own is None else own
+    yield from _integrated(method, system, start) if own is None else own
 
 
-def _integrated(system: System, start: Orbit) -> Iterator[Orbit]:
+def _integrated(method: Discretisation, system: System, start: Orbit) -> Iterator[Orbit]:
     """The motion of a system with all its states, and the same settled further."""
     if not hasattr(system, "motion"):
         return
     begin = start.nodes[0], start.algebraic[0, 0], None
-    motion = Transient(cast(Moving, system), start.parameter, begin)
+    motion = Transient(method, cast(Moving, system), start.parameter, begin)
     try:
         for wanted in (STILL, CLOSE):
             if not motion.settles(wanted):

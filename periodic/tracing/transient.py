@@ -1,8 +1,8 @@
 """A motion integrated period by period until it comes back, or taken to an orbit near which it comes.
 
 A motion that settles slowly, or never, as it is chaotic or repeats itself after several periods, comes near
-orbits of one period now and then. From the closest return Newton's method on the return map finds them
-(Lathrop & Kostelich 1989 begin there too).
+orbits of one period now and then. From the closest returns Newton's method finds them (Lathrop & Kostelich
+1989 look for them there). Where words are read from motions it goes by `Closing`, else by `ReturnMap`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from periodic.correction.discretisation import Discretisation
 from periodic.correction.outcome import FAILURES
 from periodic.correction.tolerance import Accuracy
-from periodic.events.motions import FOLLOWED, PERIODS, STILL, motion_from, orbit_of
+from periodic.events.motions import FOLLOWED, PERIODS, STILL, has_words, motion_from, orbit_of
 from periodic.orbit.orbit import FORCED, Orbit
 from periodic.orbit.scheme import Array
 from periodic.system import Moving, TrajectoryLike
+from periodic.tracing.closing import Closing
 from periodic.tracing.pace import periods_left
 from periodic.tracing.returnmap import ReturnMap
 
@@ -29,7 +31,10 @@ NEAR = 1e-2
 """As `STILL`, for the result of Newton's method on the return map: near enough to read its word."""
 
 TRANSIENTS = (10, 40)
-"""Periods after which Newton's method on the return map is tried, where it takes less than to settle."""
+"""Periods after which `ReturnMap` is tried, where it takes less than to settle."""
+
+BETWEEN = TRANSIENTS[0]
+"""Periods after which `Closing` is tried, and again and again: it takes few."""
 
 PLACES_IN_PERIOD = 193
 """Phases in a period at which the motion is computed."""
@@ -46,6 +51,7 @@ class Transient:
     path: its last period. The methods raise FAILURES.
     """
 
+    method: Discretisation
     system: Moving
     parameter: Array
     place: Place
@@ -65,15 +71,21 @@ class Transient:
             if not self._period(found or self.place):
                 return False
             if found is not None:  # a motion leaves the orbit again where that is unstable
-                self._apart, self._closest, self._turn = self._apart[-1:], None, self._count + 1
+                self.place, self._apart, self._closest = found, self._apart[-1:], None
+                self._turn = self._count + 1
             if found is not None or self._apart[-1] < wanted:
                 return True
         return False
 
     def orbit(self) -> Orbit | None:
         """Return the next period as a guess of an orbit: see `periodic.events.motions.orbit_of`."""
-        state, algebraic, modes = self.place
-        return orbit_of(self.system, state, algebraic, self.parameter, FOLLOWED, before=modes)
+        return self._read(*self.place, FOLLOWED)
+
+    def _read(
+        self, state: Array, algebraic: Array, modes: Sequence[int] | None, tolerance: float
+    ) -> Orbit | None:
+        """The period from a place as a guess of an orbit."""
+        return orbit_of(self.system, state, algebraic, self.parameter, tolerance, before=modes)
 
     def _followed(self, state: Array, algebraic: Array, modes: Sequence[int] | None) -> TrajectoryLike:
         """A period from a place."""
@@ -98,8 +110,29 @@ class Transient:
         if left <= least(self.place[0]):
             self._turn = self._count + max(math.ceil(left), 1)
             return None
+        place, self._closest = self._nearest, None
+        if has_words(self.system):
+            self._turn = self._count + BETWEEN
+            return self._closed(*place)
         self._turn = next((later for later in TRANSIENTS if later > self._count), PERIODS)
-        (state, algebraic, modes), self._closest = self._nearest, None
+        return self._mapped(*place, wanted)
+
+    def _closed(self, state: Array, algebraic: Array, modes: Sequence[int] | None) -> Place | None:
+        """The beginning of an orbit near a place, with derivatives from its equations."""
+
+        def motion(begin: Array) -> Orbit | None:
+            return self._read(begin, algebraic, modes, Accuracy.STANDARD)
+
+        def distance(begin: Array) -> float:
+            return apart(self._followed(begin, algebraic, modes).state)
+
+        found, off = Closing(self.method, self.system, motion, distance).nearest(state, CLOSE)
+        return (found, algebraic, modes) if off < STILL else None
+
+    def _mapped(
+        self, state: Array, algebraic: Array, modes: Sequence[int] | None, wanted: float
+    ) -> Place | None:
+        """The same with derivatives by differences."""
 
         def follow(begin: Array) -> Array:
             return self._followed(begin, algebraic, modes).state

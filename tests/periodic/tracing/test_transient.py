@@ -35,7 +35,7 @@ def settling(over: Callable[[Array], Array], *state: float) -> tuple[Mapped, Tra
     """A motion of a map from a state."""
     system = Mapped(over)
     begin = np.array(state), np.zeros(0), None
-    return system, Transient(system, np.zeros(0), begin)  # type: ignore[arg-type]
+    return system, Transient(None, system, np.zeros(0), begin)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("still", "count"), [(STILL, 9), (CLOSE, 16)])
