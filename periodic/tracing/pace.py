@@ -16,10 +16,10 @@ def periods_left(apart: Sequence[float], wanted: float) -> float:
     Parameters
     ----------
     apart : sequence of float
-        Distances, all above 0, of the ends of its periods from their beginnings. At least two.
+        Distances of the ends of its periods from their beginnings. At least two.
     wanted : float
         The distance at which it has settled.
     """
-    last = np.log(apart[-LAST:])
+    last = np.log(np.maximum(apart[-LAST:], np.finfo(float).tiny))
     slope, here = np.polyfit(np.arange(1 - len(last), 1), last, 1)
     return max(float((np.log(wanted) - here) / slope), 0.0) if slope < 0 else np.inf

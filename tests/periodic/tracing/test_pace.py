@@ -18,6 +18,7 @@ def test_distances_that_do_not_shrink() -> None:
     """Assert that a motion never settles whose distances grow, or stay."""
     assert periods_left([1e-3, 2e-3], 1e-5) == np.inf
     assert periods_left([1e-3, 1e-3], 1e-5) > 1e9
+    assert periods_left([0.0, 1e-3], 1e-5) == np.inf
 
 
 def test_a_beat_is_seen_through() -> None:
