@@ -161,6 +161,16 @@ def motion_from(
     return system.motion(*given, modes) if modes and keeps else system.motion(*given)
 
 
+def has_words(system: System) -> bool:
+    """Return whether words are read from motions of a system: it has relays, holds, or walls to rest on."""
+    return bool(_followed_surfaces(system)) or any(s.leaves is not None for s in surfaces_of(system))
+
+
+def _followed_surfaces(system: System) -> list[SurfaceLike]:
+    """The surfaces that hold, and relays."""
+    return [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
+
+
 def orbit_of(
     system: Moving,
     state: Array,
@@ -178,9 +188,9 @@ def orbit_of(
 
     Raises what the integration raises.
     """
-    followed = [s for s in surfaces_of(system) if s.releases is not None or s.kind == Kind.RELAY]
-    if not followed and all(surface.leaves is None for surface in surfaces_of(system)):
+    if not has_words(system):
         return None
+    followed = _followed_surfaces(system)
 
     def follow(phase: Array, parameter: Array) -> TrajectoryLike:
         return motion_from(system, state, algebraic, parameter, phase, tolerance, before)

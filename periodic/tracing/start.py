@@ -15,7 +15,7 @@ from periodic.correction.tolerance import COARSEST, Accuracy
 from periodic.linear.variation import UnknownVariationsError
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.refinement.adaptation import refined
+from periodic.refinement.adaptation import MOST_MESHES, refined
 from periodic.results.stop import Reason
 from periodic.stability.multipliers import Stability
 from periodic.tracing.collapse import collapsed
@@ -91,7 +91,7 @@ class Start:
                 return last
         if settles:
             for motion in iter(lambda: next(others, None), None):
-                if (last := worded(self.solver, motion, sign)).ok:
+                if (last := self._worded(motion, sign)).ok:
                     return last
         if (rest := self._rest(guess)) is not None:
             self.tried.append("rest under the mean load")
@@ -109,7 +109,7 @@ class Start:
             if self.shortfall:
                 return first
         for orbit in others:
-            if orbit is not None and (last := worded(self.solver, orbit, sign)).ok:
+            if orbit is not None and (last := self._worded(orbit, sign)).ok:
                 return last
         return first
 
@@ -185,6 +185,15 @@ class Start:
                 elif orbit is not None and stop.reason is not Reason.MAX_NEWTON:
                     self.tried[-1] += f" (to {other.value(orbit):.4g}: {stop.detail})"
 
+    def _worded(self, motion: Orbit, sign: float) -> Solution:
+        """The orbit near a motion; one that becomes another on a finer mesh is no less a first orbit."""
+        found = worded(self.solver, motion, sign)
+        for _ in range(MOST_MESHES):
+            if found.outcome is not Outcome.MOVED:
+                break
+            found = worded(self.solver, found.orbit, sign)
+        return found
+
     def _fixed(self, guess: Orbit, sign: float) -> Solution:
         return refined(self.solver, self.solver.at_parameter(guess, sign), fixed=True)
 
@@ -249,7 +258,7 @@ class Start:
         if not solver.discretisation.settles(system) or first.ok and np.isfinite(first.error.motion):
             return first
         each = (self._adopted(solver, motion) for motion in settled(solver.discretisation, system, near))
-        found = (worded(solver, motion, sign) for motion in each)
+        found = (self._worded(motion, sign) for motion in each)
         return next((last for last in found if last.ok), first)
 
     @staticmethod

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import PPoly
 
 from symbolic.arrays import Array
 
@@ -49,7 +49,7 @@ def lowest(values: Array, rates: Array, phase: Array) -> Array:
 
     An error of s''''/24 (t - a)^2 (b - t)^2 changes only the middle one of the five Bernstein coefficients.
     """
-    width = np.diff(phase)[:, None]
+    width = (phase[1:] - phase[:-1])[:, None]
     left, right = values[:-1] + width * rates[:-1] / 3, values[1:] - width * rates[1:] / 3
     middle = (left + right) / 2 - SAFE * _fourth(values, rates, phase) * width**4 / 6
     inner = [(values[:-1] + 3 * left) / 4, middle, (3 * right + values[1:]) / 4]
@@ -103,9 +103,14 @@ def root(motion: Motion, guard: Guard, low: Passed, high: Passed, near: float) -
 
 def crossing(low: Passed, high: Passed) -> float:
     """Return where the cubic of a guard first vanishes between two phases; the first of them if nowhere."""
-    ends = [low.phase, high.phase]
-    if ends[1] - ends[0] <= RESOLVED:
+    width = high.phase - low.phase
+    if width <= RESOLVED:
         return low.phase
-    cubic = CubicHermiteSpline(ends, [low.value, high.value], [low.rate, high.rate])
+    slope = (high.value - low.value) / width
+    bend = (low.rate + high.rate - 2 * slope) / width
+    powers = np.array([[bend / width], [(slope - low.rate) / width - bend], [low.rate], [low.value]])
+    if not np.isfinite(powers).all():
+        return low.phase
+    cubic = PPoly.construct_fast(powers, np.array([low.phase, high.phase]))
     roots = cubic.roots(extrapolate=False)
     return float(roots[0]) if len(roots) else low.phase

@@ -103,11 +103,13 @@ class VectorField:
     def guards(self, values: Array, phase: Array, given: Array) -> tuple[Array, Array]:
         """Return the switches along a motion and their derivatives in tau, both of shape (K, switches)."""
         one = self._guards_at
-        found = np.empty((len(phase), 2, self.expressions.guards.numel()))
-        one.given[2][:] = given
-        for k, (y, tau) in enumerate(zip(values, phase, strict=True)):
-            one.given[0][:], one.given[1][:] = y, tau
-            found[k] = one()[0]
+        (y, tau, p), (both,) = one.given, one.results
+        found = np.empty((len(phase), *both.shape))
+        p[:] = given
+        for k, at in enumerate(phase):
+            y[:], tau[0] = values[k], at
+            one()
+            found[k] = both
         return found[:, 0], found[:, 1]
 
     def on_constraints(self, y: Array, phase: float, parameter: Array) -> Array:
@@ -115,11 +117,13 @@ class VectorField:
 
         Raises IntegrationError where they have no finite values.
         """
+        if not self._constraints.size1_out(0):
+            return y
         for _ in range(CONSTRAINT_ITERATIONS):
             rows, jacobian = (np.array(a) for a in self._constraints(y, phase, parameter))
             if not np.isfinite(jacobian).all() or not np.isfinite(rows).all():
                 raise failure(phase)
-            if len(rows) == 0 or np.abs(rows).max() < FULFILLED:
+            if np.abs(rows).max() < FULFILLED:
                 break
             y = y - np.linalg.pinv(jacobian) @ rows.ravel()
         return y

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -56,6 +57,7 @@ class Flow:
         n, phase = self.system.expressions.state.numel(), np.asarray(phase, dtype=float)
         switching, field = Switching(self.system, parameter, self.tolerance), self.system.field
 
+        @cache
         def given(modes: Modes) -> Array:
             return np.concatenate([parameter, switching.side(modes)])
 

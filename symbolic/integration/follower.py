@@ -91,11 +91,10 @@ class Seen:
     guards: Array
     rates: Array
 
-    def at(self, j: int, level: Array) -> list[Passed]:
-        """Return the guards less their levels at a phase."""
-        tau, y = float(self.phase[j]), self.y[j]
-        each = zip(self.guards[j] - level, self.rates[j], strict=True)
-        return [Passed(tau, y, float(value), float(rate)) for value, rate in each]
+    def at(self, j: int, k: int, level: Array) -> Passed:
+        """Return a guard less its level at a phase."""
+        value, rate = self.guards[j, k] - level[k], self.rates[j, k]
+        return Passed(float(self.phase[j]), self.y[j], float(value), float(rate))
 
 
 @dataclass(eq=False)
@@ -235,11 +234,13 @@ class Follower:
     def _event(self, seen: Seen, j: int, fallen: NDArray[np.int_]) -> tuple[Array, float]:
         """y after the first event in an interval, and where it is."""
         level = np.where(seen.guards[j] > 0, 0.0, self._floor)  # or where a guard begins, if it is below 0
-        low, high, found, earlier = seen.at(j, level), seen.at(j + 1, level), None, list(fallen)
+        low, high = ({k: seen.at(i, k, level) for k in fallen} for i in (j, j + 1))
+        found, earlier = None, list(fallen)
         while earlier:  # another may have fallen before the one whose cubic did first
             k = min(earlier, key=lambda k: crossing(low[k], high[k])) if len(earlier) > 1 else earlier[0]
             found = root(self._onward, self._above(k, level), low[k], high[k], BESIDE * float(self._size[k]))
-            high = self._seen(found.y_before[None], np.array([found.before])).at(0, level)
+            before = self._seen(found.y_before[None], np.array([found.before]))
+            high = {k: before.at(0, k, level) for k in fallen}
             earlier = [k for k in fallen if high[k].value < 0 and found.before > low[k].phase]
         assert found is not None
         now = self._seen(found.y_after[None], np.array([found.after])).guards[0]
@@ -250,7 +251,7 @@ class Follower:
 
     def _above(self, k: int, level: Array) -> Callable[[float, Array], Passed]:
         """A guard less its level along a motion."""
-        return lambda tau, y: self._seen(y[None], np.array([tau])).at(0, level)[k]
+        return lambda tau, y: self._seen(y[None], np.array([tau])).at(0, k, level)
 
     def _passed(self, found: Root, fallen: Sequence[Guard]) -> tuple[Array, float]:
         """Apply an event to the motion: y and the phase after it."""

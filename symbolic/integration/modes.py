@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -108,11 +109,15 @@ class Switching:
 
     def side(self, modes: Modes) -> Array:
         """Return the sides of the equations' jumps, (columns,); 0 in columns without a surface."""
-        found = np.zeros(self.system.expressions.sided.side.numel())
+        found = np.zeros(self._columns)
         for surface, mode in zip(self.surfaces, modes, strict=True):
             if surface.column is not None:
                 found[surface.column] = mode
         return found
+
+    @cached_property
+    def _columns(self) -> int:
+        return int(self.system.expressions.sided.side.numel())
 
     @staticmethod
     def _rests(surface: Surface, mode: int) -> bool:

@@ -39,34 +39,34 @@ class Steps:
         if len(phase) > MOST + 1:
             return None
         step = self._step
-        (y, at, p), ((later, fifth, third),) = step.given, step.results
+        (y, at, p), (later, error) = step.given, step.results
         found = np.empty((len(phase), len(start)))
         y[:], p[:], found[0] = start, given, start
-        for k, (tau, width) in enumerate(zip(phase[:-1], np.diff(phase), strict=True)):
-            at[:] = tau, width
+        for k, width in enumerate(phase[1:] - phase[:-1]):
+            at[:] = phase[k], width, tolerance
             step()
-            with np.errstate(over="ignore", invalid="ignore"):  # a step that is not finite is too long
-                scale = tolerance * (1 + np.maximum(np.abs(y), np.abs(later)))
-                error = _error(fifth / scale, third / scale)
-            if not error <= PART:
+            if not error[0] <= PART:  # or not a number
                 return None
             y[:] = found[k + 1] = later
         return found
 
     @cached_property
     def _step(self) -> Buffered:
-        """Function of y, (tau, width), p: y after a step, and its differences for orders 5 and 3."""
-        y, p, at = self.rates.sx_in(0), self.rates.sx_in(2), ca.SX.sym("at", 2)
+        """Function of y, (tau, width, tolerance), p: y after a step, and its error."""
+        y, p, at = self.rates.sx_in(0), self.rates.sx_in(2), ca.SX.sym("at", 3)
         stages: list[ca.SX] = []
         for row, c in zip(DOP853.A, DOP853.C[: DOP853.n_stages], strict=False):
             inner = sum((at[1] * a * k for a, k in zip(row, stages, strict=False) if a), y)
             stages.append(self.rates(inner, at[0] + c * at[1], p))
         parts = [sum(at[1] * b * k for b, k in zip(w, stages, strict=False) if b) for w in WEIGHTS]
-        return Buffered(ca.Function("step", [y, at, p], [ca.densify(ca.horzcat(y + parts[0], *parts[1:]))]))
+        later = ca.densify(y + parts[0])
+        scale = at[2] * (1 + ca.fmax(ca.fabs(y), ca.fabs(later)))
+        error = _error(parts[1] / scale, parts[2] / scale)
+        return Buffered(ca.Function("step", [y, at, p], ca.cse([later, ca.densify(error)])))
 
 
-def _error(fifth: Array, third: Array) -> float:
+def _error(fifth: ca.SX, third: ca.SX) -> ca.SX:
     """The error of a step, of differences relative to the tolerance; NaN where there is none."""
-    own = float(fifth @ fifth)
-    both = own + 0.01 * float(third @ third)
-    return own / np.sqrt(both * len(fifth)) if both else own
+    own = ca.sumsqr(fifth)
+    both = own + 0.01 * ca.sumsqr(third)
+    return ca.if_else(both == 0, own, own / ca.sqrt(both * fifth.numel()))

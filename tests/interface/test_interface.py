@@ -22,7 +22,8 @@ CHANGED = {
     },
     "periodic": {
         *("_Pieces", "NativeSteps", "Motion", "_Oscillating", "_Border", "_Pair", "_Grazing", "_Peak"),
-        *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Start", "Foresight", "_Way"),
+        *("Work", "_Known", "Execution", "Run", "Continuation", "ReturnMap", "Transient", "Start"),
+        *("Foresight", "_Way"),
     },
 }
 """The dataclasses that change as they are used: those of all others are values."""

@@ -211,16 +211,6 @@ def test_periods_that_grow_without_bound(
 
 
 @pytest.mark.parametrize(
-    ("gap", "size", "closed"),
-    [(0.9e-2, 1.0, True), (1.1e-2, 1.0, False), (0.9e-2, 0.5, False), (0.0, 0.0, True)],
-)
-def test_motion_that_comes_back(gap: float, size: float, closed: bool) -> None:
-    """Assert that it comes back to a part of the largest peak to peak of a state."""
-    path = np.array([[0.0, 0.0], [size, 0.1 * size], [gap, 0.0]])
-    assert settling._closed(path, 1e-2) is closed
-
-
-@pytest.mark.parametrize(
     ("up", "down", "centre", "reached"),
     [(-0.5, 0.5, 0.0, False), (-0.2, 0.8, 0.6, False), (0.0, 1.0, 1.0, True), (-1.0, 0.0, -1.0, True)],
 )

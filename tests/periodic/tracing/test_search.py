@@ -112,6 +112,21 @@ def method(settles: bool = False, rest: Any = None, motions: Any = (), others: A
     return own
 
 
+def test_first_orbit_that_becomes_another_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that the search goes on from the other one, and with what else there is where that fails."""
+    asked = list[str]()
+
+    def worded(solver: Any, orbit: Any, sign: float) -> Any:
+        asked.append(orbit.name)
+        found = outcome(guess(name=f"{orbit.name}'"), orbit.name == "motion''")
+        found.outcome = Outcome.CONVERGED if found.ok else Outcome.MOVED
+        return found
+
+    monkeypatch.setattr(start, "worded", worded)
+    found, _ = searched(Solving(discretisation=method(True, motions=[guess(name="motion")])))
+    assert found.ok and asked == ["motion", "motion'", "motion''"]
+
+
 @pytest.fixture(autouse=True)
 def plain(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let motions settle to those of the method, and orbits be refined to themselves."""

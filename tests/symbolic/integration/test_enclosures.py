@@ -111,6 +111,13 @@ def test_first_crossing_of_a_cubic(begin: float, place: float) -> None:
     assert crossing(along(0.25, s, rate), along(0.25 + RESOLVED, s, rate)) == 0.25
 
 
+@pytest.mark.parametrize(("value", "rate"), [(-np.inf, 0.0), (-1.0, np.inf), (-1.0, np.nan)])
+def test_no_cubic_through_what_is_not_finite(value: float, rate: float) -> None:
+    """Assert the first phase, so that the interval is halved."""
+    ends = Passed(0.25, np.zeros(1), 1.0, 0.0), Passed(1.0, np.zeros(1), value, rate)
+    assert crossing(*ends) == 0.25
+
+
 def test_phases_are_filled_in() -> None:
     """Assert even parts no longer than the longest, the given ones kept as they are."""
     given = np.array([0.0, LONGEST / 2, 3.1 * LONGEST, 3.1 * LONGEST, 5 * LONGEST])
@@ -135,7 +142,7 @@ def test_guards_less_their_levels() -> None:
         np.array([[1.0, 2.0], [3.0, 4.0]]),
         np.array([[5.0, 6.0], [7.0, 8.0]]),
     )
-    first, second = seen.at(1, np.array([0.5, -0.5]))
+    first, second = (seen.at(1, k, np.array([0.5, -0.5])) for k in (0, 1))
     assert (first.phase, first.value, first.rate) == (2.0, 2.5, 7.0)
     assert (second.phase, second.value, second.rate) == (2.0, 4.5, 8.0)
     assert first.y.tolist() == [0.0, 1.0]
