@@ -1,8 +1,9 @@
 """A motion integrated period by period until it comes back, or taken to an orbit near which it comes.
 
 A motion that settles slowly, or never, as it is chaotic or repeats itself after several periods, comes near
-orbits of one period now and then. From the closest returns Newton's method finds them (Lathrop & Kostelich
-1989 look for them there). Where words are read from motions it goes by `Closing`, else by `ReturnMap`.
+orbits of one period now and then. From the closest returns Newton's method finds them (Lathrop & Kostelich,
+Phys. Rev. A 40 (1989) 4028, look for them there). Where words are read from motions it goes by `Closing`,
+else by `ReturnMap`.
 """
 
 from __future__ import annotations
