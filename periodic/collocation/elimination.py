@@ -67,10 +67,11 @@ class EliminatedStages:
         if row.stages is None:
             return row
         n, k, ties = row.nodes.shape[1], len(self.orbit.phases), self.orbit.mesh.ties
-        each = np.einsum("jln,jlnw->jw", row.stages, self.stages)
+        held = np.flatnonzero(row.stages.any(axis=(1, 2)))
+        each = np.einsum("jln,jlnw->jw", row.stages[held], self.stages[held])
         nodes, outer, first = row.nodes.copy(), row.outer.copy(), 1 + n + ties.shape[1]
-        nodes[:-1] += each[:, 1 : 1 + n]
-        np.add.at(outer, ties, each[:, 1 + n : first])
+        nodes[held] += each[:, 1 : 1 + n]
+        np.add.at(outer, ties[held], each[:, 1 + n : first])
         outer[k:] += each[:, first:].sum(axis=0)
         return Row(row.value + float(each[:, 0].sum()), nodes, outer)
 

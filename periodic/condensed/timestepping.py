@@ -98,7 +98,6 @@ class Motion:
         self.joints = joints_of(self.system)
         self.holding = Holding(1.0, np.full(len(self.side), np.nan))
         self.sliders = {joint.column: self._slider(joint) for joint in self.joints if not joint.slides}
-        self._native = native_steps(self, PIVOTS)
 
     @classmethod
     def at_rest(cls, system: System, parameter: Array, state: Array, unknown: Array) -> Motion:
@@ -142,8 +141,9 @@ class Motion:
         Raises FloatingPointError.
         """
         self.events = []
-        if self._native is not None:
-            self._followed(self._native)
+        native = self._steps_in_c()
+        if native is not None:
+            self._followed(native)
         else:
             self.phases, self.states = [self.begin], [self.state]
             self.unknowns, self.sides = [self.unknown], [self.shown]
@@ -153,6 +153,12 @@ class Motion:
         sides = np.array(self.sides)
         for k in np.flatnonzero((sides[1:] != sides[:-1]).any(axis=1)).tolist():
             self._noted(k)
+
+    def _steps_in_c(self) -> NativeSteps | None:
+        """Steps in C, as soon as the system's kernels are compiled; None before, and where they never are."""
+        if self._native is None:
+            self._native = native_steps(self, PIVOTS)
+        return self._native
 
     @property
     def _levels(self) -> list[float]:

@@ -212,9 +212,11 @@ def chain(eliminated: Eliminated) -> Array:
     first[0, :, 1 : 1 + n] = np.eye(n)
     if n <= PAIRED_UP_TO and np.array_equal(eliminated.origin, np.arange(count)):
         return np.concatenate([first, _chained(eliminated.step)])
-    maps = np.concatenate([first, np.empty((count, n, width))])
-    for j in range(count):
-        maps[j + 1 : j + 2] = _after(eliminated.step[j : j + 1], maps[eliminated.origin[j]][None])
+    own = np.ascontiguousarray(eliminated.step[:, :, 1 : 1 + n])
+    maps = np.concatenate([first, eliminated.step])
+    maps[1:, :, 1 : 1 + n] = 0.0
+    for j, origin in enumerate(eliminated.origin):
+        maps[j + 1] += own[j] @ maps[origin]
     return maps
 
 
@@ -267,7 +269,8 @@ def after_bounded(before: Array, step: Array) -> Array:
 
 def onto_start(row: Row, maps: Array) -> Array:
     """Return a row, its stages eliminated, as one in (1, dx_0, dy)."""
-    onto = np.einsum("jn,jnw->w", row.nodes, maps)
+    held = row.nodes.any(axis=1)
+    onto = np.einsum("jn,jnw->w", row.nodes[held], maps[held])
     onto[0] += row.value
     onto[len(onto) - len(row.outer) :] += row.outer
     return onto

@@ -29,63 +29,83 @@ static int eliminate(whole n, whole m, whole w1, const double *unknown, double *
     return DONE;
 }
 
-/* Kinematic rows a dq' + b dv = .. of an interval's columns (ncol, n, w1), as in `kinematic.py`:
-   position[r] and velocity[r] are their states, position[r] is -1 for other rows. */
-static void find_kinematic(whole ncol, whole n, whole w1, const double *columns, whole *position,
-                           whole *velocity, whole *gone)
+/* Rows of an interval that have the rate of one state and no more of it: a dq' + sum of b dv = .. Row r has that of
+   position[r], -1 for other rows, and the states v of the row of `state` (n, n), count[r] of them.
+   role: of each state, whether it follows from others (GONE), or others from it (KEPT). */
+struct kinematic {
+    whole *position, *count, *state, *role;
+};
+
+enum { GONE = 1, KEPT = 2 };
+
+/* Whether row r of an interval's columns (ncol, n, w1) is such a row with so many states at the most. */
+static int is_kinematic(whole ncol, whole n, whole w1, const double *columns, whole r, whole most,
+                        const struct kinematic *found)
 {
-    for (whole s = 0; s < n; s++)
-        gone[s] = 0;
-    for (whole r = 0; r < n; r++) {
-        whole rate = -1, state = -1, fits = 1;
-        position[r] = -1;
-        for (whole l = 0; l < ncol && fits; l++) {
+    whole rate = -1, count = 0;
+    for (whole s = 0; s < n; s++) {
+        whole moves = 0, acts = 0;
+        for (whole l = 0; l < ncol; l++) {
             const double *c = columns + (l * n + r) * w1 + 1;
-            for (whole s = 0; s < n; s++) {
-                if (c[s] != 0) {
-                    fits &= rate < 0 || rate == s;
-                    rate = s;
-                }
-                if (c[n + s] != 0) {
-                    fits &= state < 0 || state == s;
-                    state = s;
-                }
-            }
-            fits = fits && rate >= 0 && c[rate] != 0;
+            moves += c[s] != 0;
+            acts += c[n + s] != 0;
         }
-        fits = fits && state >= 0 && state != rate && !gone[rate] && !gone[state];
-        for (whole i = 0; fits && i < ncol * n; i++)
-            fits = i % n == r || columns[i * w1 + 1 + rate] == 0;
-        for (whole other = 0; other < r; other++)
-            fits = fits && !(position[other] >= 0 && velocity[other] == rate);
-        if (fits) {
-            position[r] = rate;
-            velocity[r] = state;
-            gone[rate] = 1;
-        }
+        if (moves && (rate >= 0 || moves < ncol || acts || found->role[s]))
+            return 0;
+        if (acts && (count == most || found->role[s] == GONE))
+            return 0;
+        if (moves)
+            rate = s;
+        if (acts)
+            found->state[r * n + count++] = s;
     }
+    for (whole i = 0; rate >= 0 && i < ncol * n; i++)
+        if (i % n != r && columns[i * w1 + 1 + rate] != 0)
+            return 0;
+    found->position[r] = rate;
+    found->count[r] = count;
+    return rate >= 0;
+}
+
+/* Kinematic rows of an interval's columns: as in `kinematic.py`, with one state, then those with others,
+   as sliders between two places have. */
+static void find_kinematic(whole ncol, whole n, whole w1, const double *columns, const struct kinematic *found)
+{
+    for (whole s = 0; s < n; s++) {
+        found->position[s] = -1;
+        found->role[s] = 0;
+    }
+    for (whole pass = 0; pass < 2; pass++)
+        for (whole r = 0; r < n; r++)
+            if (found->position[r] < 0 && is_kinematic(ncol, n, w1, columns, r, pass ? n : 1, found)) {
+                found->role[found->position[r]] = GONE;
+                for (whole i = 0; i < found->count[r]; i++)
+                    found->role[found->state[r * n + i]] = KEPT;
+            }
 }
 
 /* Stages (ncol, n, w) of an interval of width h from its columns (ncol, n, w1). integral (ncol, ncol)
    is the inverse of the stages' part of stage_rates. `both`: room for ncol n (ncol n + w + 1) numbers,
-   marks: for 4n. */
+   marks: for n (n + 4). */
 static int solve_stages(whole ncol, whole n, whole w, double h, const double *columns,
                         const double *stage_rates, const double *integral, double *restrict stages,
                         double *restrict both, whole *marks)
 {
     const whole w1 = w + n;
-    whole *position = marks, *velocity = marks + n, *gone = marks + 2 * n, *place = marks + 3 * n;
-    find_kinematic(ncol, n, w1, columns, position, velocity, gone);
-    whole kept = 0;
+    const struct kinematic rows = {marks, marks + n, marks + 2 * n, marks + (n + 2) * n};
+    const whole *position = rows.position;
+    find_kinematic(ncol, n, w1, columns, &rows);
+    whole *place = marks + (n + 3) * n, kept = 0;
     for (whole s = 0; s < n; s++)
-        place[s] = gone[s] ? -1 : kept++;
+        place[s] = rows.role[s] == GONE ? -1 : kept++;
     const whole size = ncol * kept, width = size + w;
-    double *restrict ratio = both + size * width; /* (n, ncol): b / a of kinematic rows */
+    double *ratios = both + size * width, *ratio = ratios; /* (ncol): b / a of kinematic rows, state by state */
     for (whole r = 0; r < n; r++)
-        for (whole l = 0; position[r] >= 0 && l < ncol; l++) {
-            const double *c = columns + (l * n + r) * w1 + 1;
-            ratio[r * ncol + l] = h * (c[n + velocity[r]] / c[position[r]]);
-        }
+        for (whole v = 0; position[r] >= 0 && v < rows.count[r]; v++, ratio += ncol)
+            for (whole l = 0; l < ncol; l++) {
+                const double *c = columns + (l * n + r) * w1 + 1;
+                ratio[l] = h * (c[n + rows.state[r * n + v]] / c[position[r]]);
+            }
     const double inverse = 1 / h;
 
     /* Stages of positions but for their velocities' part: h integral (given rates). */
@@ -126,16 +146,19 @@ static int solve_stages(whole ncol, whole n, whole w, double h, const double *co
                 right[1 + s] = -c[1 + s] * (weights[0] * inverse);
             for (whole j = 1 + n; j < w; j++)
                 right[j] = -c[n + j];
+            ratio = ratios;
             for (whole k = 0; k < n; k++) {
-                const whole q = position[k];
-                if (q < 0 || c[1 + n + q] == 0)
-                    continue;
-                const double factor = c[1 + n + q], *x = stages + (l * n + q) * w;
-                for (whole j = 0; j < w; j++)
-                    right[j] -= factor * x[j];
-                for (whole i = 0; i < ncol; i++)
-                    row[place[velocity[k]] * ncol + i] -=
-                        factor * integral[l * ncol + i] * ratio[k * ncol + i];
+                const whole q = position[k], count = q < 0 ? 0 : rows.count[k];
+                if (q >= 0 && c[1 + n + q] != 0) {
+                    const double factor = c[1 + n + q], *x = stages + (l * n + q) * w;
+                    for (whole j = 0; j < w; j++)
+                        right[j] -= factor * x[j];
+                    for (whole v = 0; v < count; v++)
+                        for (whole i = 0; i < ncol; i++)
+                            row[place[rows.state[k * n + v]] * ncol + i] -=
+                                factor * integral[l * ncol + i] * ratio[v * ncol + i];
+                }
+                ratio += count * ncol;
             }
             row += width;
         }
@@ -147,16 +170,18 @@ static int solve_stages(whole ncol, whole n, whole w, double h, const double *co
             if (place[s] >= 0)
                 memcpy(stages + (l * n + s) * w, both + (place[s] * ncol + l) * width + size,
                        w * sizeof(double));
+    ratio = ratios;
     for (whole r = 0; r < n; r++)
-        for (whole k = 0; position[r] >= 0 && k < ncol; k++) {
-            const double *v = stages + (k * n + velocity[r]) * w;
-            for (whole l = 0; l < ncol; l++) {
-                const double factor = integral[l * ncol + k] * ratio[r * ncol + k];
-                double *x = stages + (l * n + position[r]) * w;
-                for (whole j = 0; j < w; j++)
-                    x[j] -= factor * v[j];
+        for (whole i = 0; position[r] >= 0 && i < rows.count[r]; i++, ratio += ncol)
+            for (whole k = 0; k < ncol; k++) {
+                const double *v = stages + (k * n + rows.state[r * n + i]) * w;
+                for (whole l = 0; l < ncol; l++) {
+                    const double factor = integral[l * ncol + k] * ratio[k];
+                    double *x = stages + (l * n + position[r]) * w;
+                    for (whole j = 0; j < w; j++)
+                        x[j] -= factor * v[j];
+                }
             }
-        }
     return DONE;
 }
 
@@ -183,7 +208,7 @@ static void place(whole n, whole e, whole k, whole p, const whole *ties, const d
     memcpy(row + 1 + n + k, own + 1 + n + e, p * sizeof(double));
 }
 
-/* work holds ncol (n+m) w1 + m (m + w1) + ncol n (ncol n + w + 1) + 3 ncol ncol numbers, marks 4n. */
+/* work holds ncol (n+m) w1 + m (m + w1) + ncol n (ncol n + w + 1) + 3 ncol ncol numbers, marks n (n + 4). */
 int eliminate_stages(whole count, whole ncol, whole n, whole m, whole k, whole e, whole p, const whole *ties,
                      const double *line_residual, const double *d_rate, const double *d_state,
                      const double *d_algebraic, const double *d_phase, const double *d_parameter,

@@ -87,7 +87,7 @@ class Routines:
             *_given(orbit.grid.width[part], left_gradient[part], width_gradient[part]),
             *_given(scheme.points, scheme.stage_rates, scheme.end),
             *_given(orbit.knots[part], orbit.knot_rates[part], nodes),
-            *_given(*into, residual, np.empty(room), np.empty(4 * n)),
+            *_given(*into, residual, np.empty(room), np.empty(n * (n + 4))),
         )
         if code == NOT_FINITE:
             raise FloatingPointError("the residual or a derivative is not finite")

@@ -83,7 +83,7 @@ static double *lay_out(const struct call *c, struct room *r)
     const whole room = (c->ncol * n + m) * w1 + m * (m + w1) + c->ncol * n * (c->ncol * n + w + 1)
                        + 3 * c->ncol * c->ncol;
     const whole other = 2 * c->count + 2 * c->count * (c->ncol + 1) * n + points * (1 + 2 * n + 2 * m) + 2 * ends
-                        + c->count * n * wide + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + 2 * wide + 2 * (ends + points * rows + k + 1) + 4 * n;
+                        + c->count * n * wide + points * (n * w + m * w1) + last * (last + 2) + room + n + c->ncol + 1 + 2 * wide + 2 * (ends + points * rows + k + 1) + n * (n + 4);
     double *all = malloc((zeroed + other) * sizeof(double)), *next = all;
     if (!all)
         return NULL;
@@ -116,7 +116,7 @@ static double *lay_out(const struct call *c, struct room *r)
     r->work = taken(&next, room);
     r->few = taken(&next, n + c->ncol + 1 + 2 * wide);
     r->kept = taken(&next, 2 * (ends + points * rows + k + 1));
-    r->marks = (whole *)taken(&next, 4 * n);
+    r->marks = (whole *)taken(&next, n * (n + 4));
     return all;
 }
 
