@@ -42,7 +42,9 @@ _KEPT: weakref.WeakKeyDictionary[Mesh, tuple[weakref.ReferenceType[System], Arra
 
 def surface_of(system: System, switch: int) -> SurfaceLike:
     """Return the surface that a switch is the guard of, a release of, or a departure from."""
-    return next(s for s in surfaces_of(system) if switch in (s.switch, s.leaves, *(s.releases or ())))
+    return next(
+        s for s in surfaces_of(system) if switch in (s.switch, s.leaves) or switch in (s.releases or ())
+    )
 
 
 def of_kind(system: System, *kinds: Kind) -> list[SurfaceLike]:
@@ -98,9 +100,9 @@ def column(system: System, switch: int) -> int:
 
 def mode_after(surface: SurfaceLike, event: EventNode) -> int | None:
     """Return the mode of a surface after an event node; None where the node does not change it."""
-    own = dict(event.modes).get(surface.switch)
-    if own is not None:
-        return own
+    for guard, mode in event.modes:
+        if guard == surface.switch:
+            return mode
     if surface.kind == Kind.IMPACT:
         return event.direction if event.switch == surface.leaves else None
     passes = event.switch == surface.switch or event.switch in (surface.releases or ())

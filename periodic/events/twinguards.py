@@ -18,7 +18,7 @@ from periodic.events.modes import mode_after, of_held, of_kind, sides
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import HELD, STUCK, Kind, System, surfaces_of
+from periodic.system import HELD, STUCK, Kind, SurfaceLike, System
 from periodic.system.precision import EPSILON
 
 LOOKS = 3
@@ -114,13 +114,16 @@ def _less(rows: Array, switch: int, held: Sequence[int]) -> Array:
 def held_at(system: System, events: Sequence[EventNode], node: int, always: Sequence[int] = ()) -> list[int]:
     """Return the guards of friction that is held before and after an event node, or `always`."""
     found = list(always)
-    for surface in surfaces_of(system):
-        if surface.kind != Kind.SLIDING or mode_after(surface, events[node]) is not None:
-            continue
-        changes = (mode_after(surface, events[(node - m) % len(events)]) for m in range(1, len(events)))
-        if next((mode for mode in changes if mode is not None), None) == STUCK:
+    for surface in of_kind(system, Kind.SLIDING):
+        if mode_after(surface, events[node]) is None and _held_before(surface, events, node):
             found.append(surface.switch)
     return found
+
+
+def _held_before(surface: SurfaceLike, events: Sequence[EventNode], node: int) -> bool:
+    """Whether the last event node before one that changes a surface's mode is where it begins to be held."""
+    changes = (mode_after(surface, events[(node - m) % len(events)]) for m in range(1, len(events)))
+    return next((mode for mode in changes if mode is not None), None) == STUCK
 
 
 def held_in(system: System, orbit: Orbit, interval: int) -> list[int]:

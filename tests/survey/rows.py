@@ -40,7 +40,7 @@ class Limits:
 
 FEW = Limits(400, 4000, 40.0)
 
-MANY = Limits(3000, 40000, 300.0)
+MANY = Limits(6000, 100000, 900.0)
 """Of models with several joints: a period has tens of events, and each two that change places are a point."""
 
 JUDGED = 8

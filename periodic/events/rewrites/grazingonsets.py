@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -74,10 +74,17 @@ def at_once(system: System, orbit: Orbit, own: Site) -> list[Site]:
     return slipping_together(system, orbit, [turning_back(system, orbit, site) for site in found])
 
 
-def sites_of(system: System, orbit: Orbit, row: str) -> Iterator[Site]:
-    """Yield all sites of a row on an orbit, with how far each is from being reached."""
+def sites_of(
+    system: System, orbit: Orbit, row: str, surfaces: Sequence[SurfaceLike] | None = None
+) -> Iterator[Site]:
+    """Yield all sites of a row on an orbit, with how far each is from being reached.
+
+    surfaces: at which they are, by default any.
+    """
     dense = SwitchPolynomials(system, orbit)
     for surface in surfaces_of(system):
+        if surfaces is not None and surface not in surfaces:
+            continue
         for switch in (surface.switch, *(surface.releases or ())):
             if row_of(orbit, surface, switch) == row:
                 yield from _extrema(dense, surface, switch)

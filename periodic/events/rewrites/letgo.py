@@ -51,9 +51,8 @@ def _slips(system: System, orbit: Orbit, sliders: list[SurfaceLike]) -> Iterator
     for slip in excursions(system, orbit):
         if slip.row is LIMIT_GRAZING and surface_of(system, orbit.mesh.events[slip.index].switch) in sliders:
             yield ends(system, orbit, slip)[0], slip.size(system, orbit)
-    for site in sites_of(system, orbit, LIMIT_GRAZING.name):
-        if surface_of(system, site.switch) in sliders:
-            yield site, LIMIT_GRAZING.least
+    for site in sites_of(system, orbit, LIMIT_GRAZING.name, sliders):
+        yield site, LIMIT_GRAZING.least
 
 
 def _slider(system: System, event: EventNode) -> SurfaceLike | None:

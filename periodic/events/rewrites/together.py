@@ -9,7 +9,7 @@ the friction. A slider that slips in between is released by itself.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from periodic.events.modes import mode_after, of_kind, release, surface_of
 from periodic.events.rewrites.sites import Node
@@ -29,16 +29,16 @@ def together(system: System, nodes: Sequence[Node], size: float, held: Sequence[
     size: of the excursion that begins or ends; releases of single sliders are moved by it. held: the guards
     of friction that is held all along.
     """
-    found, joints = list(nodes), of_kind(system, Kind.SLIDING, Kind.SLIDER)
+    joints = of_kind(system, Kind.SLIDING, Kind.SLIDER)
+    word = Word(system, list(nodes), held)
     for surface in of_kind(system, Kind.SLIDER) if len(joints) > 1 else ():
         for _ in nodes:
-            word = Word(system, found, held)
-            each = (_placed(word, surface, r, size) for r in _releases(surface, found))
+            each = (_placed(word, surface, r, size) for r in word.releases(surface))
             changed = next((placed for placed in each if placed is not None), None)
             if changed is None:
                 break
-            found = sorted(changed, key=lambda node: node[1])
-    return found
+            word = Word(system, sorted(changed, key=lambda node: node[1]), held)
+    return word.nodes
 
 
 @dataclass(frozen=True)
@@ -48,27 +48,46 @@ class Word:
     system: System
     nodes: list[Node]
     held: Sequence[int]
+    _modes: dict[int, list[int | None]] = field(default_factory=dict, init=False)
+    _held: dict[int, list[int]] = field(default_factory=dict, init=False)
+
+    def modes(self, surface: SurfaceLike) -> list[int | None]:
+        """Return the mode of a surface after each event node; None where the node does not change it."""
+        if surface.switch not in self._modes:
+            self._modes[surface.switch] = [mode_after(surface, event) for event, _ in self.nodes]
+        return self._modes[surface.switch]
+
+    def releases(self, surface: SurfaceLike) -> Iterator[Release]:
+        """Yield the releases of a slider."""
+        own = [(j, mode) for j, mode in enumerate(self.modes(surface)) if mode is not None]
+        for k, (j, mode) in enumerate(own):
+            (stop, stuck), (_, carried) = own[k - 1], own[(k - 2) % len(own)]
+            if mode != STUCK:
+                returns = len(own) > 2 and stuck == STUCK and carried == mode
+                yield Release(j, mode, stop if returns else None)
+
+    def held_at(self, node: int) -> list[int]:
+        """Return the guards of friction that is held before and after an event node."""
+        if node not in self._held:
+            self._held[node] = held_at(self.system, [event for event, _ in self.nodes], node, self.held)
+        return self._held[node]
 
     def twins(self, surface: SurfaceLike, node: int) -> list[tuple[SurfaceLike, int]]:
         """Return the other surfaces with the same guard as one at an event node, and their signs."""
-        held = held_at(self.system, [event for event, _ in self.nodes], node, self.held)
-        each = twins(self.system, surface.switch, held).items()
+        each = twins(self.system, surface.switch, self.held_at(node)).items()
         return [(surface_of(self.system, k), sign) for k, sign in each if k != surface.switch]
 
     def holding(self, surface: SurfaceLike, node: int) -> dict[int, int]:
         """Return the guards of friction that holds the strain of a slider after a node, with signs."""
-        events = [event for event, _ in self.nodes]
-        each = ((k, mode_after(k, events[node])) for k in of_kind(self.system, Kind.SLIDING))
-        stopped = [k.switch for k, mode in each if mode == STUCK]
-        held = [*held_at(self.system, events, node, self.held), *stopped]
-        return holding(self.system, surface.switch, held)
+        each = of_kind(self.system, Kind.SLIDING)
+        stopped = [k.switch for k in each if self.modes(k)[node] == STUCK]
+        return holding(self.system, surface.switch, [*self.held_at(node), *stopped])
 
     def freed(self, surface: SurfaceLike, node: int) -> bool:
         """Whether friction is released at a node that held the strain of a slider before."""
-        events = [event for event, _ in self.nodes]
-        each = ((k.switch, mode_after(k, events[node])) for k in of_kind(self.system, Kind.SLIDING))
-        released = [switch for switch, mode in each if mode not in (None, STUCK)]
-        held = [*held_at(self.system, events, node, self.held), *released]
+        each = of_kind(self.system, Kind.SLIDING)
+        released = [k.switch for k in each if self.modes(k)[node] not in (None, STUCK)]
+        held = [*self.held_at(node), *released]
         return bool(released and set(holding(self.system, surface.switch, held)) & set(released))
 
 
@@ -80,17 +99,6 @@ class Release:
     node: int
     direction: int
     stop: int | None
-
-
-def _releases(surface: SurfaceLike, nodes: Sequence[Node]) -> Iterator[Release]:
-    """Yield the releases of a slider."""
-    modes = [(j, mode_after(surface, event)) for j, (event, _) in enumerate(nodes)]
-    own = [(j, mode) for j, mode in modes if mode is not None]
-    for k, (j, mode) in enumerate(own):
-        (stop, stuck), (_, carried) = own[k - 1], own[(k - 2) % len(own)]
-        if mode != STUCK:
-            returns = len(own) > 2 and stuck == STUCK and carried == mode
-            yield Release(j, mode, stop if returns else None)
 
 
 def _placed(word: Word, surface: SurfaceLike, own: Release, size: float) -> list[Node] | None:
@@ -121,18 +129,17 @@ def _leader(word: Word, surface: SurfaceLike, own: Release) -> int | None:
     """The node at which a slider is released with others; None where it is released by itself."""
     if own.stop is None:
         return None
-    event, _ = word.nodes[own.stop]
     if friction := word.holding(surface, own.stop):
-        each = ((_after(surface_of(word.system, k), word.nodes, own.stop), k) for k in friction)
+        each = ((_after(word.modes(surface_of(word.system, k)), own.stop), k) for k in friction)
         after, k = min(((after, k) for after, k in each if after), default=(0, 0))
         if not after:
             return None
         node = (own.stop + after) % len(word.nodes)
-        onward = mode_after(surface_of(word.system, k), word.nodes[node][0]) == friction[k] * own.direction
+        onward = word.modes(surface_of(word.system, k))[node] == friction[k] * own.direction
         return node if onward else None
     for other, _ in word.twins(surface, own.stop):
-        if other.kind == Kind.SLIDER and mode_after(other, event) == STUCK:
-            for release in _releases(other, word.nodes):
+        if other.kind == Kind.SLIDER and word.modes(other)[own.stop] == STUCK:
+            for release in word.releases(other):
                 with_others = release.stop == own.stop and not word.freed(surface, release.node)
                 if with_others and _one_guard(word, surface, other, own.stop, release.node):
                     return release.node
@@ -148,23 +155,17 @@ def _one_guard(word: Word, one: SurfaceLike, other: SurfaceLike, begin: int, end
     return all(other in (k for k, _ in word.twins(one, node)) for node in between)
 
 
-def _after(surface: SurfaceLike, nodes: Sequence[Node], node: int) -> int:
+def _after(modes: Sequence[int | None], node: int) -> int:
     """The number of nodes from one to the next that changes a surface's mode; 0 where none does."""
-    count = len(nodes)
-    changes = (m for m in range(1, count + 1) if _changes(surface, nodes[(node + m) % count]))
+    changes = (m for m in range(1, len(modes) + 1) if modes[(node + m) % len(modes)] is not None)
     return next(changes, 0)
-
-
-def _changes(surface: SurfaceLike, node: Node) -> bool:
-    return mode_after(surface, node[0]) is not None
 
 
 def _partners(word: Word, surface: SurfaceLike, own: Release) -> list[SurfaceLike]:
     """A slider's twins, and friction that held its strain, that the slider's event node changes as well."""
     friction = {} if own.stop is None else word.holding(surface, own.stop)
     each = [*(k for k, _ in word.twins(surface, own.node)), *(surface_of(word.system, k) for k in friction)]
-    event, _ = word.nodes[own.node]
-    return [other for other in each if mode_after(other, event) is not None]
+    return [other for other in each if word.modes(other)[own.node] is not None]
 
 
 def without(system: System, event: EventNode, guard: int) -> EventNode | None:
