@@ -390,5 +390,5 @@ def test_releases_of_a_slider_by_the_events_before_them() -> None:
         ([up, stop, down], [(0, PLUS, None), (2, MINUS, None)]),
     ):
         nodes = [(event, float(k)) for k, event in enumerate(events)]
-        each = [(r.node, r.direction, r.stop) for r in together.Word(TWO, nodes, []).releases(slider)]
+        each = [(r.node, r.direction, r.stop) for r in together.Word(None, nodes, []).releases(slider)]
         assert each == found
