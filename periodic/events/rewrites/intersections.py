@@ -101,10 +101,11 @@ def _others(system: System, orbit: Orbit, nodes: tuple[int, ...]) -> Iterator[li
         return
     each = [own] if len(own) == LINES else _completed(system, orbit, nodes, own)
     for cycle in each:
+        if any(line != cycle[k % LINES] for k, line in enumerate(lines)):
+            continue
         plane = _plane(system, orbit, nodes, cycle)
-        if plane is not None and all(line == cycle[k % LINES] for k, line in enumerate(lines)):
-            for way in plane.others():
-                yield plane.word(way)
+        for way in () if plane is None else plane.others():
+            yield plane.word(way)
 
 
 def _along(system: System, events: Sequence[EventNode]) -> bool:
@@ -264,6 +265,8 @@ def _plane(system: System, orbit: Orbit, nodes: tuple[int, ...], cycle: list[int
     crossed = tuple(cycle[k % LINES] for k in range(count))
     if not held:
         return _Plane(lines, cycle, _Way(crossed))
+    if lines[held[0]].friction is None:  # friction that stops there is that of another line
+        return None
     return _Plane(lines, cycle, _Way(crossed, held[0], along, _freed(lines[held[0]], events[-1])))
 
 

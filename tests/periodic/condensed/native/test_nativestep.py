@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support.drawn.jointcases import drawn_joints
 
+from periodic.condensed import timestepping
 from periodic.condensed.settling import settled
 from periodic.condensed.timestepping import Motion
 from periodic.orbit.construction import at_rest
@@ -24,8 +25,9 @@ def test_motion_is_that_of_numpy(seed: int, monkeypatch: pytest.MonkeyPatch) -> 
     system, found = drawn_joints("joints", seed).system, list[Motion]()
     for fast in (True, False):
         motion = Motion.at_rest(system, system.nominal, *system.rest(system.nominal))
-        assert motion._native is not None
-        motion._native = motion._native if fast else None
+        assert motion._steps_in_c() is not None
+        if not fast:
+            monkeypatch.setattr(Motion, "_steps_in_c", lambda own: None)
         motion.pace(256, 1e-3)
         motion.period()
         motion.period()
@@ -38,6 +40,15 @@ def test_motion_is_that_of_numpy(seed: int, monkeypatch: pytest.MonkeyPatch) -> 
     assert [e.phase for e in fast.events] == pytest.approx([e.phase for e in plain.events], rel=1e-9)
     expected = np.array(plain.states)
     assert np.abs(np.array(fast.states) - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_steps_are_those_of_c_once_kernels_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert that they are asked for until there are some, and then kept."""
+    system, steps = drawn_joints("joints", 122).system, object()
+    motion = Motion.at_rest(system, system.nominal, *system.rest(system.nominal))
+    found = iter([None, steps])
+    monkeypatch.setattr(timestepping, "native_steps", lambda *given: next(found))
+    assert [motion._steps_in_c() for _ in range(3)] == [None, steps, steps]
 
 
 def test_slider_beside_friction(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,8 +54,9 @@ def test_three_events_change_places_where_one_guard_depends_on_the_others(order:
         [(event("x+"), 1.0), (event("y+"), 1.1), (EventNode(7, 1), 1.4), (EventNode(9, 1), 4.0)],
         [(event("x+"), 1.0), (EventNode(9, 1), 1.1), (event("d+0"), 1.4), (event("y+"), 4.0)],
         [(event("x+"), 1.0), (event("y+"), 1.1), (event("d+0"), 1.4)],
+        [(event("y+"), 1.0), (EventNode(6, 1, modes=((6, STUCK), (0, STUCK))), 1.1), (EventNode(9, 1), 4.0)],
     ],
-    ids=["it is no neighbour", "a release", "of a kink", "no other event"],
+    ids=["it is no neighbour", "a release", "of a kink", "no other event", "friction of another line stops"],
 )
 def test_two_events_change_places_where_no_third_one_meets_them(nodes: list[tuple[EventNode, float]]) -> None:
     """Assert a swap of two."""
