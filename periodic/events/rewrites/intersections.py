@@ -104,8 +104,8 @@ def _others(system: System, orbit: Orbit, nodes: tuple[int, ...]) -> Iterator[li
         if any(line != cycle[k % LINES] for k, line in enumerate(lines)):
             continue
         plane = _plane(system, orbit, nodes, cycle)
-        for way in () if plane is None else plane.others():
-            yield plane.word(way)
+        if plane is not None:
+            yield from (plane.word(way) for way in plane.others())
 
 
 def _along(system: System, events: Sequence[EventNode]) -> bool:
