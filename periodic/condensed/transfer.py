@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from periodic.condensed.carried import Carried
 from periodic.condensed.coupled import Coupled
 from periodic.orbit.row import Row
 from periodic.orbit.scheme import Array
@@ -106,34 +107,41 @@ class Transfer:
         rows = rows.reshape(count, points, each, -1)
         by_place = rows[..., [1 + n + k for k in system.places]]
         s = len(system.places)
-        size = points * each
-        block = np.zeros((count, points, each, size))
-        right = np.zeros((count, points, each, self.width))
-        block[..., : self.forces] = by_place @ self.by_forces.reshape(count, points, s, -1)
-        np.matmul(by_place, self.by_given.reshape(count, points, s, -1), out=right)
+        block = by_place @ self.by_forces.reshape(count, points, s, -1)
+        right = by_place @ self.by_given.reshape(count, points, s, -1)
         right[..., self.size] += rows[..., 0]
         right[..., self.size + 1 :] += rows[..., 1 + 2 * n :]
-        same = np.arange(points)
-        ones = np.arange(forces)
+        same, ones = np.arange(points), np.arange(forces)
         block[:, same[:, None], ones, same[:, None] * forces + ones] += 1.0
         if self.own:
-            self._own_rates(rows, block, right)
-        found = np.linalg.solve(block.reshape(count, size, size), -right.reshape(count, size, -1))
+            self._begun(rows, right)
+        carried = Carried.of(rows, system.others, n, forces) if self.own else None
+        if carried is not None:
+            rates = self.orbit.mesh.scheme.stage_rates[:, 1:]
+            found = carried.solved(block, right, rates, self.orbit.grid.width)
+        else:
+            whole = np.concatenate([block, self._inside(rows)], axis=3) if self.own else block
+            size = points * each
+            found = np.linalg.solve(whole.reshape(count, size, size), -right.reshape(count, size, -1))
         if not np.isfinite(found).all():
             raise FloatingPointError("the equations of an interval are not finite")
         return found.astype(float, copy=False)
 
-    def _own_rates(self, rows: Array, block: Array, right: Array) -> None:
-        """Add what own states do: at the points, at the beginning, and where mesh points are no ends yet."""
+    def _inside(self, rows: Array) -> Array:
+        """What own states at the points do there, (N, a, rows, a o)."""
         n, others, orbit = self.n, self.system.others, self.orbit
         count, points, each = rows.shape[:3]
         weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
-        rates = rows[..., 1 + others]
-        inside = rates[:, :, :, None, :] * weights[:, :, None, 1:, None]
+        inside = rows[..., 1 + others][:, :, :, None, :] * weights[:, :, None, 1:, None]
         same = np.arange(points)
         inside[:, same, :, same] += np.swapaxes(rows[..., 1 + n + others], 0, 1)
-        block[..., self.forces :] = inside.reshape(count, points, each, -1)
-        begun = rates * weights[:, :, None, :1]
+        return np.asarray(inside.reshape(count, points, each, -1))
+
+    def _begun(self, rows: Array, right: Array) -> None:
+        """Add what own states do at the beginning, and where mesh points are no ends yet."""
+        others, orbit = self.system.others, self.orbit
+        weights = orbit.mesh.scheme.stage_rates / orbit.grid.width[:, None, None]
+        begun = rows[..., 1 + others] * weights[:, :, None, :1]
         right[..., self.modes : self.size] += begun
         gap = np.concatenate([orbit.stages[-1:, -1], orbit.stages[:-1, -1]]) - orbit.nodes[:-1]
         right[..., self.size] += np.einsum("nare,ne->nar", begun, gap[:, others])
