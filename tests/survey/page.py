@@ -11,6 +11,9 @@ from survey.rows import FEW, JUDGED, MANY, SEEDS, TOL, Row
 
 FATES = ("to the end", "limit of work", "friction holds", "other")
 
+NEARLY = 0.9
+"""Part of its time at which a trace may be interrupted, as what it does then is finished first."""
+
 INTRODUCTION = """# Models with contact drawn at random
 
 {count} of {all} models: one to three masses with one to five clearances of stiffness 1 to 1e5, gears
@@ -71,7 +74,7 @@ def _summary(rows: Sequence[Row]) -> str:
     return (
         f"**{ends} of {len(rows)} are traced to the end; {wrong or 'none'} of the {judged} points judged "
         f"{'are' if wrong > 1 else 'is'} wrong.** The largest error is {worst:.2g} times what is claimed."
-        f"{_both(rows)}\n"
+        f"{_both(rows)}{_earlier(rows)}\n"
     )
 
 
@@ -82,6 +85,20 @@ def _both(rows: Sequence[Row]) -> str:
     both = sum(fates[UP, seed] and fates[DOWN, seed] for seed in seeds)
     traced = f"Of {len(seeds)} models with several joints traced from both ends"
     return f" **{traced} {both} are so from both.**" if seeds else ""
+
+
+def _earlier(rows: Sequence[Row]) -> str:
+    """How many ended at limits of work that were narrower when they were traced."""
+    several = [row for row in rows if row.kind in (UP, DOWN)]
+    fewer = sum(
+        (row.reason == "INTERRUPTED" and row.seconds < NEARLY * MANY.seconds)
+        or (row.reason == "MAX_NEWTON" and row.newton < MANY.newton)
+        or (row.reason == "MAX_POINTS" and row.points < MANY.points)
+        for row in several
+    )
+    return (
+        f" {fewer} that ended at a limit of work were allowed less than those traced today." if fewer else ""
+    )
 
 
 def _table(rows: Sequence[Row]) -> str:

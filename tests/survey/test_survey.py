@@ -64,6 +64,18 @@ def test_models_with_joints_count_from_both_ends() -> None:
     assert "| chains |" not in page(rows)
 
 
+def test_page_tells_of_narrower_limits() -> None:
+    """Assert how many models with several joints ended at limits of work below those of today."""
+    assert "allowed less" not in page([Row("joints", 1, "INTERRUPTED", "interrupted", seconds=880.0)])
+    rows = [Row("joints", 1, "INTERRUPTED", "interrupted", seconds=300.0)]
+    rows += [Row("joints", 2, "MAX_NEWTON", "iterations", newton=40000), Row("joints", 3, "BOUND", "end")]
+    rows += [
+        Row("joints", 4, "MAX_POINTS", "points", points=3000),
+        Row("gears", 5, "INTERRUPTED", "interrupted"),
+    ]
+    assert " 3 that ended at a limit of work were allowed less than those traced today.\n" in page(rows)
+
+
 def test_page_names_engines() -> None:
     """Assert that the page has the commit of one engine, and of several how many models each has traced."""
     old, new = (Row("gears", 100 + k, "BOUND", "bound reached", engine=f"abc{k}") for k in range(2))
