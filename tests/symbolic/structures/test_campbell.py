@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symbolic as sym
+from symbolic.structures.campbell import Campbell
 
 
 def test_forward_and_backward_frequencies() -> None:
@@ -31,6 +32,26 @@ def test_damping_ratios_and_what_does_not_oscillate() -> None:
     assert found.frequencies[0, 0] == pytest.approx(2 * np.sqrt(1 - 0.1**2))
     assert found.damping[0, 0] == pytest.approx(0.1)
     assert np.isnan(found.frequencies[0, 1:]).all() and np.isnan(found.damping[0, 1:]).all()
+
+
+@pytest.mark.parametrize(
+    ("order", "expected"), [(1.0, [0.5, 2.5]), (0.5, [1.0, 3.0]), (2.0, [0.25]), (9.0, [1 / 18])]
+)
+def test_critical_speeds_between_those_given(order: float, expected: list[float]) -> None:
+    """Assert where lines between the speeds of the diagram are met, and once where two modes meet there."""
+    speeds = np.array([0.0, 1.0, 2.0, 3.0])
+    rows = [[0.5, 0.5, np.nan], [0.5, 0.5, np.nan], [1.75, 2.75, np.nan], [1.5, 2.25, np.nan]]
+    diagram = Campbell(speeds, np.array(rows), np.zeros((4, 3)))
+    assert set(np.round(expected, 12)) <= set(np.round(diagram.critical(order), 12))
+    assert (np.diff(diagram.critical(order)) > 0).all()
+
+
+def test_critical_speed_that_is_given() -> None:
+    """Assert it where it is one of the speeds, and both of an interval in which all are critical."""
+    speeds = np.array([1.0, 2.0, 3.0])
+    for row, expected in (([3.0, 2.0, 1.0], [2.0]), ([1.0, 2.0, 7.0], [1.0, 2.0]), ([9.0, 9.0, 9.0], [])):
+        diagram = Campbell(speeds, np.array(row)[:, None], np.zeros((3, 1)))
+        assert diagram.critical().tolist() == expected
 
 
 @pytest.mark.parametrize("speeds", [[1.0, 1.0], [1.0, 0.5], [0.0, 2.0, 1.5]])

@@ -13,7 +13,7 @@ from symbolic.arrays import Array
 from symbolic.guarded import DamagedError
 from symbolic.structures.beam import bending_element
 from symbolic.structures.formats import _sound
-from symbolic.structures.market import _sparse, matrix_market
+from symbolic.structures.market import _sparse, matrix_market, whole_numbers
 from symbolic.structures.matlab import _of_version_4
 from symbolic.structures.matrices import _is_definite
 from symbolic.structures.shaft import slope_element
@@ -96,6 +96,65 @@ def test_kinds_of_matrices(kind: str, beside: list[float]) -> None:
     head = f"%%MatrixMarket matrix coordinate real {kind}\n% a comment\n2 2 {1 + bool(diagonal)}\n"
     found = matrix_market(f"{head}{diagonal}2 1 -1.5\n".encode()).toarray()
     assert [found[0, 1], found[1, 0]] == beside
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers", "expected"),
+    [
+        ("general", "1 2 3 4", [[1, 3], [2, 4]]),
+        ("symmetric", "1 2 4", [[1, 2], [2, 4]]),
+        ("skew-symmetric", "3.25", [[0, -3.25], [3.25, 0]]),
+    ],
+)
+def test_dense_matrices_by_columns(kind: str, numbers: str, expected: list[list[float]]) -> None:
+    """Assert the entries of an array of each kind, and a refusal of one entry more or less."""
+    head = f"%%MatrixMarket matrix array real {kind}\n% a comment\n%another\n\n 2 2\n"
+
+    def of(given: list[str]) -> Any:
+        return matrix_market((head + "\n".join(given) + "\n").encode())
+
+    each = numbers.split()
+    assert of(each).tolist() == expected
+    for wrong in (["5", "5", *each], [*each, "5"], [*each[:-1], ""]):
+        with pytest.raises((DamagedError, ValueError)):
+            of(wrong)
+
+
+def test_dense_matrices_that_are_not_square() -> None:
+    """Assert entries by columns of a general one, and a refusal of one that is to be symmetric."""
+    head = "%%MatrixMarket matrix array {}\n3 2\n"
+    found = matrix_market((head.format("integer general") + "1\n2\n3\n4\n5\n6\n").encode())
+    assert found.tolist() == [[1, 4], [2, 5], [3, 6]]
+    with pytest.raises(DamagedError, match="^it has not as many entries as it declares$"):
+        matrix_market((head.format("real symmetric") + "1\n2\n3\n4\n5\n").encode())
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        ("%%MatrixMarket matrix array real\n1 1\n5\n", "its first line does not say what it is"),
+        ("%%MatrixMarket vector array real general\n1 1\n5\n", "its first line does not say what it is"),
+        ("%%MatrixMarket matrix dense real general\n1 1\n5\n", "its first line does not say what it is"),
+        ("%%MatrixMarket matrix array complex general\n1 1\n5\n", "it is not of real numbers"),
+        ("%%MatrixMarket matrix array real hermitian\n1 1\n5\n", "it is not of real numbers"),
+        ("%%MatrixMarket matrix array real general\n1\n5\n", "it declares a matrix that is larger"),
+        ("%%MatrixMarket matrix array real general\n0 1\n5\n", "it declares a matrix that is larger"),
+        ("%%MatrixMarket matrix array real general\n2 2\n5\n", "it declares a matrix that is larger"),
+        (f"%%MatrixMarket matrix array real general\n1 {'0' * 19}1\n5\n", "it declares a matrix that is"),
+    ],
+)
+def test_heads_that_are_refused(head: str, said: str) -> None:
+    """Assert the sentence for words, kinds and sizes that are none."""
+    with pytest.raises(DamagedError, match=f"^{said}"):
+        matrix_market(head.encode())
+
+
+@pytest.mark.parametrize("value", [0.5, 4.0, -4.0, np.inf, np.nan])
+def test_indices_that_are_none(value: float) -> None:
+    """Assert a refusal of what is no whole number, or larger than 3."""
+    assert whole_numbers(np.array([3.0, -3.0, 0.0]), 3).tolist() == [3, -3, 0]
+    with pytest.raises(DamagedError, match="^it has indices that are not whole numbers, or larger"):
+        whole_numbers(np.array([1.0, value]), 3)
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 import symbolic as sym
+from symbolic.arrays import Array, Complex
 from symbolic.structures import modal
+from symbolic.structures.damping import ModalDamping
 from symbolic.structures.linearpart import Modes, like
+from symbolic.structures.matrices import dense
+from symbolic.structures.modal import ModalForm, holding, modal_form, stiffened
 
 
 def test_flexibility_of_modes_left_out() -> None:
@@ -72,3 +77,108 @@ def test_coupled_modes_of_large_structures(size: int, refused: bool, monkeypatch
         ValueError, match="^structure 'structure' has 4 degrees of freedom and damping or gyros"
     ):
         structure.modal(1.0)
+
+
+def response(form: ModalForm, omega: float) -> Complex:
+    """Displacements of harmonic unit forces from modes: half of each and of its conjugate."""
+    found = np.zeros((len(form.shapes), len(form.shapes)), dtype=complex)
+    for k, exponent in enumerate(form.exponents):
+        one = np.outer(form.shapes[:, k], form.inputs[k])
+        found += one / (1j * omega - exponent) / 2 + one.conj() / (1j * omega - exponent.conjugate()) / 2
+    return found
+
+
+MASS, STIFFNESS = np.diag([1.0, 2.0]), np.array([[0.3, -0.1], [-0.1, 0.5]])
+
+
+@pytest.mark.parametrize(
+    "damping",
+    [
+        np.zeros((2, 2)),
+        0.1 * MASS,
+        0.95 * MASS,
+        5.0 * MASS,
+        np.array([[0.2, 0.1], [0.1, 0.0]]),
+        np.array([[9.0, 0.1], [0.1, 0.0]]),
+        np.array([[0.0, 0.3], [-0.3, 0.0]]),
+    ],
+    ids=["none", "slight", "one beyond", "both beyond", "coupled", "coupled beyond", "gyroscopic"],
+)
+@pytest.mark.parametrize("omega", [0.25, 0.9])
+def test_response_from_modes(damping: Array, omega: float) -> None:
+    """Assert (K - omega^2 M + i omega C)^-1, K^-1 and M^-1 of modes that oscillate and such that do not."""
+    form = modal_form("s", sym.Matrices(MASS, damping, STIFFNESS), ModalDamping(), 1.0, None)
+    exact = np.linalg.inv(STIFFNESS - omega**2 * MASS + 1j * omega * damping)
+    assert response(form, omega) == pytest.approx(exact, rel=1e-9, abs=1e-12)
+    assert form.static([1, 0]) == pytest.approx(np.linalg.inv(STIFFNESS)[:, [1, 0]], rel=1e-9)
+    assert form.mobility([1]) == pytest.approx(np.array([[0.5]]), rel=1e-9)
+    assert form.residual([0]).tolist() == [[0.0], [0.0]]
+
+
+def test_modal_damping_beside_a_stiffness_that_holds() -> None:
+    """Assert that the damping ratio is of the structure without it, in coupled and uncoupled modes."""
+    matrices = sym.Matrices(np.eye(1), 0.2 * np.eye(1), 4 * np.eye(1))
+    form = modal_form("s", matrices, ModalDamping(0.1), 1.0, None, {0: 5.0})
+    exact = 1 / (9 - 1.5**2 + 1j * 1.5 * (0.2 + 2 * 0.1 * 2.0))
+    assert response(form, 1.5) == pytest.approx(np.array([[exact]]), rel=1e-9)
+    coupled = sym.Matrices(np.eye(2), None, 4 * np.eye(2), G=np.array([[0.0, 0.5], [-0.5, 0.0]]))
+    damped = modal_form("s", coupled, ModalDamping(0.1), 3.0, None)
+    inverse = (4 - 1.5**2) * np.eye(2) + 1.5j * (0.4 * np.eye(2) + 3.0 * np.array([[0, 0.5], [-0.5, 0]]))
+    assert response(damped, 1.5) == pytest.approx(np.linalg.inv(inverse), rel=1e-9)
+    assert not damped.own and modal_form("s", coupled, ModalDamping(), 3.0, None).own
+
+
+def test_stiffness_added_at_some_freedoms() -> None:
+    """Assert it of dense and sparse matrices; nothing else changes."""
+    for matrices in (
+        sym.Matrices(MASS, 0.1 * MASS, STIFFNESS, G=np.zeros((2, 2))),
+        sym.Matrices(*(sparse.csr_array(a) for a in (MASS, 0.1 * MASS, STIFFNESS))),
+    ):
+        found = stiffened(matrices, {1: 2.5})
+        assert sparse.issparse(found.K) is sparse.issparse(matrices.K)
+        assert dense(found.K - matrices.K).tolist() == [[0, 0], [0, 2.5]]
+        assert dense(found.M).tolist() == MASS.tolist() and dense(found.C).tolist() == (0.1 * MASS).tolist()
+        assert (found.G is None) is (matrices.G is None)
+
+
+@pytest.mark.parametrize("others", [[0.0, 0.0], [0.0, 50.0], [40.0, 0.0]])
+def test_stiffnesses_that_hold(others: list[float]) -> None:
+    """Assert the size of k - m omega^2 + i omega c of each freedom, or the stiffness of others if greater."""
+    matrices = sym.Matrices(np.diag([1.0, 2.0]), np.diag([0.5, 0.25]), np.diag([7.0, 5.0]))
+    found = holding(matrices, 2.0, [1, 0], np.array(others))
+    own = [abs(5 - 8 + 0.5j), abs(7 - 4 + 1j)]
+    assert list(found) == [1, 0]
+    assert list(found.values()) == pytest.approx(np.maximum(own, others).tolist(), rel=1e-12)
+
+
+def test_gyroscopic_stiffness_that_holds() -> None:
+    """Assert that of G times the speed, of one freedom of two."""
+    gyroscopic = np.array([[0.0, 0.5], [-0.5, 0.0]])
+    matrices = sym.Matrices(np.eye(2), None, 7 * np.eye(2), G=gyroscopic)
+    dynamic = 3 * np.eye(2) + 2j * 2 * gyroscopic
+    exact = 1 / abs(np.linalg.inv(dynamic)[0, 0])
+    assert holding(matrices, 2.0, [0], np.zeros(1))[0] == pytest.approx(exact, rel=1e-12)
+
+
+def test_structures_that_are_loose() -> None:
+    """Assert the sentences, and how many modes are not held."""
+    for stiffness, said in ((np.diag([1.0, 0.0]), "1 rigid-body modes"), (-np.eye(2), "2 modes of negative")):
+        with pytest.raises(modal.LooseError, match=f"^structure 's' has {said}"):
+            modal_form("s", sym.Matrices(np.eye(2), None, stiffness), ModalDamping(), 1.0, None)
+    gyroscopic = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    with pytest.raises(modal.LooseError, match="^structure 's' has rigid-body modes that forces"):
+        modal_form("s", sym.Matrices(np.eye(2), gyroscopic, np.diag([1.0, 0.0])), ModalDamping(), 1.0, None)
+
+
+def test_modes_that_do_not_span_the_motion() -> None:
+    """Assert the sentence for a critically damped mode beside one that is coupled to another."""
+    damping = np.array([[2.0, 0.0, 0.0], [0.0, 0.0, 0.5], [0.0, -0.5, 0.0]])
+    with pytest.raises(ValueError, match="^structure 's' has modes that do not span its motion"):
+        modal_form("s", sym.Matrices(np.eye(3), damping, np.eye(3)), ModalDamping(), 1.0, None)
+
+
+def test_critically_damped_mode() -> None:
+    """Assert that its two exponents are moved apart by 6e-6 of its frequency, and its static answer."""
+    form = modal_form("s", sym.Matrices(np.eye(1), 4 * np.eye(1), 4 * np.eye(1)), ModalDamping(), 1.0, None)
+    assert form.exponents.real == pytest.approx([-2 + 6e-6, -2 - 6e-6], abs=1e-9)
+    assert form.static([0]) == pytest.approx(np.array([[0.25]]), rel=1e-9)
