@@ -188,3 +188,51 @@ def test_bad_input_is_refused() -> None:
     for call, said in calls:
         with pytest.raises(ValueError, match=said):
             call()
+
+
+def chain(size: int) -> sym.Matrices:
+    """Masses of 1, 2, ... kg between springs, the first and the last held, with some damping."""
+    stiffness = np.diag(np.full(size, 6.0)) - 2 * (np.eye(size, k=1) + np.eye(size, k=-1))
+    skew = np.eye(size, k=1) - np.eye(size, k=-1)
+    return sym.Matrices(
+        np.diag(np.arange(1.0, size + 1)), 0.1 * stiffness, stiffness, G=0.2 * skew, at={"a": 3, "b": 1, "c": 0}
+    )
+
+
+def test_all_modes_are_the_whole_structure() -> None:
+    """Assert the flexibility of either reduction with every mode, at a speed, in the order of the places."""
+    full = chain(5)
+    for reduced in (sym.craig_bampton(full, ["a", "b"], 3), sym.residual_modes(full, ["a", "b"], 3)):
+        assert reduced.matrices.size == 5 and dict(reduced.matrices.at) == {"a": 0, "b": 1}
+        assert reduced.places.tolist() == [3, 1]
+        exact = sym.flexibility(full, ["a", "b"], [0.0, 1.3], speed=2.0)
+        found = sym.flexibility(reduced.matrices, ["a", "b"], [0.0, 1.3], speed=2.0)
+        assert found == pytest.approx(exact, rel=1e-9, abs=1e-12)
+        assert reduced.error(0, 3, speed=2.0) < 1e-9
+        assert reduced.recovery[[3, 1]] == pytest.approx(np.eye(2, 5), abs=1e-12)
+
+
+@pytest.mark.parametrize("modes", [1, 2])
+def test_static_answers_are_exact(modes: int) -> None:
+    """Assert those of few modes by either method; the error elsewhere is the 2-norm's."""
+    full = chain(6)
+    for reduced in (sym.craig_bampton(full, [3, 0], modes), sym.residual_modes(full, [3, 0], modes)):
+        band = [0.0, 2.0, *np.sqrt(scipy.linalg.eigh(reduced.matrices.K, reduced.matrices.M)[0])]
+        exact = sym.flexibility(full, [3, 0], band, speed=1.0)
+        found = sym.flexibility(reduced.matrices, [0, 1], band, speed=1.0)
+        assert found[0] == pytest.approx(exact[0], rel=1e-9, abs=1e-12)
+        norms = [np.linalg.norm(a - b, 2) / np.linalg.norm(b, 2) for a, b in zip(found, exact, strict=True)]
+        inside = [e for e, w in zip(norms, band, strict=True) if w <= 2.0]
+        assert reduced.error(0, 2.0, points=2, speed=1.0) == pytest.approx(max(inside), rel=1e-8)
+
+
+def test_kept_places_without_any_modes() -> None:
+    """Assert Guyan's reduction, the whole structure where all of it is kept, and bands that are empty."""
+    full = chain(4)
+    static = sym.craig_bampton(full, ["a"], 0)
+    assert static.matrices.K == pytest.approx(1 / np.linalg.inv(full.K)[3:, 3:], rel=1e-12)
+    whole = sym.craig_bampton(full, [2, 0, 1, 3], 0)
+    assert whole.matrices.M == pytest.approx(np.diag([3.0, 1.0, 2.0, 4.0]))
+    for low, high in ((2.0, 2.0), (-1.0, 2.0), (3.0, 2.0)):
+        with pytest.raises(ValueError, match="^low is .*; it must be at least 0 and less than high = 2$"):
+            static.error(low, high)
