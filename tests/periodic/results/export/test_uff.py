@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +13,7 @@ import pytest
 
 from periodic.results.export import uff
 from periodic.results.export.content import Content
+from periodic.results.export.texts import write_csv
 from periodic.results.export.uff import (
     GENERAL,
     KINDS,
@@ -71,6 +76,112 @@ def test_signals_of_orbits() -> None:
     assert (last["id1"], last["z_axis_value"], last["func_type"]) == ("force", 2.0, TIME_RESPONSE)
     assert (last["abscissa_spec_data_type"], last["ordinate_spec_data_type"]) == (TIME, KINDS["N"])
     assert last["x"].tolist() == [0.0, 1.0] and last["data"].tolist() == [2.0, 3.0]
+
+
+COMMON: dict[str, Any] = {
+    "type": 58,
+    "binary": 0,
+    "rsp_dir": 0,
+    "ref_node": 0,
+    "ref_dir": 0,
+    "orddenom_spec_data_type": 0,
+    "id3": "orbitrace",
+}
+"""What is the same in every data set."""
+
+
+def test_every_entry_of_a_data_set() -> None:
+    """Assert codes and texts of an amplitude and of a signal, as the format numbers them."""
+    (amplitude, _), signal = _amplitudes(content()), list(_orbits(content()))[4]
+    assert {key: item for key, item in amplitude.items() if key not in ("x", "data")} == COMMON | {
+        "rsp_node": 1,
+        "id1": "x p-p",
+        "id2": "over speed",
+        "ordinate_axis_lab": "x p-p",
+        "rsp_ent_name": "x p-p",
+        "func_type": 0,
+        "abscissa_spacing": 0,
+        "abscissa_axis_lab": "speed",
+        "abscissa_axis_units_lab": "rad/s",
+        "ordinate_spec_data_type": 8,
+        "ordinate_axis_units_lab": "m",
+    }
+    assert {key: item for key, item in signal.items() if key not in ("x", "data")} == COMMON | {
+        "rsp_node": 2,
+        "id1": "force",
+        "id2": "speed = 2 rad/s LP",
+        "ordinate_axis_lab": "force",
+        "rsp_ent_name": "force",
+        "func_type": 1,
+        "abscissa_spacing": 1,
+        "z_axis_value": 2.0,
+        "load_case_id": 1,
+        "abscissa_spec_data_type": 17,
+        "abscissa_axis_lab": "time",
+        "abscissa_axis_units_lab": "s",
+        "z_axis_axis_lab": "speed",
+        "ordinate_spec_data_type": 9,
+        "ordinate_axis_units_lab": "N",
+    }
+    assert KINDS == {"m": 8, "N": 9, "m/s": 11, "m/s^2": 12, "Pa": 15}
+
+
+def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Assert units in SI, then amplitudes, then orbits, given to the package that writes them."""
+    written: list[Any] = []
+
+    class Writer:
+        """Writes how many sets it is given."""
+
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+        def write_sets(self, sets: list[Any], mode: str) -> None:
+            written.extend([mode, *sets])
+            Path(self.name).write_text(str(len(sets)), "utf-8")
+
+    package = SimpleNamespace(UFF=Writer, prepare_164=dict)
+    monkeypatch.setitem(sys.modules, "pyuff", package)
+    file = tmp_path / "a.uff"
+    assert uff.write_uff(file, content()) == [file] and file.read_text("utf-8") == "9"
+    assert written[0] == "overwrite"
+    assert written[1] == {
+        "units_code": 1,
+        "units_description": "SI",
+        "temp_mode": 1,
+        "length": 1.0,
+        "force": 1.0,
+        "temp": 1.0,
+        "temp_offset": 0.0,
+    }
+    assert [found["func_type"] for found in written[2:]] == [0, 0, 1, 1, 1, 1, 1, 1]
+    monkeypatch.setitem(sys.modules, "pyuff", None)
+    with pytest.raises(ModuleNotFoundError, match="^UFF58 needs the package pyuff: pip install ") as found:
+        uff.write_uff(file, content())
+    assert found.value.name == "pyuff"
+
+
+def test_tables_of_text(tmp_path: Path) -> None:
+    """Assert every cell of both files of CSV."""
+    file = tmp_path / "a.csv"
+    of = replace(content(), multipliers=np.array([[0.5 + 0.25j], [-1.0 - 0.5j]]), stable=np.array([True, False]))
+    beside = tmp_path / "a-orbits.csv"
+    assert write_csv(file, of) == [file, beside]
+    assert file.read_text("utf-8").split("\n") == [
+        "point,label,stable,speed [rad/s],x p-p [m],ratio,multiplier 1 re,multiplier 1 im",
+        "0,,true,1.0,0.0,5.0,0.5,0.25",
+        "1,LP,false,2.0,10.0,6.0,-1.0,-0.5",
+        "",
+    ]
+    assert beside.read_text("utf-8").split("\n") == [
+        "point,t [s],x [m],force [N],ratio",
+        "0,0.0,1.0,2.0,3.0",
+        "0,0.5,1.5,2.5,3.5",
+        "1,0.0,1.0,2.0,3.0",
+        "1,1.0,2.0,3.0,4.0",
+        "",
+    ]
+    assert write_csv(tmp_path / "b.csv", replace(of, signals={})) == [tmp_path / "b.csv"]
 
 
 @pytest.mark.parametrize(
