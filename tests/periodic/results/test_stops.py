@@ -6,7 +6,7 @@ import pytest
 from support.traces import duffing_system
 
 import periodic as per
-from periodic.results.stop import Stop
+from periodic.results.stop import Reason, Stop
 
 
 def test_both_ends_are_told() -> None:
@@ -33,3 +33,33 @@ def test_end_of_the_range(value: float, told: str) -> None:
     assert Stop.bound((0.5, 3.0), value, 1.0) == Stop(per.Reason.BOUND, told)
     back = Stop.bound((0.5, 3.0), value, value)
     assert back.detail == f"{told}, where it began: it turned back"
+
+
+NUMERICAL = {"MAX_POINTS", "MAX_NEWTON", "SMALL_STEP", "RETRACED", "NO_START", "INACCURATE"}
+
+
+@pytest.mark.parametrize("reason", list(Reason))
+def test_kinds_of_reasons(reason: Reason) -> None:
+    """Assert which ends are numerical, and from which a branch goes on."""
+    assert reason.numerical is (reason.name in NUMERICAL)
+    assert reason.resumable is (reason.name in {"MAX_POINTS", "MAX_NEWTON", "INTERRUPTED"})
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [
+        (Stop.after(Reason.CLOSED, 7), "it came back to its start after 7 points"),
+        (Stop.after(Reason.EQUILIBRIUM, 7), "the orbits shrank to it after 7 points"),
+        (Stop.after(Reason.HOMOCLINIC, 12.34567), "the period grows without bound, 12.35 s here"),
+        (Stop.after(Reason.VANISHED, 1.234e-9), "the motion has shrunk to rounding, 1.2e-09 peak to peak (scaled)"),
+        (Stop.after(Reason.INTERRUPTED, 7), "after 7 points"),
+        (Stop.after(Reason.MAX_POINTS, 7), "7 points"),
+        (Stop.asked("LP", 1), "LP met 1 time"),
+        (Stop.asked("LP", 2), "LP met 2 times"),
+        (Stop.max_newton(1), "1 iteration"),
+        (Stop.max_newton(200, "at the start"), "200 iterations, at the start"),
+    ],
+)
+def test_details_of_stops(stop: Stop, said: str) -> None:
+    """Assert counts and sizes, in the plural of several."""
+    assert stop.detail == said and str(stop) == f"{stop.reason.value}: {said}"

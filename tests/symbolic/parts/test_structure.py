@@ -10,6 +10,8 @@ import pytest
 import scipy
 
 import symbolic as sym
+from symbolic.parts.structure import _steepness
+from symbolic.structures.damping import ModalDamping
 
 M2, K2 = np.diag([2.0, 1.0]), np.array([[3.0, -1.0], [-1.0, 1.5]])
 C2 = 0.05 * K2
@@ -144,3 +146,53 @@ def test_modes_that_places_do_not_hold_are_refused() -> None:
         part = sym.Structure(np.eye(3), None, np.diag([2.0, 2.0, loose]), at={"q": 0, "r": 1})
         with pytest.raises(ValueError, match=re.escape(sentence)):
             sym.compile(loaded(part))
+
+
+def test_matrices_and_modes_are_kept_by_speed() -> None:
+    """Assert it of what varies with the speed, one for all speeds of what does not, and no more than nine."""
+    still, turning = structure(), structure(G=np.array([[0.0, 0.1], [-0.1, 0.0]]))
+    assert not still.varying and turning.varying and still.size == 2
+    assert still.modal(1.0) is still.modal(2.0) and still.matrices(1.0) is still.matrices(2.0)
+    first = turning.modal(1.0)
+    assert turning.modal(1.0) is first and turning.modal(2.0) is not first
+    assert turning.matrices(1.0) is turning.matrices(2.0)
+    for k in range(9):
+        turning.modal(3.0 + k)
+    assert len(turning._forms) <= 9 and turning.modal(1.0) is not first
+
+
+def test_matrices_that_are_functions_of_the_speed() -> None:
+    """Assert their values and slopes, and those of G times the speed."""
+    given = sym.Structure(M2, lambda speed: speed * C2, lambda speed: K2 + speed**2 * np.eye(2))
+    assert given.varying
+    assert np.asarray(given.matrices(3.0).C).tolist() == (3.0 * C2).tolist()
+    assert np.asarray(given.matrices(2.0).K).tolist() == (K2 + 4 * np.eye(2)).tolist()
+    assert _steepness(given.K, 3.0, 2) == pytest.approx(6 * np.eye(2), rel=1e-6, abs=1e-6)
+    assert _steepness(given.C, 0.0, 2) == pytest.approx(C2, rel=1e-6)
+    assert _steepness(given.M, 3.0, 2).tolist() == [[0.0, 0.0], [0.0, 0.0]]
+
+
+def test_coordinates_of_degrees_of_freedom() -> None:
+    """Assert those of places by their names, one for several degrees of freedom, and others by number."""
+    given = sym.Structure(np.eye(3), None, np.eye(3), at={"a": 1, "both": [0, 2]}, name="s", scale=0.5)
+    assert given.freedom(1) is given["a"] and given["a"].name == "a" and given["a"].scale == 0.5
+    assert [q.name for q in given["both"]] == ["both 1", "both 2"]
+    assert given["both"][1] is given.freedom(2)
+    assert sym.Structure(np.eye(3), None, np.eye(3), name="s").freedom(2).name == "s 3"
+    for wrong in (3, -1, True, 1.5):
+        with pytest.raises(ValueError, match="it must be a whole number from 0 to 2$"):
+            given.freedom(wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ({}, (0.0, 0.0, 0.0)),
+        ({"damping": 0.1}, (0.1, 0.0, 0.0)),
+        ({"damping": [0.1, 0.2]}, ((0.1, 0.2), 0.0, 0.0)),
+        ({"rayleigh": (0.3, 0.4)}, (0.0, 0.3, 0.4)),
+    ],
+)
+def test_damping_that_is_given(options: dict[str, Any], expected: tuple[Any, ...]) -> None:
+    """Assert ratios, and the factors of M and K."""
+    assert structure(**options).modal_damping == ModalDamping(*expected)
