@@ -99,7 +99,7 @@ def test_layouts_that_fit_a_system() -> None:
 
 
 def test_signals_of_orbits_in_time() -> None:
-    """Assert states, rates and second rates over t, d/dt = Omega d/dtau, and those of an equilibrium over tau."""
+    """Assert states, rates and second rates over t, d/dt = Omega d/dtau; of an equilibrium over tau."""
     layout = replace(LAYOUT, algebraics=(), states=LAYOUT.states[:2], frequency=("Omega",), factor=1.0)
 
     def states(tau: Any) -> Any:
@@ -111,5 +111,12 @@ def test_signals_of_orbits_in_time() -> None:
     assert orbit["x"](t) == pytest.approx(1e-3 * np.sin(3 * t), abs=1e-8)
     assert orbit["x'"](t) == pytest.approx(3 * 2e-3 * np.cos(3 * t) / 2, abs=1e-7)
     assert orbit["x''"](t) == pytest.approx(-9 * 2e-3 * np.sin(3 * t) / 2, abs=1e-4)
+    scaled = tuple(replace(q, scale=k * q.scale) for q, k in zip(layout.states, (4.0, 0.5), strict=True))
+    given = replace(layout, states=scaled, parameters=tuple(replace(q, scale=0.5) for q in layout.parameters))
+    again = orbit.expressed_in(given)
+    assert again.nodes == pytest.approx(orbit.nodes * [0.25, 2.0])
+    assert again.stages == pytest.approx(orbit.stages * [0.25, 2.0])
+    assert again.parameter.tolist() == [6.0, 2.0] and again.layout == given
+    assert orbit.expressed_in(layout) is orbit
     still = replace(orbit, equilibrium=True, nodes=orbit.nodes[:1] * 0 + 2.0)
     assert still["x"].omega == 1.0

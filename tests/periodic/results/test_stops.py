@@ -51,7 +51,10 @@ def test_kinds_of_reasons(reason: Reason) -> None:
         (Stop.after(Reason.CLOSED, 7), "it came back to its start after 7 points"),
         (Stop.after(Reason.EQUILIBRIUM, 7), "the orbits shrank to it after 7 points"),
         (Stop.after(Reason.HOMOCLINIC, 12.34567), "the period grows without bound, 12.35 s here"),
-        (Stop.after(Reason.VANISHED, 1.234e-9), "the motion has shrunk to rounding, 1.2e-09 peak to peak (scaled)"),
+        (
+            Stop.after(Reason.VANISHED, 1.234e-9),
+            "the motion has shrunk to rounding, 1.2e-09 peak to peak (scaled)",
+        ),
         (Stop.after(Reason.INTERRUPTED, 7), "after 7 points"),
         (Stop.after(Reason.MAX_POINTS, 7), "7 points"),
         (Stop.asked("LP", 1), "LP met 1 time"),

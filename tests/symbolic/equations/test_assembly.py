@@ -176,7 +176,7 @@ def test_names_that_are_taken() -> None:
     assembly.output("force", "N", 2 * x)
     assert [(v.name, v.unit) for v, _ in assembly.described] == [("x", motion.position.unit), ("force", "N")]
     for act, said in (
-        (lambda: assembly.state("x'", "m", 1.0, ca.SX(0)), "state \"x'\" is defined twice"),
+        (lambda: assembly.state("x'", "m", 1.0, ca.SX(0)), 'state "x\'" is defined twice'),
         (lambda: assembly.output("force", "N", x), "output 'force' is defined twice"),
         (lambda: assembly.motion(sym.coordinate("x")), "two coordinates are called 'x'"),
         (lambda: assembly.motion("x"), "coordinate is 'x'; it must be a Coordinate"),

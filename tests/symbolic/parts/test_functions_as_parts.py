@@ -130,8 +130,10 @@ def test_resets_of_what_is_no_state() -> None:
         (lambda x, p: {"a": (x.v, {"v": x.z})}, "switch 'v of a' depends on the unknown z"),
     ):
         part = sym.Equations(
-            lambda x, p: {"v": -x.v, "z": x.z}, {"v": 0.0},
-            unknowns={"z": 0.0}, resets=resets,
+            lambda x, p: {"v": -x.v, "z": x.z},
+            {"v": 0.0},
+            unknowns={"z": 0.0},
+            resets=resets,
         )
         with pytest.raises(ValueError, match=said):
             part.contribute(Assembly())

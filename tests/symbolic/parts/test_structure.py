@@ -155,6 +155,7 @@ def test_matrices_and_modes_are_kept_by_speed() -> None:
     assert still.modal(1.0) is still.modal(2.0) and still.matrices(1.0) is still.matrices(2.0)
     first = turning.modal(1.0)
     assert turning.modal(1.0) is first and turning.modal(2.0) is not first
+    assert turning.modal(1.0) is first
     assert turning.matrices(1.0) is turning.matrices(2.0)
     for k in range(9):
         turning.modal(3.0 + k)

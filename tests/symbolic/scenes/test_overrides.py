@@ -119,7 +119,7 @@ def test_values_that_are_set_and_taken_out() -> None:
         ("false", False),
         ("True", "True"),
         ("[1, 2]", [1, 2]),
-        ('{a = 1}', {"a": 1}),
+        ("{a = 1}", {"a": 1}),
         ("[1, 2", "[1, 2"),
         ("oil", "oil"),
         ("1-2", "1-2"),
@@ -135,7 +135,10 @@ def test_values_of_texts(text: str, value: object) -> None:
     ("given", "said"),
     [
         ({"one": {"mas": 1}}, r"one.mas is not a key of the scene; \[one\] may have kind, mass and from"),
-        ({"one": {}, "twoo": {}}, "twoo is not a key of the scene; the scene may have one, two, many and plain"),
+        (
+            {"one": {}, "twoo": {}},
+            "twoo is not a key of the scene; the scene may have one, two, many and plain",
+        ),
         ({"on": {}}, "on is not a key of the scene; the scene may have"),
         ({}, "one is missing; it must be a table with kind, mass and from"),
         ({"one": {"mass": 10}}, r"one.mass is 10; it must be a number from 0 to 9 \(kg\)"),

@@ -92,7 +92,9 @@ def test_elements_of_a_file(held: bytes, place: int, expected: tuple[int, bytes]
 def test_elements_of_a_variable() -> None:
     """Assert numbers of long elements, filled to 8 bytes, and of short ones beside their type."""
     short = struct.pack("<HHi", 5, 4, -7)
-    held = element(9, struct.pack("<d", 2.5)) + short + element(3, struct.pack("<5h", 1, 2, 3, 4, 5)) + b"\0" * 6
+    held = (
+        element(9, struct.pack("<d", 2.5)) + short + element(3, struct.pack("<5h", 1, 2, 3, 4, 5)) + b"\0" * 6
+    )
     found = [part.tolist() for part in matlab._elements(held + short, "<")]
     assert found == [[2.5], [-7], [1, 2, 3, 4, 5], [-7]]
     for wrong in (

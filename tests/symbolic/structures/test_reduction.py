@@ -195,7 +195,11 @@ def chain(size: int) -> sym.Matrices:
     stiffness = np.diag(np.full(size, 6.0)) - 2 * (np.eye(size, k=1) + np.eye(size, k=-1))
     skew = np.eye(size, k=1) - np.eye(size, k=-1)
     return sym.Matrices(
-        np.diag(np.arange(1.0, size + 1)), 0.1 * stiffness, stiffness, G=0.2 * skew, at={"a": 3, "b": 1, "c": 0}
+        np.diag(np.arange(1.0, size + 1)),
+        0.1 * stiffness,
+        stiffness,
+        G=0.2 * skew,
+        at={"a": 3, "b": 1, "c": 0},
     )
 
 
@@ -230,9 +234,10 @@ def test_kept_places_without_any_modes() -> None:
     """Assert Guyan's reduction, the whole structure where all of it is kept, and bands that are empty."""
     full = chain(4)
     static = sym.craig_bampton(full, ["a"], 0)
-    assert static.matrices.K == pytest.approx(1 / np.linalg.inv(full.K)[3:, 3:], rel=1e-12)
+    stiffness, flexible = static.matrices.K, np.linalg.inv(full.K)[3:, 3:]
+    assert stiffness == pytest.approx(1 / flexible, rel=1e-12)
     whole = sym.craig_bampton(full, [2, 0, 1, 3], 0)
-    assert whole.matrices.M == pytest.approx(np.diag([3.0, 1.0, 2.0, 4.0]))
+    assert whole.matrices.M.tolist() == np.diag([3.0, 1.0, 2.0, 4.0]).tolist()
     for low, high in ((2.0, 2.0), (-1.0, 2.0), (3.0, 2.0)):
         with pytest.raises(ValueError, match="^low is .*; it must be at least 0 and less than high = 2$"):
             static.error(low, high)

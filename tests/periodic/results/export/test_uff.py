@@ -164,7 +164,9 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 def test_tables_of_text(tmp_path: Path) -> None:
     """Assert every cell of both files of CSV."""
     file = tmp_path / "a.csv"
-    of = replace(content(), multipliers=np.array([[0.5 + 0.25j], [-1.0 - 0.5j]]), stable=np.array([True, False]))
+    of = replace(
+        content(), multipliers=np.array([[0.5 + 0.25j], [-1.0 - 0.5j]]), stable=np.array([True, False])
+    )
     beside = tmp_path / "a-orbits.csv"
     assert write_csv(file, of) == [file, beside]
     assert file.read_text("utf-8").split("\n") == [

@@ -96,5 +96,7 @@ def test_maps_of_other_sizes() -> None:
     none = xr.Dataset({"a": (("p",), [1.0])})
     apart = xr.Dataset({"a": (("p",), [1.0]), "b": (("q",), [1.0])}, coords={"p": [0], "q": [0]})
     for wrong in (three, none, apart):
-        with pytest.raises(ValueError, match="^the map has the axes .*; a page shows numbers over one or two"):
+        with pytest.raises(
+            ValueError, match="^the map has the axes .*; a page shows numbers over one or two"
+        ):
             map_content(wrong)

@@ -173,7 +173,14 @@ def test_marks_of_special_points(axes: Axes) -> None:
     lines = axes.get_lines()
     assert [float(np.asarray(line.get_xdata())[0]) for line in lines] == [1.0, 2.0, 3.0, 4.0, 5.0, 1.0]
     assert [line.get_marker() for line in lines[2:4]] == ["o", "o"]
-    assert [line.get_markerfacecolor() == "none" for line in lines] == [False, False, True, True, False, False]
+    assert [line.get_markerfacecolor() == "none" for line in lines] == [
+        False,
+        False,
+        True,
+        True,
+        False,
+        False,
+    ]
     named = [str(line.get_label()) for line in lines]
     assert named[0].startswith("LP ") and named[1] == "" and named[2:4] == ["asked for", "peak"]
     assert named[5] == "CP cusp"
@@ -184,7 +191,9 @@ def test_marks_of_special_points(axes: Axes) -> None:
     ("heights", "free", "limits"),
     [([1.0, 3.0], 0.2, (0.9, 3.525)), ([2.0, 2.0], 0.5, (1.9, 4.1)), ([0.0, 0.0], 0.5, (-0.05, 1.05))],
 )
-def test_room_above_curves(axes: Axes, heights: list[float], free: float, limits: tuple[float, float]) -> None:
+def test_room_above_curves(
+    axes: Axes, heights: list[float], free: float, limits: tuple[float, float]
+) -> None:
     """Assert a twentieth of the height below, and a part of the axes above; of one height its own size."""
     axes.plot([0.0, 1.0], heights)
     frame.headroom(axes, free)
@@ -203,7 +212,9 @@ def test_no_room_above_logarithmic_curves(axes: Axes) -> None:
     assert axes.get_ylim() == (0.5, 5.0)
 
 
-@pytest.mark.parametrize(("names", "least", "shown"), [(0, 1, False), (1, 1, True), (1, 2, False), (2, 2, True)])
+@pytest.mark.parametrize(
+    ("names", "least", "shown"), [(0, 1, False), (1, 1, True), (1, 2, False), (2, 2, True)]
+)
 def test_legends(axes: Axes, names: int, least: int, shown: bool) -> None:
     """Assert one from so many names on, and what the axes say, dollars and all."""
     axes.plot([0.0, 1.0], [0.0, 1.0], label="_hidden")

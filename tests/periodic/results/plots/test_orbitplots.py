@@ -41,7 +41,9 @@ def orbit(*nodes: tuple[EventNode, float]) -> Orbit:
     names = ("x", "x'", "y", "y'")
     system.states = tuple(Quantity(name, "m", 1e-3) for name in names)
     found = along(states, nodes, intervals=60)
-    return replace(found, parameter=np.array([OMEGA]), layout=replace(layout_of(system), frequency=("Omega",)))
+    return replace(
+        found, parameter=np.array([OMEGA]), layout=replace(layout_of(system), frequency=("Omega",))
+    )
 
 
 @pytest.mark.parametrize("harmonics", [1, 3, 5])

@@ -59,7 +59,10 @@ def test_units_that_are_asked_for(name: str, asked: Any, text: str, size: float)
     ("asked", "said"),
     [
         ({"y": "mm"}, "units has 'y'; its names must be among time, x, Omega, phi, r, F$"),
-        ({"x": "N"}, "units has 'N' for x, which is in m; it must be that with a prefix such as m or k, or a"),
+        (
+            {"x": "N"},
+            "units has 'N' for x, which is in m; it must be that with a prefix such as m or k, or a",
+        ),
         ({"x": "Hz"}, "units has 'Hz' for x, which is in m; it must be that with a prefix"),
         ({"time": "h"}, "units has 'h' for time, which is in s; it must be min, or a pair"),
         ({"r": "m/s"}, "units has 'm/s' for r, which is in no unit; "),
