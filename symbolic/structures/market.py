@@ -58,15 +58,19 @@ def matrix_market(held: bytes) -> Any:
 
 def _dense(sizes: list[int], body: bytes, mirrored: int) -> Array:
     """A matrix of its entries by columns; with a mirror image of those on the diagonal, if any, and below."""
-    if len(sizes) != 2 or min(sizes) < 1 or sizes[0] * sizes[1] > len(body):
+    if len(sizes) != 2 or min(sizes) < 1:
         raise DamagedError(LARGER)
-    values, (rows, columns) = entries(body).ravel(), sizes
-    matrix = np.zeros((rows, columns))
+    rows, columns = sizes
+    if mirrored and rows != columns:
+        raise DamagedError("it has not as many entries as it declares")
+    if (rows * columns + mirrored * rows) // (2 if mirrored else 1) > len(body.strip()):
+        raise DamagedError(LARGER)
+    values, matrix = entries(body).ravel(), np.zeros((rows, columns))
     if not mirrored:
         below = np.ones((rows, columns), dtype=bool)
     else:
         below = np.tri(rows, columns, k=0 if mirrored > 0 else -1, dtype=bool)
-    if len(values) != below.sum() or (mirrored and rows != columns):
+    if len(values) != below.sum():
         raise DamagedError("it has not as many entries as it declares")
     matrix.T[below.T] = values
     return matrix + mirrored * np.tril(matrix, -1).T if mirrored else matrix

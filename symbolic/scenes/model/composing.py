@@ -8,7 +8,7 @@ from typing import Any
 from symbolic.equations.model import Model, Part, combine
 from symbolic.equations.variables import Coordinate, Parameter
 from symbolic.parts.structure import Structure
-from symbolic.scenes.errors import InputError, refused, shown
+from symbolic.scenes.errors import InputError, refused
 from symbolic.scenes.model.bench import Bench, unknown
 from symbolic.scenes.model.catalogue import KIND, Entry, catalogue
 from symbolic.scenes.model.readers import CoordinateName
@@ -75,7 +75,7 @@ def _spread(where: str, entry: Entry, table: dict[str, Any]) -> Iterator[dict[st
         raise InputError(
             f"{where} {' and '.join(lists)}",
             "differ in length",
-            f"they must be as long, not {shown(sorted(counts))}",
+            f"they must be as long, not {' and '.join(map(str, sorted(counts)))}",
         )
     else:
         for k in range(counts.pop()):

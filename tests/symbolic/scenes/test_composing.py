@@ -62,7 +62,7 @@ def test_names_of_parts() -> None:
         ),
         (
             {"kind": "Spring", "q": ["x", "y"], "to": ["y"], "k": 1.0},
-            r"\[\[part\]\] 1 \(Spring\) q and to differ in length; they must be as long",
+            r"\[\[part\]\] 1 \(Spring\) q and to differ in length; they must be as long, not 1 and 2$",
         ),
     ],
 )

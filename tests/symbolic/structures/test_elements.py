@@ -104,6 +104,7 @@ def test_kinds_of_matrices(kind: str, beside: list[float]) -> None:
         ("general", "1 2 3 4", [[1, 3], [2, 4]]),
         ("symmetric", "1 2 4", [[1, 2], [2, 4]]),
         ("skew-symmetric", "3.25", [[0, -3.25], [3.25, 0]]),
+        ("skew-symmetric", "3", [[0, -3], [3, 0]]),
     ],
 )
 def test_dense_matrices_by_columns(kind: str, numbers: str, expected: list[list[float]]) -> None:
