@@ -111,6 +111,15 @@ def _less(rows: Array, switch: int, held: Sequence[int]) -> Array:
     return np.where(np.abs(left) > SAME * np.abs(own).max(), left, 0.0)
 
 
+def held_throughout(system: System, modes: Sequence[tuple[int, int]]) -> list[int]:
+    """Return the guards of friction that is held all along, by the modes of surfaces all along.
+
+    What a slider that is held all along is strained by need not stand still: that holds no motion.
+    """
+    friction = {surface.switch for surface in of_kind(system, Kind.SLIDING)}
+    return [switch for switch, mode in modes if mode == HELD and switch in friction]
+
+
 def held_at(system: System, events: Sequence[EventNode], node: int, always: Sequence[int] = ()) -> list[int]:
     """Return the guards of friction that is held before and after an event node, or `always`."""
     found = list(always)

@@ -14,10 +14,10 @@ from periodic.events.modes import surface_of
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import MERGING
 from periodic.events.sideconditions import Lengths
-from periodic.events.twinguards import held_at, twins
+from periodic.events.twinguards import held_at, held_throughout, twins
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import HELD, STUCK, Kind, System
+from periodic.system import STUCK, Kind, System
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Meeting:
 def merging(system: System, orbit: Orbit, node: int) -> Meeting | None:
     """Return the neighbouring event nodes, the first of them `node`, at which stops merge or part, if any."""
     events, count = orbit.mesh.events, len(orbit.phases)
-    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    always = held_throughout(system, orbit.mesh.modes)
     for size in (2, 3) if count > 2 else ():
         nodes = [(node + m) % count for m in range(size)]
         if set(nodes) & set(tied(system, orbit)):

@@ -10,10 +10,11 @@ from periodic.events.modes import inconsistency
 from periodic.events.rewrites.sites import Node, in_order
 from periodic.events.rewrites.swaps import swaps
 from periodic.events.rewrites.together import together
+from periodic.events.twinguards import held_throughout
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
-from periodic.system import HELD, System
+from periodic.system import System
 
 
 def permuted(system: System, orbit: Orbit, phases: Array) -> list[Node] | None:
@@ -48,7 +49,7 @@ def permuted(system: System, orbit: Orbit, phases: Array) -> list[Node] | None:
     else:
         return None
     nodes = in_order(zip(events, places, strict=True), orbit)
-    held = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    held = held_throughout(system, orbit.mesh.modes)
     if inconsistency(system, [event for event, _ in nodes]) or together(system, nodes, 0.0, held) != nodes:
         return None
     return nodes

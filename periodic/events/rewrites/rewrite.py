@@ -26,12 +26,13 @@ from periodic.events.rewrites.together import together
 from periodic.events.sideconditions import Clearance, Length, Lengths, Limit, Speed
 from periodic.events.switchpolynomials import SwitchPolynomials
 from periodic.events.thresholds import AT_LEVEL, BESIDE_EXTREMUM, VANISHING
+from periodic.events.twinguards import held_throughout
 from periodic.events.violations import largest
 from periodic.orbit.mesh import MIN_INTERVALS, EventNode, Mesh
 from periodic.orbit.orbit import Orbit
 from periodic.orbit.scheme import Array
 from periodic.refinement.equidistribution import density, redistribute, spread
-from periodic.system import HELD, System
+from periodic.system import System
 from periodic.system.precision import CONVERGED
 
 
@@ -207,8 +208,9 @@ def rewritten(
     system: System, orbit: Orbit, sites: Sequence[Site], size: float
 ) -> tuple[tuple[EventNode, ...], Array]:
     """Return event nodes and phases of an orbit after the edits at some sites, in order."""
-    held = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
-    return ordered(together(system, in_order(edited(orbit, sites, size), orbit), size, held), orbit)
+    nodes = in_order(edited(orbit, sites, size), orbit)
+    modes = still(system, orbit.mesh.modes, tuple(event for event, _ in nodes))
+    return ordered(together(system, nodes, size, held_throughout(system, modes)), orbit)
 
 
 def _changed(site: Site) -> Sequence[int]:

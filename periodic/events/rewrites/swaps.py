@@ -10,10 +10,10 @@ from periodic.events.rewrites.corners import reversed_by_impact
 from periodic.events.rewrites.sites import Added, Site
 from periodic.events.rewrites.table import SWAP
 from periodic.events.sideconditions import Length
-from periodic.events.twinguards import held_at, holding, twins
+from periodic.events.twinguards import held_at, held_throughout, holding, twins
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import HELD, STUCK, Kind, SurfaceLike, System, surfaces_of
+from periodic.system import STUCK, Kind, SurfaceLike, System, surfaces_of
 
 
 def swaps(system: System, orbit: Orbit, segment: int) -> bool:
@@ -35,7 +35,7 @@ def _bound(system: System, orbit: Orbit, segment: int) -> bool:
     """
     events, count = orbit.mesh.events, len(orbit.phases)
     ends = segment, (segment + 1) % count
-    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    always = held_throughout(system, orbit.mesh.modes)
     for node, other, beyond in ((*ends, (ends[1] + 1) % count), (*ends[::-1], (ends[0] - 1) % count)):
         friction = [s.switch for s in _changed(system, events[node]) if _held_beside(s, events, node)]
         if not friction:

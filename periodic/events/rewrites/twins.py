@@ -13,10 +13,10 @@ from periodic.events.rewrites.sites import Added, Site, apart
 from periodic.events.rewrites.table import GRAZING_SLIDING, LIMIT_GRAZING
 from periodic.events.switchpolynomials import Extremum
 from periodic.events.thresholds import BESIDE_EXTREMUM
-from periodic.events.twinguards import held_at, held_in, holding, twins
+from periodic.events.twinguards import held_at, held_in, held_throughout, holding, twins
 from periodic.orbit.mesh import EventNode
 from periodic.orbit.orbit import Orbit
-from periodic.system import HELD, STUCK, Kind, SurfaceLike, System
+from periodic.system import STUCK, Kind, SurfaceLike, System
 
 
 def with_twins(system: System, orbit: Orbit, site: Site) -> Site:
@@ -46,7 +46,7 @@ def parted(
     system: System, orbit: Orbit, event: EventNode, node: int, guard: int
 ) -> tuple[tuple[int, int], ...]:
     """Return the modes that change at an event node only because friction at a guard holds there."""
-    always = [switch for switch, mode in orbit.mesh.modes if mode == HELD]
+    always = held_throughout(system, orbit.mesh.modes)
     held = held_at(system, orbit.mesh.events, node, always)
     own = surface_of(system, event.switch).switch
     alone = twins(system, own, [k for k in held if k != guard])

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from support.surfaces import Surfaces, along, joint
 
 import symbolic as sym
+from periodic.events.rewrites.rewrite import rewritten
 from periodic.events.rewrites.together import together
+from periodic.events.twinguards import held_throughout
 from periodic.orbit.mesh import EventNode
-from periodic.system import STUCK, Kind, surfaces_of
+from periodic.system import HELD, STUCK, Kind, surfaces_of
 
 
 def beside(*parts: str) -> sym.CompiledSystem:
@@ -54,6 +58,35 @@ def test_sliders_held_together_are_let_go_together() -> None:
     joint = [event for event, _ in found if event.modes and event.switch in (up_a, up_b)]
     assert [dict(event.modes) for event in joint] in ([{b: 1}], [{a: 1}])
     assert together(system, found, 0.1) == found
+
+
+def test_a_slider_held_all_along_holds_no_other_one() -> None:
+    """Assert that two of three sliders are let go together beside a third that never slips: no friction is.
+
+    Friction that is held all along is, until one of the event nodes lets it go.
+    """
+    joints = [joint(k, 3 * k, Kind.SLIDER) for k in range(3)]
+    system = Surfaces([*joints, joint(3, 9)], [[1.0]] * 12)
+    both = (0, STUCK), (3, STUCK)
+    word = [
+        (EventNode(0, -1, modes=both), 0.5),
+        (EventNode(1, 1, modes=((3, 1),)), 1.0),
+        (EventNode(0, -1, modes=both), 2.0),
+        (EventNode(2, -1), 2.5),
+        (EventNode(5, -1), 2.7),
+        (EventNode(0, 1, modes=both), 4.0),
+        (EventNode(1, 1), 4.5),
+        (EventNode(4, 1), 4.7),
+    ]
+    parted = [*word[:1], (EventNode(1, 1), 1.0), (EventNode(4, 1), 1.1), *word[2:]]
+
+    def read(word: list[tuple[EventNode, float]], *modes: tuple[int, int]) -> int:
+        orbit = along(lambda tau: np.sin(tau)[:, None], word, modes)
+        return len(rewritten(system, orbit, [], 0.1)[0])
+
+    assert held_throughout(system, [(6, HELD), (9, HELD), (0, 1)]) == [9]
+    assert [read(word), read(word, (6, HELD)), read(parted), read(parted, (6, HELD))] == [len(word)] * 4
+    assert read(parted, (9, HELD)) == len(parted)
 
 
 def test_a_slider_that_has_slipped_is_let_go_by_itself() -> None:
